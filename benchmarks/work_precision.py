@@ -165,7 +165,7 @@ class Case:
     def find_sure(self, wanted):
         """The cheapest fixed run that keeps the accuracy at all speeds beside, too, and what is refused in part."""
         effort = {q: max(BEST_EFFORT * wanted, LEAST_EFFORT) for q, why in self.refused(wanted)
-                  if q in self.reference and "have no sum" not in why}
+                  if q in self.reference and "sum of the accelerations" not in why}
         asked = {q: limit for q, limit in (effort | dict.fromkeys(self.promised(wanted), wanted)).items()
                  if self.doubt[q] <= JUDGED * limit}
         for point in self.candidates(wanted):

@@ -1,6 +1,6 @@
 # %% [markdown]
-# A train over a bridge of three spans, from Python: one run, a study over the speed, and a passage step by step with a
-# force. Each `# %%` begins a cell, for editors that show such files as notebooks; plain Python runs it, too:
+# A train crosses a bridge of three spans: one run, a study of the speed, and a passage step by step with a force. Each
+# `# %%` begins a cell, for editors that show such files as notebooks; plain Python runs the file, too:
 #
 #     PYTHONPATH=python /usr/bin/python3 examples/three_span_train.py [FOLDER FOR THE PICTURES]
 
@@ -16,7 +16,7 @@ folder = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "results")
 folder.mkdir(exist_ok=True)
 scene = "options/scenes/three_span_train.yml"
 
-# %% One run: an xarray.Dataset, each variable with its units and coordinates.
+# %% One run: an xarray.Dataset whose variables have units and coordinates.
 crossing = traverse.run(scene, accuracy=1e-2, output_probes=[12.5, 40.0, 67.5])
 print(crossing["deflection"])
 (1e3 * crossing["deflection"]).plot.line(x="time")
@@ -31,7 +31,7 @@ plt.ylabel("largest deflection, mm")
 plt.savefig(folder / "python_speeds.png")
 plt.close()
 
-# %% Step by step: a damper between the ground and midspan, which this program plays, 10 MN s/m.
+# %% Step by step: this program applies the force of a damper, 10 MN s/m, between the ground and midspan.
 with traverse.Passage(scene, accuracy=1e-2, output_interval=0.002, output_probes=40.0, ts_max_time=2.0) as passage:
     damped = []
     while passage.time < passage.end:

@@ -1,10 +1,9 @@
 #!/usr/bin/python3
-"""The train crossing the deflecting bridge: animate.py RESULTS.h5 [-o FILE.gif|.mp4] [--space-time FILE.png]
+"""Draws a train that crosses a deflecting bridge: animate.py RESULTS.h5 [-o FILE.gif|.mp4] [--space-time FILE.png]
 
-Bridge, vehicles and moving forces are drawn to scale; vertical displacements of bridge and vehicles are exaggerated,
-by how much is said in the picture. Between the stations at which deflections are stored cubic splines are drawn. A GIF
-needs nothing further, an MP4 needs ffmpeg. --space-time draws the deflection over place and time, with the way of every
-wheel.
+Bridge, vehicles and moving forces are to scale. Vertical displacements of bridge and vehicles are exaggerated; the
+picture contains the factor. Cubic splines connect the stations with stored deflections. An MP4 needs ffmpeg, a GIF
+needs no other program. --space-time draws the deflection over position and time, with the path of every wheel.
 """
 
 import argparse
@@ -25,13 +24,13 @@ from picture_model import BODY, DARK, body_boxes, draw_forces, draw_foundation, 
 from picture_motion import Motion, outline, wheel_places  # noqa: E402
 from picture_words import millimetres  # noqa: E402
 
-WIDEST = 260.0      # m of track that a picture shows at most
-MARGIN = 0.15       # of the bridge, of ground on both sides
-DRAWN, SWAY = 0.03, 0.08  # the greatest deflection and motion of a vehicle as parts of the width
-FRAMES, RATE = 120, 20  # left out: so many; frames a second
+WIDEST = 260.0      # m, greatest length of track in a picture
+MARGIN = 0.15       # ground on either side, as a fraction of the bridge
+DRAWN, SWAY = 0.03, 0.08  # greatest deflection and vehicle motion as fractions of the width
+FRAMES, RATE = 120, 20  # default number of frames; frames per second
 MOST_INSTANTS, MOST_PLACES = 1500, 1000  # of a space-time picture
 SIZE, DPI = (11.0, 4.2), 100
-AXES = (10.12, 2.604)  # inches; higher where something hangs far below the bridge or stands high above it
+AXES = (10.12, 2.604)  # inches; higher for bodies far below or above the bridge
 
 
 def rounded(value):
@@ -43,7 +42,7 @@ def rounded(value):
 
 
 def chosen_rows(time, start, end, frames):
-    """Of at most `frames` instants evenly from start to end the nearest samples."""
+    """The samples nearest to at most `frames` equidistant instants from start to end."""
     inside = np.flatnonzero((time >= start - 1e-12) & (time <= end + 1e-12))
     if not len(inside):
         raise ValueError(f"--from and --to: no sample there; the run is stored from {time[0]:.6g} to {time[-1]:.6g} s")
@@ -51,7 +50,7 @@ def chosen_rows(time, start, end, frames):
 
 
 class Stage:
-    """The picture that all frames share."""
+    """The common figure of all frames."""
 
     def __init__(self, motion, exaggeration):
         self.motion = motion
@@ -73,7 +72,7 @@ class Stage:
         self.heading = results.scene() + (f", {3.6 * speed:.4g} km/h" if speed else "")
 
     def left(self, row):
-        """Where the picture begins: it goes along with the train where the bridge is longer than the picture."""
+        """The left end of the picture. It follows the train if the bridge is longer than the picture."""
         motion, middle = self.motion, 0.5 * (self.motion.low + self.motion.high)
         if (1.0 + 2.0 * MARGIN) * (motion.high - motion.low) > self.width:
             places = [body.position[row, 0] for body in motion.bodies] + list(motion.forces(row)[:, 0])
@@ -131,7 +130,7 @@ class Stage:
         for x, y, side, words, looks in (
                 (0.0, 0.52, "left", self.heading, {"fontsize": 15, "weight": "bold", "color": "black"}),
                 (1.0, 0.52, "right", f"{motion.time[row]:.3f} s", {"fontsize": 15, "color": "black"}),
-                (0.0, 0.31, "left", f"Vertical displacements{moved} are drawn {times}, all else is to scale.", {}),
+                (0.0, 0.31, "left", f"Vertical displacements{moved} are drawn {times}; all other dimensions are to scale.", {}),
                 (0.0, 0.13, "left", f"Drawn {motion.in_words()}.", {}),
                 (1.0, 0.31, "right", where, {"color": COLOURS[0]})):  # y: inches above the axes
             ax.text(x, 1.0 + y / self.tall, words, transform=ax.transAxes, ha=side, va="bottom",
@@ -165,7 +164,7 @@ def animate(motion, path, rows, exaggeration):
 
 
 def space_time(motion, path, rows):
-    """Colours: deflections over time and place; lines: wheels and moving forces."""
+    """Draws deflections over time and position as colours, and wheels and moving forces as lines."""
     figure, ax = plt.subplots(figsize=(11.0, 6.2))
     time = motion.time[rows]
     shown = slice(None, None, -(-len(motion.x) // MOST_PLACES))
@@ -180,7 +179,7 @@ def space_time(motion, path, rows):
     ax.plot(np.full(len(motion.stations), 1.0), motion.stations, "<", color=DARK, ms=5, clip_on=False,
             transform=ax.get_yaxis_transform())
     ax.grid(False)
-    ax.set_facecolor("#D8D8D8")  # of spans that are left out
+    ax.set_facecolor("#D8D8D8")  # spans without a station
     ax.set(xlabel="time (s)", ylabel="place along the bridge (m)", ylim=(motion.low, motion.high))
     if len(time) > 1:
         ax.set_xlim(time[0], time[-1])

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""How passengers feel runs: comfort.py RESULTS.h5... [--body NAME] [--at METRES,...]
+"""Computes ride comfort indices of runs: comfort.py RESULTS.h5... [--body NAME] [--at METRES,...]
 
-Of the vertical acceleration of each vehicle's car body, at its centre and at the given distances from it: the root of
-the mean square as it is and weighted by Wb, the comfort index of EN 12299 and Sperling's ride index. The model is
-planar: the index N_MV is that of the vertical direction alone, 6 times the 95th percentile of the weighted means of
-windows of 5 s; a run shorter than that is one window, and the table says how many there are.
+For the vertical acceleration of the car body of each vehicle, at its centre and at the given distances from it, the
+table contains the root mean square, unweighted and weighted by Wb, the comfort index of EN 12299 and Sperling's ride
+index. The model is planar: the index N_MV is that of the vertical direction only, 6 times the 95th percentile of the
+weighted root mean squares of windows of 5 s. A shorter run is one window; the table contains the number of windows.
 """
 
 import argparse
@@ -20,7 +20,7 @@ WINDOW = 5.0  # s
 
 class Comfort(NamedTuple):
     rms: float       # m/s2
-    weighted: float  # m/s2, the largest of any window
+    weighted: float  # m/s2, largest of all windows
     windows: int
     n_mv: float
     sperling: float
@@ -43,21 +43,21 @@ def weighting_b(f):
 
 
 def sperling_b(f):
-    """Sperling's weight of vertical accelerations at f (Hz)."""
+    """Sperling's weighting of vertical accelerations at f (Hz)."""
     f = np.asarray(f, dtype=float)
     return 0.588 * np.sqrt((1.911 * f**2 + (0.25 * f**2) ** 2)
                            / ((1.0 - 0.277 * f**2) ** 2 + (1.563 * f - 0.0368 * f**3) ** 2))
 
 
 def weighted(values, interval):
-    """The series through Wb; zeros behind it keep its end from its start."""
+    """The series filtered by Wb; appended zeros separate its end from its start."""
     n = len(values)
     spectrum = np.fft.rfft(values, 2 * n)
     return np.fft.irfft(spectrum * weighting_b(np.fft.rfftfreq(2 * n, interval)), 2 * n)[:n]
 
 
 def sperling(values, interval):
-    """Wz = (2 integral of (100 B)^2 S df)^0.15, S the one-sided density of the acceleration in m2/s4/Hz."""
+    """Wz = (2 integral of (100 B)^2 S df)^0.15, with the one-sided spectral density S of the acceleration, m2/s4/Hz."""
     n = len(values)
     power = 2.0 * np.abs(np.fft.rfft(values)) ** 2 / n**2
     power[0] /= 2.0
@@ -81,7 +81,7 @@ def complain(text):
 
 
 def of_file(path, body, distances):
-    """Rows of one file: vehicle, body, distance, Comfort."""
+    """Yields the rows of one file: path, vehicle, body, distance, Comfort."""
     try:
         with h5py.File(path) as file:
             results = Results(file)

@@ -1,9 +1,9 @@
-"""Checks that sources say what they hold: comments.py [ROOT]
+"""Checks that sources have comments: comments.py [ROOT]
 
-The check fails, with one line for each place, where
+The check fails, with one line for each place, if
   - a source file does not open with a comment,
-  - a function that programs which embed Traverse can call (include/traverse) has neither a comment above it nor one
-    beside it. A comment above the first of several declarations without a blank line between them counts for all.
+  - a function of the public headers (include/traverse) has no comment above or beside it. A comment above the first of
+    several declarations without a blank line between them is valid for all of them.
 """
 import argparse
 import pathlib
@@ -28,7 +28,7 @@ def without_head(root):
 
 
 def without_comment(root):
-    """Functions of the public headers; the private part of a class is left out."""
+    """Yields functions of the public headers without a comment; private parts of classes are not checked."""
     for path in sorted((root / "include" / "traverse").rglob("*.hpp")):
         private = commented = False
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):

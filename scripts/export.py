@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""What a results file holds, for other programs: export.py RESULTS.h5 [--series NAME...] [-o FOLDER]
+"""Converts a results file for other programs: export.py RESULTS.h5 [--series NAME...] [-o FOLDER]
 
-Writes a CSV file for each name: a series over time such as probes/deflection, a group of them such as vehicles/0,
-sweep, study, rail_forces/stress, or another table that --list names; without names, all there is. Heads hold names and
-units, the first column is the time, or the place along the rails. --xdmf writes the bridge and the vehicles over time for
-ParaView, or the envelopes along the rails: NAME.xdmf beside its data NAME.xdmf.h5.
+The script writes a CSV file for each name: a time series such as probes/deflection, a group of them such as vehicles/0,
+sweep, study, rail_forces/stress, or another table listed by --list. Without names it writes all of them. The heads
+contain names and units; the first column is the time, or the position along the rails. --xdmf writes the bridge and
+the vehicles over time for ParaView, or the envelopes along the rails: NAME.xdmf, with its data in NAME.xdmf.h5.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from picture_data import Results, opened
 
 
 def listed(file):
-    """A line for each name: shape and unit of a series, what else there is."""
+    """Yields a line for each name: series with shape and unit, and the other tables."""
     for name in export_tables.names(file):
         dataset = file.get(name)
         if isinstance(dataset, h5py.Dataset):
@@ -30,7 +30,7 @@ def listed(file):
 
 
 def all_names(file):
-    """One table a group, of the vehicles one each."""
+    """The names of all tables: one per group, and one for each vehicle."""
     series = export_tables.series_names(file)
     groups = ["/".join(name.split("/")[:2 if name.startswith("vehicles/") else 1]) for name in series]
     others = [name for name in export_tables.names(file) if name not in series]
@@ -38,7 +38,7 @@ def all_names(file):
 
 
 def write_csv(file, name, folder):
-    """The path of the written table."""
+    """Writes a table and returns its path."""
     table = export_tables.table_of(file, name)
     path = folder / f"{name.strip('/').replace('/', '_')}.csv"
     with open(path, "w", newline="", encoding="utf-8") as out:
@@ -49,7 +49,7 @@ def write_csv(file, name, folder):
 
 
 def export(given):
-    """Lines that say what has been written."""
+    """Writes the requested files and returns their paths, or the lines of --list."""
     with opened(given.results) as file:
         if given.list:
             return list(listed(file))
@@ -57,7 +57,7 @@ def export(given):
         wanted = given.series if given.series or given.xdmf else all_names(file)
         if not wanted and not given.xdmf:
             raise ValueError("holds neither series over time nor a sweep or a study nor forces of the rails")
-        tables = [export_tables.table_of(file, name) for name in wanted]  # all are known before one is written
+        tables = [export_tables.table_of(file, name) for name in wanted]  # finds unknown names before writing
         folder.mkdir(parents=True, exist_ok=True)
         written = [write_csv(file, name, folder) for name in wanted]
         if given.xdmf:
@@ -78,7 +78,7 @@ def main():
                         help="of vertical displacements in --xdmf; left out: 1")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="of the samples in --xdmf every N-th")
     given = parser.parse_args()
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # nobody reads any more, as behind a pipe to head: nothing to say
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ends without a message if the reader of a pipe ends, such as head
     try:
         print(*export(given), sep="\n")
     except (OSError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""Tables of a results file, which export.py writes: columns under heads with names and units, as the file has them."""
+"""Tables of a results file for export.py: columns with the names and units of the file as heads."""
 
 import h5py
 import numpy as np
@@ -7,15 +7,15 @@ OVER_TIME = ("probes", "vehicles", "couplers", "supports", "foundation", "rail",
 OVER_RUNS = {"study": "study/finished", "study/statistics": None, "separations": None, "passages": None, "resonances": None,
              "cancellations": None, "envelope": "probes/x", "shape": "shape/x"}
 ALONG_RAIL = {"stress": ("x", ("least_stress", "greatest_stress")), "slip": ("sleeper_x", ("least_slip", "greatest_slip")),
-              "bearings": ("bearing_x", ("bearing",)), "devices": ("device_x", ("opening",))}  # of rail_forces
+              "bearings": ("bearing_x", ("bearing",)), "devices": ("device_x", ("opening",))}  # tables of /rail_forces
 RAIL_PEAKS = ("tension", "compression", "slip", "end")
-PLACES = ("x", "gap")  # datasets that say where columns are
+PLACES = ("x", "gap")  # datasets with the positions of columns
 IN_PLANE, FORCES = ("x", "y", "angle"), ("fx", "fy", "moment")
 SIDES = ("least", "greatest")
 
 
 class Table:
-    """Columns of equal length, each under its name and its unit."""
+    """Columns of equal length, each with its name and its unit."""
 
     def __init__(self):
         self.heads, self.columns = [], []
@@ -29,7 +29,7 @@ class Table:
 
 
 def datasets(file, name):
-    """Names of the dataset, or of all in the group, statistics of a study apart."""
+    """Names of the dataset, or of all datasets in the group; statistics of a study are a separate group."""
     if name not in file:
         return []
     if isinstance(file[name], h5py.Dataset):
@@ -40,20 +40,20 @@ def datasets(file, name):
 
 
 def series_names(file):
-    """Every series over time."""
+    """Names of all time series."""
     if "time" not in file:
         return []
     return [name for group in OVER_TIME for name in datasets(file, group) if name.rsplit("/", 1)[-1] not in PLACES]
 
 
 def names(file):
-    """What can be asked for: every series over time, and the other tables."""
+    """Names of all time series and of the other tables."""
     others = ["sweep", *OVER_RUNS]
     return series_names(file) + [name for name in others if datasets(file, name)] + rail_names(file)
 
 
 def rail_names(file):
-    """Tables of scene_analysis rail."""
+    """Names of the tables of scene_analysis rail."""
     if "rail_forces" not in file:
         return []
     along = [name for name, (at, _) in ALONG_RAIL.items() if at in file["rail_forces"]]
@@ -61,12 +61,12 @@ def rail_names(file):
 
 
 def units(dataset):
-    """One unit, or one for each of the last axis."""
+    """The unit of a dataset, or one unit for each index of its last axis."""
     return str(dataset.attrs.get("unit", "")).split(", ")
 
 
 def places(file, name, count):
-    """Words for the first axis across: where a column is."""
+    """The positions of columns as text, for the axis after the time."""
     group = name.rsplit("/", 1)[0]
     if f"{group}/gap" in file:
         return [f"behind vehicle {int(gap)}" for gap in file[f"{group}/gap"][:]]
@@ -81,7 +81,7 @@ def places(file, name, count):
 
 
 def across(file, name, shape):
-    """(words, unit, index) of every column of a dataset whose rows are of that shape."""
+    """(text, unit, index) of every column of a dataset with rows of this shape."""
     dataset = file[name]
     given, last = units(dataset), name.rsplit("/", 1)[-1]
     if not shape:
@@ -105,12 +105,12 @@ def across(file, name, shape):
 
 
 def deeper_words(index):
-    """Of further axes the numbers, from 0."""
+    """The indices of further axes as text, from 0."""
     return " [" + ",".join(map(str, index)) + "]" if index else ""
 
 
 def add_dataset(table, file, name, values):
-    """Its columns; values[rows, ...]."""
+    """Adds the columns of a dataset; values[rows, ...]."""
     for words, unit, index in across(file, name, values.shape[1:]):
         table.add(name + words, unit, values[(slice(None), *index)])
 
@@ -128,7 +128,7 @@ def over_time(file, chosen):
 
 
 def of_sweep(file):
-    """A row for every train and speed; what holds for all speeds of a train is repeated."""
+    """A table with a row for every train and speed; values that are common to all speeds of a train are repeated."""
     speed = file["sweep/speed"][:]
     trains = file["sweep/peak_deflection"].shape[0] if "sweep/peak_deflection" in file else 1
     numbers = file["sweep/hslm_a"][:] if "sweep/hslm_a" in file else np.arange(trains) + 1
@@ -148,7 +148,7 @@ def of_sweep(file):
 
 
 def over_runs(file, group):
-    """A row for each run, station or event of the group."""
+    """A table with a row for each run, station or event of the group."""
     found, first = datasets(file, group), OVER_RUNS[group]
     lengths = [file[name].shape[0] for name in found if file[name].ndim]
     rows = len(file[first]) if first else max(lengths, key=lengths.count)
@@ -162,7 +162,7 @@ def over_runs(file, group):
 
 
 def of_rail(file, name):
-    """Every case along the track; of the peaks a row a case, each with its place and that of the train's front."""
+    """A table of all cases along the track, or of the peaks: one row per case, with position and front of the train."""
     group, table = file["rail_forces"], Table()
     cases = [case for case in group if isinstance(group[case], h5py.Group)]
     if name == "rail_forces/peaks":
@@ -180,7 +180,7 @@ def of_rail(file, name):
 
 
 def table_of(file, name):
-    """The table of a series, of all series in a group, of the sweep or the study; ValueError where there is none."""
+    """The table of a series, of all series in a group, of the sweep or the study; ValueError if there is none."""
     name = name.strip("/")
     if name == "sweep" or name.startswith("sweep/") and name in file:
         return of_sweep(file)

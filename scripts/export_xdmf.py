@@ -7,11 +7,11 @@ import h5py
 import numpy as np
 from picture_motion import Motion
 
-OF_BRIDGE = ("deflection", "velocity", "acceleration", "moment", "shear")  # those that the file holds at stations
+OF_BRIDGE = ("deflection", "velocity", "acceleration", "moment", "shear")  # series at stations
 
 
 def in_space(x, y):
-    """[..., 3] with z = 0."""
+    """Points [..., 3] with z = 0."""
     return np.stack([x, y, np.zeros_like(y)], axis=-1)
 
 
@@ -28,7 +28,7 @@ def bridge_of(motion, rows, exaggeration):
 
 
 def vehicles_of(motion, rows, exaggeration):
-    """Datasets of all bodies; nothing where there are none."""
+    """Datasets of all bodies; empty if there are none."""
     if not motion.bodies:
         return {}
     position = np.stack([body.position[rows] for body in motion.bodies], axis=1)
@@ -44,7 +44,7 @@ def vehicles_of(motion, rows, exaggeration):
 
 
 def add_item(parent, file, place, values):
-    """The dataset at that place of the open file, written there and named in the parent."""
+    """Writes a dataset to the open file at this path and adds its reference to the parent."""
     if place not in file:
         file[place] = values
     kind = "Int" if values.dtype.kind == "i" else "Float"
@@ -54,7 +54,7 @@ def add_item(parent, file, place, values):
 
 
 def add_grid(parent, name, topology, data, file, row):
-    """The points of one instant with what is known at them. A dataset an instant: not every reader takes parts."""
+    """Adds the points of one instant with their data, in separate datasets, because some readers read no parts."""
     grid = tree.SubElement(parent, "Grid", Name=name, GridType="Uniform")
     count = data["points"].shape[1]
     shape = (1, count) if topology == "Polyline" else (count, 1)
@@ -70,12 +70,12 @@ def add_grid(parent, name, topology, data, file, row):
 
 
 def path_of(what):
-    """A dataset's name without its unit."""
+    """The name of a dataset without its unit."""
     return what.split(" (")[0]
 
 
 def along_rail(group, at, quantity):
-    """Datasets of least and greatest of every case at places along the track."""
+    """Datasets of the least and greatest values of every case along the track."""
     x = group[at][:]
     data = {"points": in_space(x, np.zeros_like(x))[None]}
     for case in (name for name in group if isinstance(group[name], h5py.Group)):
@@ -86,7 +86,7 @@ def along_rail(group, at, quantity):
 
 
 def write_rail_xdmf(results, path):
-    """The envelopes of scene_analysis rail along the track, likewise; both paths are returned."""
+    """Writes the envelopes of scene_analysis rail to PATH and PATH.h5, and returns both paths."""
     group = results["rail_forces"]
     root = tree.Element("Xdmf", Version="3.0")
     whole = tree.SubElement(tree.SubElement(root, "Domain"), "Grid", Name="rail_forces", GridType="Collection",
@@ -100,7 +100,7 @@ def write_rail_xdmf(results, path):
 
 
 def write_xdmf(results, path, exaggeration=1.0, every=1):
-    """Writes PATH, and PATH.h5 with the data; both are returned."""
+    """Writes a run to PATH, with the data in PATH.h5, and returns both paths."""
     if every < 1 or not np.isfinite(exaggeration):
         raise ValueError("--every: a number of samples from 1; --exaggeration: a number")
     motion = Motion(results)

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Ranges, damage and life of what runs have stored: fatigue.py RESULTS.h5[=PASSAGES_A_DAY]... --of SERIES
+"""Computes ranges, damage and life of stored series: fatigue.py RESULTS.h5[=PASSAGES_A_DAY]... --of SERIES
 
-SERIES is any dataset over time, e.g. /probes/moment, /supports/reaction[0,1], /vehicles/0/leading/reaction: of one with
-several columns every column is counted, or the one named in brackets. Cycles are counted by rainflow (ASTM E1049-85,
-three points; what is left counts as half cycles) between the stored instants, so that output_interval has to follow
-the peaks. Several files are the trains of a day, each with its number of passages; every passage stands for itself.
+SERIES is any dataset over time, e.g. /probes/moment, /supports/reaction[0,1], /vehicles/0/leading/reaction. Of a
+dataset with several columns, each column is evaluated, or the one in brackets. Cycles are counted by rainflow (ASTM
+E1049-85, three points; the residue counts as half cycles) between the stored instants, so that output_interval must be
+short enough for the peaks. Several files are the trains of a day, each with its number of passages; each passage is
+evaluated separately.
 """
 
 import argparse
@@ -22,13 +23,13 @@ DAYS_A_YEAR = 365.25
 class Cycle(NamedTuple):
     range: float
     mean: float
-    count: float  # 1, or 0.5 of a half cycle
+    count: float  # 1, or 0.5 for a half cycle
 
 
 def reversals(values):
-    """The first value, every one at which the series turns, and the last."""
+    """The first value, all local extremes, and the last value."""
     values = np.asarray(values, dtype=float)
-    values = values[np.diff(values, prepend=np.nan) != 0.0]  # a plateau is one value
+    values = values[np.diff(values, prepend=np.nan) != 0.0]  # a plateau becomes one value
     if len(values) < 3:
         return values
     steps = np.diff(values)
@@ -36,7 +37,7 @@ def reversals(values):
 
 
 def rainflow(values):
-    """Cycles of a series, ASTM E1049-85, 5.4.4."""
+    """The cycles of a series by ASTM E1049-85, 5.4.4."""
     cycles, kept = [], []
 
     def count(i, weight):
@@ -48,7 +49,7 @@ def rainflow(values):
             last, before = abs(kept[-1] - kept[-2]), abs(kept[-2] - kept[-3])
             if last < before:
                 break
-            if len(kept) == 3:  # the range holds the start
+            if len(kept) == 3:  # the range contains the start
                 count(0, 0.5)
                 del kept[0]
             else:
@@ -60,9 +61,9 @@ def rainflow(values):
 
 
 class Line(NamedTuple):
-    """Cycles that a range may be repeated for: cycles (range at / range)^slope, piece by piece."""
+    """An S-N curve: the number of cycles N = cycles (range at/range)^slope in each piece."""
     name: str
-    pieces: tuple  # (least range, range at, cycles, slope), from large ranges to small ones; below the last no damage
+    pieces: tuple  # (least range, range at, cycles, slope), by descending range; smaller ranges cause no damage
 
     def damage(self, cycles):
         total = 0.0
@@ -79,7 +80,7 @@ class Line(NamedTuple):
 
 
 def en1993(category):
-    """EN 1993-1-9, direct stress: slope 3 to 5e6 cycles, 5 to 1e8, none below."""
+    """EN 1993-1-9, direct stress: slope 3 up to 5e6 cycles, 5 up to 1e8, with the cut-off limit there."""
     constant = category * (2.0 / 5.0) ** (1.0 / 3.0)
     cut_off = constant * (5.0 / 100.0) ** (1.0 / 5.0)
     return Line(f"EN 1993-1-9, category {category:g}",
@@ -101,7 +102,7 @@ def line_of(text):
 
 
 def equivalent_range(cycles, slope, repeated):
-    """The one range that does the damage of all cycles when it is repeated so often."""
+    """The constant range that causes the damage of all cycles with this number of repetitions."""
     return (sum(c.count * c.range**slope for c in cycles) / repeated) ** (1.0 / slope)
 
 
@@ -115,7 +116,7 @@ def number(text):
 
 
 def series_of(file, wanted):
-    """{name: values over time} of a dataset, or of one of its columns."""
+    """{name: values over time} of the columns of a dataset, or of one of them."""
     found = re.fullmatch(r"/?([^\[\]]+)(?:\[([\d, ]+)\])?", wanted)
     if not found or found[1] not in file or not isinstance(file[found[1]], h5py.Dataset) or "time" not in file:
         sys.exit(f"fatigue.py: {file.filename} has no series {wanted} over /time")
@@ -143,7 +144,7 @@ def passages(text):
 
 
 def counted(runs, wanted, factor):
-    """{series: cycles of a day} over all runs, ranges and means times the factor."""
+    """{series: cycles of a day} of all runs, with ranges and means multiplied by the factor."""
     days = {}
     for path, times in runs:
         try:
@@ -158,7 +159,7 @@ def counted(runs, wanted, factor):
 
 
 def table(days, line, repeated):
-    """Lines of text, a series each."""
+    """Lines of text, one for each series."""
     slope = line.slope if line else None
     head = f"{'series':44}{'cycles':>10}{'largest range':>15}"
     lines = [head + (f"{'damage a day':>14}{'years':>10}{f'range at {repeated:g}':>17}" if line else "")]

@@ -3,9 +3,9 @@
 
     gallery.py [--program FILE] [--folder FOLDER SCENE ...]
 
-Without arguments it takes build/traverse, all scenes of the gallery and doc/, for the page doc/gallery.md that is
-committed. Scenes that are named, as scenes/NAME or studies/NAME, are shown on a page of their own in another folder.
-Every other scene of options/ stands on the page in a table, with what its header says.
+Without arguments the script uses build/traverse and all scenes of the gallery, and writes the committed page
+doc/gallery.md. With named scenes, scenes/NAME or studies/NAME, it writes a separate page into another folder.
+A table on the page lists every other scene of options/ with the text of its header.
 """
 
 import argparse
@@ -23,20 +23,20 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = ["scenes/three_span_train", "scenes/fifty_metre_train", "scenes/r2_sprung_mass", "scenes/r8_ballasted_bridge",
          "scenes/ballasted_viaduct", "scenes/articulated_train", "scenes/braking_train", "scenes/freight_wagon",
          "scenes/wheel_over_a_bump", "scenes/tapered_jib", "scenes/prop_with_gap", "studies/hslm_envelope"]
-PICTURE_WIDTH, COLOURS = 1200, 256  # of the stored pictures, which stay small
+PICTURE_WIDTH, COLOURS = 1200, 256  # of the stored pictures, which must be small
 
-# What the page says of a run: the attribute of /summary, its words, unit, the factor to it and the peak whose error has
-# to be known where the run knows any.
+# Figures of a run: the attribute of /summary, its label, unit, the factor to this unit, and the peak that must have an
+# error estimate if the run has any.
 FIGURES = [("deflection", "greatest deflection", "mm", 1e3, "deflection"),
-           ("static_deflection", "greatest static deflection there", "mm", 1e3, "deflection"),
+           ("static_deflection", "greatest static deflection at this probe", "mm", 1e3, "deflection"),
            ("amplification", "amplification", "", 1.0, "deflection"),
            ("moment", "greatest bending moment", "kN m", 1e-3, "moment"),
            ("acceleration", "greatest acceleration of the bridge", "m/s²", 1.0, "acceleration"),
-           ("acceleration_lowpass", "the same, low-passed", "m/s²", 1.0, "acceleration"),
+           ("acceleration_lowpass", "greatest low-passed acceleration", "m/s²", 1.0, "acceleration"),
            ("least_wheel_force", "least wheel force", "kN", 1e-3, "wheel_force"),
            ("greatest_wheel_force", "greatest wheel force", "kN", 1e-3, "wheel_force"),
            ("contact_losses", "losses of contact", "", 1.0, "wheel_force"),
-           ("longest_loss", "the longest of them", "ms", 1e3, "wheel_force")]
+           ("longest_loss", "longest loss of contact", "ms", 1e3, "wheel_force")]
 
 
 def names():
@@ -46,7 +46,7 @@ def names():
 
 
 def header(name):
-    """What the scene's file says of itself in its first lines: what, source, expected."""
+    """The first three lines of the scene's file: what, source, expected."""
     lines = (ROOT / "options" / f"{name}.yml").read_text(encoding="utf-8").splitlines()[:3]
     said = [re.fullmatch(r"# (?:What|Source|Expected): (.*)", line) for line in lines]
     if len(said) < 3 or not all(said):
@@ -59,7 +59,7 @@ def sentence(text):
 
 
 def compute(program, name, folder):
-    """Runs the scene; the file with its results."""
+    """Runs the scene and returns the results file."""
     results = folder / f"{pathlib.Path(name).name}.h5"
     run = subprocess.run([program, "-options_file", ROOT / "options" / f"{name}.yml", "-output_file", results,
                           "-output_quiet"], cwd=ROOT, capture_output=True, text=True)
@@ -69,7 +69,7 @@ def compute(program, name, folder):
 
 
 def draw(results, picture):
-    with h5py.File(results, "a") as file:  # so that the picture says nothing of the time that this machine took
+    with h5py.File(results, "a") as file:  # the picture must not contain the computing time
         for name in ("steps", "runs"):
             file.attrs.pop(name, None)
     subprocess.run([sys.executable, ROOT / "scripts" / "picture.py", results, picture], check=True,
@@ -81,13 +81,13 @@ def draw(results, picture):
 
 
 def in_figures(value):
-    """Four figures, without powers of ten where the value is large: 16,170."""
+    """Four significant digits, without powers of ten for large values: 16,170."""
     text = f"{value:.4g}"
     return f"{float(text):,.0f}" if "e+" in text else text
 
 
 def figures(results):
-    """Rows of a table with the main figures; nothing for a mechanism, which has none of them."""
+    """Rows of a table with the main figures; empty for a mechanism, which has none of them."""
     with h5py.File(results, "r") as file:
         summary = dict(file["summary"].attrs)
     known = [key.removeprefix("expected_error_") for key in summary if key.startswith("expected_error_")]
@@ -97,7 +97,7 @@ def figures(results):
 
 
 def shown(name, folder, program, scratch):
-    """A scene's part of the page."""
+    """The section of a scene."""
     what, source, expected = header(name)
     short = pathlib.Path(name).name
     results = compute(program, name, scratch)
@@ -111,7 +111,7 @@ def table_of(others):
     rows = ["| scene | what | source | expected |", "| --- | --- | --- | --- |"]
     for name in others:
         rows.append(" | ".join([f"| `{name}`", *(text.replace("|", "\\|") for text in header(name))]) + " |")
-    return ["## All other scenes", "", "Each is run by `./run.sh -options_file options/NAME.yml`, with the name of its row.", "", *rows, ""]
+    return ["## All other scenes", "", "`./run.sh -options_file options/NAME.yml` runs the scene of each row.", "", *rows, ""]
 
 
 def main():
@@ -127,9 +127,9 @@ def main():
         sys.exit("A page of some scenes wants a --folder of its own: doc/gallery.md shows them all.")
     folder, chosen = given.folder or ROOT / "doc", given.scenes or SHOWN
     folder.mkdir(parents=True, exist_ok=True)
-    page = ["# Gallery", "", "What the files in `options` describe, what they were taken from and what Traverse computes of "
-            "them; `/usr/bin/python3 scripts/gallery.py` writes this page and its pictures. What is expected stands in the "
-            "file of the scene, the figures beside it are of the run that drew the picture.", ""]
+    page = ["# Gallery", "", "This page shows the scenes in `options`, with their sources and results. "
+            "`/usr/bin/python3 scripts/gallery.py` writes this page and its pictures. The expected values are those in the file "
+            "of the scene; the tables contain the values of the run that drew the picture.", ""]
     with tempfile.TemporaryDirectory() as scratch:
         for name in chosen:
             print(name, flush=True)

@@ -1,35 +1,35 @@
 """Checks that includes between the folders of the sources point down the layers: includes.py [--limit-rooms] [ROOT]
 
 A room is a folder of src together with the folder of include/traverse of the same name. The check fails, with one line
-for each place, where
-  - a room includes a header of a room above it, or stands in no layer,
-  - files include one another in a circle,
-  - a header of include/traverse, which programs that embed Traverse read, includes one of src,
-  - a room that knows no PETSc includes a header of PETSc or SLEPc, be it through another header.
-Rooms with more than their part of all lines are named; with --limit-rooms they are an error too.
+for each place, if
+  - a room includes a header of a room above it, or belongs to no layer,
+  - files include each other in a cycle,
+  - a public header (include/traverse) includes a header of src,
+  - a room without PETSc includes a header of PETSc or SLEPc, directly or through another header.
+The check lists rooms that exceed their share of all lines; with --limit-rooms they are an error too.
 """
 import argparse
 import pathlib
 import re
 import sys
 
-# From the top layer down: a room includes headers of rooms that stand behind it, never before it.
-# The options stand above what they describe: their tables take the names of joints and foundations from there.
+# From the top layer down: a room includes headers of the rooms after it only.
+# The options are above the objects that they describe: their tables use the names of joints and foundations.
 LAYERS = ["app", "check", "study", "error_control", "ensemble", "run", "scene", "norm", "rail", "results", "modal_engine", "integrate", "coupling", "engine", "structure",
           "train", "options", "contact", "multibody", "track", "modes", "recovery", "beam", "solve", "base"]
 WITHOUT_PETSC = {"multibody", "contact", "track"}
-GREATEST_SHARE = 0.10  # of all lines, in one room
+GREATEST_SHARE = 0.10  # of all lines, per room
 
 INCLUDE = re.compile(r'\s*#\s*include\s*[<"]([^>"]+)[>"]')
 PETSC = re.compile(r"(petsc|slepc)")
 
 
 class Sources:
-    """The files of src and include/traverse, and which includes which."""
+    """The files of src and include/traverse with their includes."""
 
     def __init__(self, root):
         self.root = root
-        self.lines = {}  # of every file
+        self.lines = {}  # number of lines of every file
         self.includes = {}  # of every file: (line number, name as written, file of the project or None)
         for folder in (root / "include" / "traverse", root / "src"):
             for path in sorted(folder.rglob("*.[ch]pp")):
@@ -42,7 +42,7 @@ class Sources:
         self.includes[path] = [(number, match[1], self.resolve(path, match[1])) for number, match in found if match]
 
     def resolve(self, path, name):
-        """The file that an include names, where it is one of the project's."""
+        """The included file if it belongs to the project, otherwise None."""
         for folder in (path.parent, self.root / "include", self.root / "src"):
             file = folder / name
             if file.is_file():
@@ -50,7 +50,7 @@ class Sources:
         return None
 
     def room(self, path):
-        """The folder of src or include/traverse that a file is in; empty for a file in neither."""
+        """The folder of a file in src or include/traverse; empty for other files."""
         for folder in (self.root / "include" / "traverse", self.root / "src"):
             if path.is_relative_to(folder):
                 return path.relative_to(folder).parts[0]
@@ -61,7 +61,7 @@ class Sources:
 
 
 def upward_includes(sources):
-    """A line for every room without a layer and for every include that points up."""
+    """Yields a line for every room without a layer and for every upward include."""
     layer = {room: depth for depth, room in enumerate(LAYERS)}
     for room in sorted({sources.room(path) for path in sources.lines} - set(layer)):
         yield f"The folder {room} stands in no layer: give it its place in LAYERS of scripts/includes.py."
@@ -75,7 +75,7 @@ def upward_includes(sources):
 
 
 def private_in_public(sources):
-    """A line for every include of a header of src in a header of include/traverse."""
+    """Yields a line for every include of a header of src in a header of include/traverse."""
     public = sources.root / "include"
     for path, found in sources.includes.items():
         for number, name, file in found:
@@ -85,7 +85,7 @@ def private_in_public(sources):
 
 
 def circles(sources):
-    """A line for every circle of files, found from the first of them."""
+    """Yields a line for every cycle of files."""
     done, said = set(), set()
 
     def follow(path, way):
@@ -108,12 +108,12 @@ def circles(sources):
 
 
 def petsc_where_none_belongs(sources):
-    """A line for every include through which a room that knows no PETSc sees one of its headers."""
+    """Yields a line for every include that brings a header of PETSc into a room without PETSc."""
     sees = {}
 
     def sees_petsc(path):
         if path not in sees:
-            sees[path] = False  # while it is under way: circles have their own line
+            sees[path] = False  # until it is determined; circles() reports cycles
             sees[path] = any(sees_petsc(file) if file else PETSC.match(name)
                              for _, name, file in sources.includes.get(path, []))
         return sees[path]
@@ -128,7 +128,7 @@ def petsc_where_none_belongs(sources):
 
 
 def shares(sources):
-    """Every room's part of all lines, the largest first."""
+    """The share of every room in all lines, the largest first."""
     total = sum(sources.lines.values())
     rooms = {}
     for path, lines in sources.lines.items():

@@ -1,4 +1,4 @@
-"""Prints the errors that the verification tests measure: measured.py [BUILD_FOLDER] [GTEST_FILTER]."""
+"""Prints the errors measured by the verification tests: measured.py [BUILD_FOLDER] [GTEST_FILTER]."""
 import json
 import subprocess
 import sys
@@ -8,7 +8,7 @@ STANDARD = {"name", "file", "line", "status", "result", "timestamp", "time", "cl
 
 
 def run_tests(build, chosen="*"):
-    """Runs the chosen verification tests. Returns {test: {figure: text}} without the suites' prefixes, and the status."""
+    """Runs the chosen verification tests. Returns {test: {figure: text}} without prefixes of suites, and the status."""
     with tempfile.NamedTemporaryFile(suffix=".json") as report:
         run = subprocess.run([build + "/tests/verification_tests", "--gtest_brief=1", "--gtest_filter=" + chosen,
                               "--gtest_output=json:" + report.name], stdout=subprocess.DEVNULL)
@@ -16,7 +16,7 @@ def run_tests(build, chosen="*"):
 
 
 def figures_of(report):
-    """{test: {figure: text}} of a report that GoogleTest has written as JSON."""
+    """{test: {figure: text}} of a JSON report of GoogleTest."""
     found = {}
     for suite in report["testsuites"]:
         for test in suite["testsuite"]:

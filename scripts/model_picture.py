@@ -12,11 +12,11 @@ import numpy as np  # noqa: E402
 from matplotlib.patches import Circle, FancyBboxPatch, Polygon  # noqa: E402
 
 BLUE, ORANGE, GREEN, GREY, DARK = "#0072B2", "#D55E00", "#007A59", "#666666", "#222222"
-LENGTH = 20.0  # of both spans, in the picture's units
+LENGTH = 20.0  # both spans, in units of the picture
 
 
 def deflection(x):
-    """The bent neutral axis, exaggerated: down under the vehicle, up in the other span."""
+    """The deflected neutral axis, exaggerated: downward under the vehicle, upward in the other span."""
     return np.where(x < 10.0, -0.55 * np.sin(np.pi * x / 10.0), 0.22 * np.sin(np.pi * (x - 10.0) / 10.0))
 
 

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""One page that shows a run: picture.py RESULTS.h5 OUT.png
+"""Draws a results file on one page: picture.py RESULTS.h5 OUT.png
 
-Draws what the file holds and leaves out the rest: the bridge's shape at its worst instant, deflections, wheel forces,
-accelerations and sensors over time; or natural shapes; or the peaks of a sweep over the speed. Curves carry their names.
+The page contains the parts that are in the file: the shape of the bridge at the largest deflection, deflections, wheel
+forces, accelerations and sensors over time; or mode shapes; or the peaks of a sweep over the speed. Each curve has a
+name.
 """
 
 import argparse
@@ -29,7 +30,7 @@ from picture_vehicles import (  # noqa: E402
 from picture_words import (  # noqa: E402
     method_in_words, modes_in_words, summary_in_words, sweep_in_words, worst_in_words)
 
-WIDTH, LEFT = 11.5, 0.98  # inches: of the picture, and left of its axes
+WIDTH, LEFT = 11.5, 0.98  # inches: width of the picture, left margin of its axes
 
 
 def draw_deflection(ax, results, worst):
@@ -40,14 +41,14 @@ def draw_deflection(ax, results, worst):
     time_panel(ax, results, f"Deflection of the bridge, upward positive{note}", "mm", curves, worst=worst)
 
 
-# What a crossing shows when asked: the dataset, its title, unit and the factor to it.
+# Panels on request: the dataset, its title, unit and the factor to this unit.
 ASKED = {"acceleration": ("Vertical acceleration of the bridge, unfiltered", "m/s²", 1.0),
          "moment": ("Bending moment of the bridge, positive in sagging", "kN m", 1e-3),
          "shear": ("Shear force of the bridge", "kN", 1e-3)}
 MAY_BE_ASKED = [*ASKED, "bearings", "sensors"]
 
 
-STATIC = {"deflection": ("Static deflection wherever the load stands, upward positive", "mm", 1e3),
+STATIC = {"deflection": ("Static deflection over all positions of the load, upward positive", "mm", 1e3),
           "moment": ("Bending moment, positive in sagging", "kN m", 1e-3), "shear": ("Shear force", "kN", 1e-3)}
 
 
@@ -61,7 +62,7 @@ def draw_asked(ax, results, name):
 
 
 def draw_bearings(ax, results):
-    """Supports, and springs of the foundation, those that carry most."""
+    """Forces of supports and foundation springs; the greatest ones if there are many."""
     found = []
     if "supports/reaction" in results.file:
         forces = 1e-3 * results.over_time(results.file["supports/reaction"])[:, :, 1]
@@ -76,13 +77,13 @@ def draw_bearings(ax, results):
 
 
 def draw_symbols(ax, results, low, high):
-    """Supports, springs and hinges under the undeflected line; in words what has been drawn."""
+    """Draws supports, springs and hinges under the undeflected line; returns their names as text."""
     model = Model(results)
     return symbols_in_words(draw_foundation(ax, model, low, high) | draw_supports(ax, model, low, high))
 
 
 def draw_train(ax, results, time):
-    """Where vehicles and forces stand at that time, as boxes and arrows above the bridge."""
+    """Draws the positions of vehicles and forces at this time, as boxes and arrows above the bridge."""
     above = blended_transform_factory(ax.transData, ax.transAxes)
     low, high = ax.get_xlim()
     middle = []
@@ -106,7 +107,7 @@ def draw_train(ax, results, time):
 
 
 def what_moves(results, forces):
-    """'the train' only where there is one."""
+    """The name of the moving loads, such as 'the train'."""
     trains = len(np.unique(Model(results).trains[:, 0]))
     vehicles = ("the trains" if trains > 1 else "the train" if len(results.vehicles) > 1 else
                 "the vehicle" if results.vehicles else "")
@@ -122,7 +123,7 @@ def draw_shape(ax, results):
     if results.supports is not None and moved[-1] - moved[0] < 0.25 * (high - low):
         margin = 0.3 * (moved[-1] - moved[0]) + 2.0 * np.diff(results.supports).max()
         low, high = max(low, moved[0] - margin), min(high, moved[-1] + margin)
-        note = f"\nThe bridge is {x[-1] - x[0]:,.0f} m long,\nshown is where it bends."
+        note = f"\nThe bridge is {x[-1] - x[0]:,.0f} m long,\nonly the deflected part is shown."
     inside = (x >= low) & (x <= high)
     ax.axhline(0.0, color=PALE, lw=1.0)
     ax.plot(x[inside], shape[inside], color=COLOURS[0], lw=3.2, solid_capstyle="round")
@@ -142,7 +143,7 @@ def draw_shape(ax, results):
     box = ax.get_position()
     width = box.width * ax.figure.get_figwidth()
     scale = (np.ptp(ax.get_xlim()) / width) / (1e-3 * np.ptp(ax.get_ylim()) / (box.height * ax.figure.get_figheight()))
-    ax.set_title(f"The bridge at its worst instant, {time:.4g} s" if results.rows > 1 else "The bridge under its load")
+    ax.set_title(f"The bridge at its largest deflection, {time:.4g} s" if results.rows > 1 else "The bridge under its load")
     times = f"{float(f'{scale:.2g}'):,.0f}"
     listed = "".join(f"\n{symbol}" for symbol in symbols.split("    ") if symbol)
     said = f"Deflection is drawn\n{times} times too large.{listed}{note}"
@@ -153,7 +154,7 @@ def draw_shape(ax, results):
 
 
 def draw_sweep(ax, results):
-    """The greatest deflection at any probe, a curve a train; runs that did not end leave gaps."""
+    """Greatest deflection of all probes over the speed, one curve per train; unfinished runs leave gaps."""
     speed = 3.6 * results.values("sweep/speed")
     peaks = 1e3 * np.abs(results.values("sweep/peak_deflection"))
     peaks = peaks.reshape(-1, len(speed), peaks.shape[-1])
@@ -185,14 +186,14 @@ def draw_sweep(ax, results):
 
 
 def draw_study(ax, results):
-    """The greatest deflection over what is varied most, a curve for each value of the rest."""
-    from traverse_report import curves, source  # which draw with this file's means
+    """Greatest deflection over the option with most values, one curve for each combination of the others."""
+    from traverse_report import curves, source  # imported here because they use this module's functions
     study = source.Source(results.file.filename)
     values = 1e3 * study.runs.of_run("peak_deflection")
     drawn = curves.over_x(ax, study, "peak_deflection", values, "mm", []) if study.runs.x_name else 0
     if not drawn:
         ax.plot(np.sort(values), np.linspace(0.0, 1.0, len(values)), color=COLOURS[0])
-        ax.set(xlabel="greatest deflection (mm)", ylabel="part of the runs that stay below")
+        ax.set(xlabel="greatest deflection (mm)", ylabel="share of the runs below")
     over = f"; thick: the greatest of all {' and '.join(study.runs.over)}, dotted: the median"
     over = over if study.runs.over and drawn else ""
     lines = f", a curve for each {study.runs.lines_in_words()}" if study.runs.line_names and drawn else ""
@@ -200,7 +201,7 @@ def draw_study(ax, results):
 
 
 def draw_static(ax, results, name):
-    """Least and greatest along the bridge of every load, wherever it stands."""
+    """Least and greatest value of every load along the bridge, over all positions of the load."""
     _, unit, factor = STATIC[name]
     x, values = results.values("static/x"), factor * results.values(f"static/{name}")
     for i, (load, _) in enumerate(results.file["static/load"].asstr()[:]):
@@ -212,7 +213,7 @@ def draw_static(ax, results, name):
 
 
 def draw_modes(figure, results):
-    """The first shapes, two a row; or the frequencies alone."""
+    """The first mode shapes, two per row; or the frequencies only."""
     frequency, shapes = results.values("modes/frequency"), results.values("modes/shape")
     figure.text(0.06, 0.16 / figure.get_figheight(), modes_in_words(frequency, shapes), fontsize=8.5, color=GREY)
     if shapes is None:
@@ -240,13 +241,13 @@ def draw_modes(figure, results):
 
 
 def heading_height(results):
-    """Inches above the first panel."""
+    """Height above the first panel, inches."""
     title, said = heading_in_words(results, False)
     return 1.45 + 0.36 * (len(title) - 1) + 0.22 * max(len(said) - 1, 0)
 
 
 def heading_in_words(results, modes_only):
-    """Lines of the title, and of what is said below it."""
+    """Lines of the title and of the text below it."""
     speed, summary = results.speed(), results.summary
     title = results.scene()
     if modes_only:
@@ -265,9 +266,9 @@ def heading_in_words(results, modes_only):
         title += f", {3.6 * speed:.4g} km/h"
     said = summary_in_words(results)
     if not summary and results.rows:
-        said.append(f"the run did not reach its end; drawn as far as {results.time[-1]:.4g} s")
+        said.append(f"the run did not reach its end; drawn up to {results.time[-1]:.4g} s")
     if modes_only and "modes/shape" in results.file:
-        said = ["each drawn to the same greatest height; circles, triangles and squares are supports, zigzags springs"]
+        said = ["each scaled to the same height; circles, triangles and squares are supports, zigzags springs"]
     return wrapped(title, 0.9 * WIDTH, 18, "bold"), wrapped("; ".join(said), 0.9 * WIDTH, 11.5)
 
 
@@ -287,7 +288,7 @@ def heading(figure, results, modes_only):
 
 
 def asked_panels(results, asked):
-    """Of those asked for by name what the file holds."""
+    """The requested panels with data in the file."""
     found = []
     sensors = sensors_of(results)
     for name in asked:
@@ -303,7 +304,7 @@ def asked_panels(results, asked):
 
 
 def panels(results, asked=()):
-    """What the file offers, top to bottom, as functions of the axes and the worst instant."""
+    """All panels from top to bottom, as functions of the axes and the instant of the largest deflection."""
     file, found = results.file, []
     if "shape/deflection" in file and len(file["shape/x"]) > 1:
         found.append(lambda ax, worst: draw_shape(ax, results))
@@ -338,7 +339,7 @@ def draw(results, out, asked=()):
     found = panels(results, asked)
     modes_only = not found and "modes/frequency" in results.file
     if not found and not modes_only:
-        raise ValueError("holds nothing that could be drawn")
+        raise ValueError("contains nothing that can be drawn")
     sweep_only = len(found) == 1 and ("sweep/peak_deflection" in results.file or "study/finished" in results.file)
     figure = plt.figure(figsize=(WIDTH, 7.5))
     if modes_only:
@@ -351,7 +352,7 @@ def draw(results, out, asked=()):
 
 
 def draw_panels(figure, results, found, height):
-    """One under another, each with the room that its names ask for."""
+    """Draws panels below each other, each with the height that its names need."""
     worst, axes, gaps = None, [], [heading_height(results)]
     for i, panel in enumerate(found):
         ax = figure.add_axes([LEFT / WIDTH, 0.1, 0.625, height / figure.get_figheight()], label=str(i))

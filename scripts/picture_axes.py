@@ -1,4 +1,4 @@
-"""Axes as pictures and reports have them: colours, curves over time, and names at the ends of curves."""
+"""Axes of pictures and reports: colours, curves over time, and names at the ends of curves."""
 
 from typing import NamedTuple
 
@@ -7,9 +7,9 @@ import numpy as np
 from picture_data import spread, thin
 from picture_layout import NAME, NOTE
 
-# Okabe and Ito's colours, told apart by colour-blind readers; the darker ones first, they carry text.
+# Okabe and Ito's colours, which colour-blind readers can distinguish; the darker ones first, for text.
 COLOURS = ["#0072B2", "#D55E00", "#007A59", "#A8578A", "#8A6A00", "#3A3A3A"]
-STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2))]  # where there are more curves than colours
+STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2))]  # if there are more curves than colours
 GREY, PALE = "#666666", "#B8B8B8"
 LABEL_SIZE, SMALLEST_LABEL = 10, 5
 
@@ -17,13 +17,13 @@ plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 11, "axes.titlesize": 13, "axes.titleweight": "bold",
     "axes.titlelocation": "left", "axes.titlepad": 8, "axes.grid": True, "grid.color": "#DDDDDD",
     "grid.linewidth": 0.6, "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#888888",
-    "text.parse_math": False,  # a scene's name may hold $
+    "text.parse_math": False,  # the name of a scene may contain $
     "axes.axisbelow": True, "lines.linewidth": 1.5, "lines.solid_joinstyle": "round", "axes.xmargin": 0.0,
 })
 
 
 class End(NamedTuple):
-    """The end of a curve, with the curve's name and looks. x: as a part of the axes' width."""
+    """The end of a curve, with its name, colour and style. x: as a fraction of the width of the axes."""
     value: float
     name: str
     colour: str
@@ -32,7 +32,7 @@ class End(NamedTuple):
 
 
 def label_at_ends(ax, ends):
-    """Names right of the axes, each joined to the end of its curve; smaller ones where there are many."""
+    """Draws names right of the axes, connected with the ends of their curves; many names are smaller."""
     low, high = ax.get_ylim()
     height = ax.get_position().height * ax.figure.get_figheight() * 72  # points
     size = min(max(0.94 * height / (1.35 * max(len(ends) - 1, 1)), SMALLEST_LABEL), LABEL_SIZE)
@@ -49,12 +49,12 @@ def label_at_ends(ax, ends):
 
 
 def note_beside(ax, words, size=9):
-    """Beside the title, above the names of the curves."""
+    """Draws a note beside the title, above the names of the curves."""
     ax.text(1.035, 1.03, words, transform=ax.transAxes, va="bottom", fontsize=size, color=GREY, gid=NOTE)
 
 
 def time_panel(ax, results, title, unit, curves, band=None, worst=None):
-    """curves: (name, values); band: (name, least, greatest)."""
+    """Draws curves over time. curves: (name, values); band: (name, least, greatest)."""
     ax.set_title(title)
     ax.set_ylabel(unit)
     time, ends = results.time, []
@@ -70,7 +70,7 @@ def time_panel(ax, results, title, unit, curves, band=None, worst=None):
         ends.append(End(values[-1], name, colour))
     if worst is not None and time[0] <= worst <= time[-1]:
         ax.axvline(worst, color=GREY, lw=0.9, ls=(0, (4, 3)))
-        note_beside(ax, "dashed: worst instant")
+        note_beside(ax, "dashed: largest deflection")
     if len(time) > 1:
         ax.set_xlim(time[0], time[-1])
     low, high = ax.get_ylim()

@@ -1,4 +1,4 @@
-"""What picture.py draws: a results file read, places and vehicles in words, and which curves to show."""
+"""Data for picture.py: a results file, positions and vehicles as text, and the selection of curves."""
 
 import re
 
@@ -12,12 +12,12 @@ MOST_POINTS = 4000
 
 
 class Results:
-    """What the picture needs from a results file; a part that is missing is None or empty."""
+    """The data of a results file for the picture; missing parts are None or empty."""
 
     def __init__(self, file):
         self.file = file
         self.time = self.values("time")
-        # A killed run may hold a few rows more elsewhere: /time counts.
+        # Other datasets of a killed run may have more rows: the length of /time is valid.
         self.rows = 0 if self.time is None else len(self.time)
         self.options = {}
         if "options" in file and file["options"].ndim == 2:
@@ -53,7 +53,7 @@ class Results:
 
 
 def speed_of(text):
-    """m/s of an option, which may be in km/h; ValueError where it is neither."""
+    """The speed in m/s of an option in m/s or km/h; ValueError for other text."""
     text = str(text).strip()
     if text.endswith("km/h"):
         return float(text[:-4]) / 3.6
@@ -61,7 +61,7 @@ def speed_of(text):
 
 
 def opened(path):
-    """The file, which a run may be writing; ValueError where it cannot be read."""
+    """Opens a file, also while a run writes it; ValueError if it cannot be read."""
     try:
         return h5py.File(path, "r", locking=False)
     except OSError:
@@ -69,7 +69,7 @@ def opened(path):
 
 
 def natural(name):
-    """Sorts wheel_2 before wheel_10, and front before rear."""
+    """Sort key: wheel_2 before wheel_10, and front before rear."""
     front = 0 if "front" in name else 2 if "rear" in name else 1
     return [front] + [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
 
@@ -81,7 +81,7 @@ def ordinal(k, count, noun):
 
 
 def place_in_words(x, supports):
-    """'middle of span 1 (12.5 m)'"""
+    """A position as text: 'middle of span 1 (12.5 m)'."""
     at = f"{x:.6g} m"
     if supports is None or len(supports) < 2 or not supports[0] <= x <= supports[-1]:
         return f"at {at}"
@@ -98,7 +98,7 @@ def place_in_words(x, supports):
 
 
 def thin(time, values):
-    """At most MOST_POINTS points that keep every peak: least and greatest of each stretch."""
+    """At most MOST_POINTS points with all peaks: the least and the greatest of each interval."""
     if len(time) <= 2 * MOST_POINTS:
         return time, values
     size = -(-len(time) // (MOST_POINTS // 2))
@@ -108,8 +108,8 @@ def thin(time, values):
 
 
 def spread(wanted, gap, low, high):
-    """Places near the wanted ones, at least `gap` apart, within [low, high]."""
-    order = np.lexsort((-np.arange(len(wanted)), np.round(wanted, 1)))  # of those that meet, the first on top
+    """Positions near the wanted ones, with a distance of at least `gap`, within [low, high]."""
+    order = np.lexsort((-np.arange(len(wanted)), np.round(wanted, 1)))  # of equal ones, the first on top
     placed = np.array(wanted, dtype=float)[order]
     for _ in range(200):
         placed = np.clip(placed, low, high)
@@ -124,7 +124,7 @@ def spread(wanted, gap, low, high):
 
 
 def choose(count, most, weights):
-    """Indices of at most `most` curves: the greatest, and an even choice of the rest."""
+    """Indices of at most `most` curves: the greatest one, and others at even distances."""
     if count <= most:
         return list(range(count))
     chosen = {int(np.argmax(weights))}
@@ -135,7 +135,7 @@ def choose(count, most, weights):
 
 
 def choose_probes(results, peaks):
-    """Middles of spans rather than other places, when there are too many."""
+    """Indices of probes; if there are too many, those at midspans."""
     everywhere = np.arange(len(peaks))
     words = [place_in_words(x, results.supports) for x in results.probes] if len(peaks) > MOST_CURVES else []
     middles = np.array([i for i, word in enumerate(words) if word.startswith("middle")], dtype=int)
@@ -159,7 +159,7 @@ def bodies_of(vehicle):
 
 
 def car_body(vehicle):
-    """The body named so, else the highest one, which need not be a car; None in a vehicle without bodies."""
+    """The body with a name of a car, otherwise the highest body; None in a vehicle without bodies."""
     bodies = bodies_of(vehicle)
     named = [name for name in bodies if CAR.search(name)]
     return max(named or bodies, key=lambda name: vehicle[name]["position"][0, 1], default=None)

@@ -1,5 +1,5 @@
-"""What hangs from a vehicle or from the ground on one joint alone, as the load of a crane does: its swing, and the force in
-its rope or pin."""
+"""Bodies that hang from a vehicle or from the ground on one joint, like the load of a crane: swing angle, and force in
+the rope or pin."""
 
 from typing import NamedTuple
 
@@ -8,11 +8,11 @@ from picture_axes import time_panel
 from picture_data import MOST_CURVES, choose, ordinal
 from picture_model import Model
 
-TURNS = ("revolute", "distance")  # joints that leave it free to swing
+TURNS = ("revolute", "distance")  # joints that allow a swing
 
 
 class Hanging(NamedTuple):
-    """Over the samples: the swing from the vertical, degrees, positive where the load is ahead along x, and the force, N."""
+    """Swing angle from the vertical over the samples, degrees, positive with the load ahead along x, and force, N."""
     vehicle: int
     body: str
     joint: str
@@ -21,7 +21,7 @@ class Hanging(NamedTuple):
 
 
 def swinging(model, kind):
-    """(joint, body, the end on what it hangs from, that body or -1) of a vehicle type."""
+    """Yields (joint, body, end on the supporting body, supporting body or -1) of a vehicle type."""
     ends, names, bodies = model.joint_ends(kind), model.joint_names(kind), model.rows(kind, "bodies", 3)
     held = [int(body) for joint in [*ends, *model.rows(kind, "springs", 6)] for body in joint[4:] if body >= 0]
     wheels = {int(np.argmin(np.hypot(*(bodies[:, :2] - wheel[:2]).T))) for wheel in model.rows(kind, "wheels", 3)}
@@ -34,7 +34,7 @@ def swinging(model, kind):
 
 
 def hanging_of(results):
-    """All of a run."""
+    """All hanging bodies of a run."""
     model, found = Model(results), []
     for k, (kind, _) in enumerate(model.train[:len(results.vehicles)]):
         group, names = results.vehicles[k], model.body_names(kind)
@@ -56,7 +56,7 @@ def hanging_of(results):
 
 
 def draw(ax, results, hanging, what):
-    """Over time: the 'swing', or the 'force'."""
+    """Draws the 'swing' or the 'force' over time."""
     count = len(results.vehicles)
     values = [getattr(one, what) * (1.0 if what == "swing" else 1e-3) for one in hanging]
     chosen = choose(len(values), MOST_CURVES, np.array([np.abs(v).max() for v in values]))
@@ -64,6 +64,6 @@ def draw(ax, results, hanging, what):
     curves = [(f"{ordinal(hanging[i].vehicle, count, 'vehicle')}, "
                f"{(hanging[i].body if what == 'swing' else hanging[i].joint).replace('_', ' ')}", values[i]) for i in chosen]
     if what == "swing":
-        time_panel(ax, results, f"Swing of what hangs, from the vertical, positive ahead{note}", "°", curves)
+        time_panel(ax, results, f"Angle of the hanging body from the vertical, positive ahead{note}", "°", curves)
     else:
-        time_panel(ax, results, f"Force of the joint that it hangs on{note}", "kN", curves)
+        time_panel(ax, results, f"Force of its joint{note}", "kN", curves)

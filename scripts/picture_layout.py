@@ -1,20 +1,20 @@
-"""What keeps words of a picture apart and within it: everything is measured, in inches, once it is drawn."""
+"""Layout of texts in a picture without overlap: all sizes are measured after drawing, in inches."""
 
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 
-NAME, NOTE = "name of a curve", "note"  # which artists are looked for
-MARGIN = 0.12  # inches that stay free at the right edge
-LEADING = 1.4 / 72.0  # inches from line to line, times the size of the letters
+NAME, NOTE = "name of a curve", "note"  # marks of the text objects
+MARGIN = 0.12  # inches, free margin at the right edge
+LEADING = 1.4 / 72.0  # inches from line to line, per point of font size
 
 
 def width_of(text, size, weight="normal"):
-    """Inches."""
+    """The width of a text, inches."""
     return text_to_path.get_text_width_height_descent(text or " ", FontProperties(size=size, weight=weight), False)[0] / 72.0
 
 
 def wrapped(text, inches, size, weight="normal"):
-    """Lines of at most so many inches; a word that is longer than a line is cut."""
+    """Lines with at most this width; a longer word is split."""
     lines = [""]
     for word in str(text).replace("\n", " ").split(" "):
         together = f"{lines[-1]} {word}" if lines[-1] else word
@@ -30,14 +30,14 @@ def wrapped(text, inches, size, weight="normal"):
 
 
 def key_lines(entries, inches, size):
-    """(columns, lines of each entry) of a key; entries: (number, name)."""
+    """(number of columns, lines of each entry) of a key; entries: (number, name)."""
     widest = max(width_of(f"{number}   {name}", size) for number, name in entries) + 0.25
     columns = max(int(inches / widest), 1)
     return columns, [wrapped(f"{number}   {name}", inches / columns - 0.1, size) for number, name in entries]
 
 
 def draw_key(ax, entries, inches, below, size):
-    """Under the axes, entries: (number, name, colour). The inches that it takes."""
+    """Draws a key below the axes, entries: (number, name, colour). Returns its height, inches."""
     columns, lines = key_lines([entry[:2] for entry in entries], inches, size)
     rows = -(-len(lines) // columns)
     box, figure = ax.get_position(), ax.figure
@@ -52,16 +52,16 @@ def draw_key(ax, entries, inches, below, size):
 
 
 def fit(ax, right, below, size=9.0):
-    """Lets the axes' title run over as many lines as it needs, notes beside it too, and replaces names that reach beyond
-    `right` (a part of the figure's width) by numbers, which a key explains `below` (inches under the axes). The inches
-    that the title and the key take further, above and below."""
+    """Wraps the title of the axes and the notes beside it. Replaces names that exceed `right` (a fraction of the width
+    of the figure) by numbers, with a key at the distance `below` (inches) below the axes. Returns the additional heights
+    of title and key, inches."""
     box, figure = ax.get_position(), ax.figure
     width = box.width * figure.get_figwidth()
     title = ax._left_title
     lines = wrapped(title.get_text(), width, title.get_fontsize(), title.get_weight())
     title.set_text("\n".join(lines))
     above = (len(lines) - 1) * LEADING * title.get_fontsize()
-    room = (right - box.x0) * figure.get_figwidth() - MARGIN  # from the axes' left edge
+    room = (right - box.x0) * figure.get_figwidth() - MARGIN  # from the left edge of the axes
     beside = room - 1.035 * width
     for note in (text for text in ax.texts if text.get_gid() == NOTE):
         note.set_text("\n".join(wrapped(note.get_text(), beside, note.get_fontsize())))
@@ -76,8 +76,8 @@ def fit(ax, right, below, size=9.0):
 
 
 def stack(figure, axes, height, gaps):
-    """Axes of that height one under another, gaps above, between and below them in inches; the figure becomes as high as
-    that asks for."""
+    """Places axes of this height below each other, with gaps above, between and below them in inches, and sets the
+    height of the figure."""
     total = sum(gaps) + height * len(axes)
     figure.set_figheight(total)
     y = total

@@ -1,4 +1,4 @@
-"""The model as results files hold it under /model, and its symbols: supports, springs, hinges, vehicles, forces."""
+"""The model from /model of a results file, and its symbols: supports, springs, hinges, vehicles, forces."""
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -9,15 +9,15 @@ from picture_data import speed_of
 
 DARK, GREY, BODY, FORCE = "#333333", "#666666", "#C9D8E3", "#B03A00"
 CONCRETE = 2400.0  # kg/m3
-MOST_SYMBOLS = 80  # of one kind that are drawn one by one
+MOST_SYMBOLS = 80  # of one kind
 MARKERS = {"pinned": "^", "roller": "o", "clamped": "s", "guided": "D"}
-WORDS = {"pinned": "pinned", "roller": "roller", "clamped": "clamped", "guided": "guided: slides up and down",
+WORDS = {"pinned": "pinned", "roller": "roller", "clamped": "clamped", "guided": "guided: moves vertically",
          "vertical": "spring", "longitudinal": "spring along the track", "rotational": "spring against rotation",
          "hinge": "hinge", "crack": "crack, a rotational spring", "separate": "joint of separate spans"}
 
 
 def way_gone(times, speeds, end):
-    """From t = 0 on, m: speeds are straight lines between the times, and stay as they are outside."""
+    """The distance since t = 0, m: speeds are linear between the times, and constant outside."""
     inside = times[(times > min(0.0, end)) & (times < max(0.0, end))]
     at = np.concatenate([[0.0], inside, [end]])
     return float(np.trapezoid(np.interp(at, times, speeds), at) if hasattr(np, "trapezoid")
@@ -25,7 +25,7 @@ def way_gone(times, speeds, end):
 
 
 class Model:
-    """What /model says; of a file without it, what its options say of the supports."""
+    """The data of /model; in a file without it, the supports from the options."""
 
     def __init__(self, results):
         file = results.file
@@ -52,7 +52,7 @@ class Model:
         return self.group[name][:] if name in self.group else empty
 
     def rows(self, index, name, columns):
-        """Of the vehicle type with that index."""
+        """A dataset of the vehicle type with this index."""
         group = self.group[f"vehicles/{int(index)}"]
         return group[name][:] if name in group else np.zeros((0, columns))
 
@@ -63,7 +63,7 @@ class Model:
         return np.column_stack([ends if len(ends) else at[:, [0, 1, 0, 1]], at[:, 2:]])
 
     def joint_names(self, index):
-        """(name, type) of each joint, where the file holds them."""
+        """(name, type) of each joint, if the file contains them."""
         group = self.group[f"vehicles/{int(index)}"]
         return [tuple(row) for row in group["joint_names"].asstr()[:]] if "joint_names" in group else []
 
@@ -74,7 +74,7 @@ class Model:
         return list(self.group[f"vehicles/{int(index)}/names"].asstr()[:, 1])
 
     def forces_at(self, time, options):
-        """[f, 2]: of the moving forces their places at that time, m, and their size, N."""
+        """[f, 2]: positions of the moving forces at this time, m, and their magnitudes, N."""
         forces = self.forces.get("load", np.zeros((0, 2)))
         speed = speed_of(options.get("load_speed", 0.0)) if len(forces) and not len(self.loads) else 0.0
         way = np.full(len(forces), time * speed)
@@ -88,14 +88,14 @@ class Model:
 
 
 def draw_points(ax, at, points, width=1.0, colour=DARK):
-    """A line through points that are given in 1/72 inch from the place `at` of the axes."""
+    """Draws a line through points in 1/72 inch from the position `at` of the axes."""
     dx, dy = np.asarray(points, dtype=float).T / 72.0
     place = ax.figure.dpi_scale_trans + ScaledTranslation(*at, ax.transData)
     ax.add_line(Line2D(dx, dy, color=colour, lw=width, transform=place, clip_on=False, zorder=5))
 
 
 def draw_spring(ax, x, kind, low=-2.0):
-    """One of a foundation's points at x: upright, lying, or a coil."""
+    """Draws a foundation point at x: a vertical or horizontal spring, or a coil."""
     t = np.linspace(0.0, 1.0, 11)
     side = 3.2 * np.array([0, 0, 1, -1, 1, -1, 1, -1, 1, 0, 0])
     if kind == "vertical":
@@ -112,7 +112,7 @@ def draw_spring(ax, x, kind, low=-2.0):
 
 
 def draw_foundation(ax, model, low, high):
-    """Points as springs, beds as rows of them; returns the kinds that were drawn."""
+    """Draws points as springs and beds as rows of springs; returns the drawn kinds."""
     drawn = set()
     for kind, data in model.foundation.items():
         base = kind.replace("_bed", "")
@@ -128,7 +128,7 @@ def draw_foundation(ax, model, low, high):
 
 
 def draw_supports(ax, model, low, high):
-    """Under the line, in the shapes that engineers draw; returns the kinds that were drawn."""
+    """Draws the usual symbols of supports below the line; returns the drawn kinds."""
     drawn = set()
     place = ax.transData + ScaledTranslation(0, -6.5 / 72, ax.figure.dpi_scale_trans)
     for i, (x, (kind, joint)) in enumerate(zip(model.span_ends, model.supports)):
@@ -159,15 +159,15 @@ def draw_hinge(ax, x, joint):
 
 
 def symbols_in_words(kinds):
-    """'▲ pinned   ● roller   spring', of what has been drawn."""
+    """The drawn kinds as text: '▲ pinned   ● roller   spring'."""
     shapes = {"pinned": "△ ", "roller": "○ ", "clamped": "□ ", "guided": "◇ ", "hinge": "∘ ", "crack": "≀ ", "separate": "‖ "}
     return "    ".join(shapes.get(kind, "") + WORDS[kind] for kind in WORDS if kind in kinds)
 
 
 def body_boxes(model, index):
-    """{body: (x, y, width, height)} of every body that something but a wheel is fixed to, as it is drawn: the hull of
-    its centre and of its own ends of springs and joints. Bodies without a height are 0.5 m high; of one without any extent
-    a cube of its mass is drawn, as dense as concrete."""
+    """{body: (x, y, width, height)} of the drawn box of every body except axles: the hull of its centre and of its ends
+    of springs and joints. Bodies without a height are 0.5 m high. A body without any extent is a cube of its mass with
+    the density of concrete."""
     bodies, wheels = model.rows(index, "bodies", 3), model.rows(index, "wheels", 3)
     points = [[(x, y)] for x, y, _ in bodies]
     for x1, y1, x2, y2, first, second in [*model.rows(index, "springs", 6), *model.joint_ends(index)]:
@@ -177,7 +177,7 @@ def body_boxes(model, index):
     hulls = {}
     for body, (centre, hull) in enumerate(zip(bodies, points)):
         if len(wheels) and np.any(np.hypot(*(wheels[:, :2] - centre[:2]).T) < 1e-6):
-            continue  # an axle: its wheel is drawn
+            continue  # an axle, drawn as a wheel
         hull = np.array(hull)
         hulls[body] = (hull.min(axis=0), hull.max(axis=0))
     highest = max((high[1] for _, high in hulls.values()), default=0.0)
@@ -195,20 +195,20 @@ def body_boxes(model, index):
 
 
 def rods(model, index):
-    """[r, 6]: joints whose ends are apart: rods and ropes."""
+    """[r, 6]: joints with a distance between their ends, such as rods and ropes."""
     ends = model.joint_ends(index)
     return ends[np.hypot(ends[:, 2] - ends[:, 0], ends[:, 3] - ends[:, 1]) > 1e-6]
 
 
 def vertical_reach(model, index):
-    """(lowest, highest) of what is drawn of a vehicle, m."""
+    """(lowest, highest) point of a drawn vehicle, m."""
     boxes, wheels = body_boxes(model, index).values(), model.rows(index, "wheels", 3)
     return (min([low for _, low, _, _ in boxes] + list(wheels[:, 1] - wheels[:, 2]), default=0.0),
             max([low + height for _, low, _, height in boxes] + list(wheels[:, 1] + wheels[:, 2]), default=0.0))
 
 
 def draw_vehicle(ax, model, index, x, springs=False):
-    """To scale where the axes are, with its origin at x."""
+    """Draws a vehicle in the scale of the axes, with its origin at x."""
     for x1, y1, x2, y2, _, _ in rods(model, index):
         ax.plot([x + x1, x + x2], [y1, y2], color=DARK, lw=1.0, zorder=2.5)
     for left, low, width, height in body_boxes(model, index).values():
@@ -224,7 +224,7 @@ def draw_vehicle(ax, model, index, x, springs=False):
 
 
 def draw_forces(ax, places, forces, height, foot=0.0, coordinates="data"):
-    """Arrows down to `foot`, the greatest one so high."""
+    """Draws arrows down to `foot`; the greatest force has this height."""
     greatest = np.abs(forces).max() if len(forces) else 1.0
     for x, force in zip(places, forces):
         ax.annotate("", xy=(x, foot), xytext=(x, foot + height * abs(force) / greatest), annotation_clip=False,

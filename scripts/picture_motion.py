@@ -1,4 +1,4 @@
-"""How bridge and vehicles move in a results file: deflections between the stations, bodies with their sway."""
+"""The motion of bridge and vehicles from a results file: deflections between the stations, motions of bodies."""
 
 from typing import NamedTuple
 
@@ -7,11 +7,11 @@ from picture_model import Model, body_boxes, rods
 
 HOLDS_HEIGHT = ("pinned", "roller", "clamped")
 HOLDS_SLOPE = ("clamped", "guided")
-POINTS, FEWEST_POINTS, MOST_POINTS = 24, 400, 20000  # a span, and of the whole bridge
+POINTS, FEWEST_POINTS, MOST_POINTS = 24, 400, 20000  # points per span, and limits for the whole bridge
 
 
 class Body(NamedTuple):
-    """A body of a vehicle, and the height of its centre at the start over a bridge that does not deflect."""
+    """A body of a vehicle, and the initial height of its centre above the undeflected bridge."""
     vehicle: int
     name: str
     position: np.ndarray  # [n, 3]: x, y, angle
@@ -19,9 +19,9 @@ class Body(NamedTuple):
 
 
 def spline_matrix(knots, x, flat=(False, False)):
-    """What the values at the knots are multiplied by for those of the cubic spline at x, [len(x), len(knots)].
+    """The matrix [len(x), len(knots)] from values at the knots to those of the cubic spline at x.
 
-    Without curvature at its ends or, where `flat`, without slope; beyond them it goes on straight."""
+    The spline has no curvature at its ends or, if `flat`, no slope; outside of them it is linear."""
     knots, x = np.asarray(knots, dtype=float), np.asarray(x, dtype=float)
     n = len(knots)
     if n == 1:
@@ -48,7 +48,7 @@ def spline_matrix(knots, x, flat=(False, False)):
 
 
 class Motion:
-    """A run over time; ValueError where the file has no deflections of a bridge over time."""
+    """A run over time; ValueError if the file has no deflections of a bridge over time."""
 
     def __init__(self, results):
         if results.rows < 2 or "probes/deflection" not in results.file or not len(results.probes):
@@ -62,7 +62,7 @@ class Motion:
         self.low, self.high = float(ends[0]), float(ends[-1])
         points = int(np.clip(POINTS * (len(ends) - 1), FEWEST_POINTS, MOST_POINTS))
         self.x = np.unique(np.concatenate([np.linspace(self.low, self.high, points), ends, self.stations]))
-        self.settled = np.zeros(len(self.x))  # m, what supports that have settled make of the line
+        self.settled = np.zeros(len(self.x))  # m, displacement of the line due to settlements
         self.matrix = self.between_stations()
         self.bodies = [self.body(k, name, results.over_time(vehicle[name]["position"]))
                        for k, vehicle in enumerate(results.vehicles) for name in vehicle if "position" in vehicle[name]]
@@ -73,8 +73,8 @@ class Motion:
         return Body(vehicle, name, position, float(position[0, 1] - sunk))
 
     def between_stations(self):
-        """[points, stations]: cubic splines through stations and held supports, a piece between two joints; NaN where a
-        span has no station."""
+        """[points, stations]: cubic splines through stations and supports, one between two joints; NaN in a span
+        without a station."""
         ends, kinds = self.model.span_ends, self.model.supports
         held = [x for x, (kind, _) in zip(ends, kinds) if kind in HOLDS_HEIGHT]
         flat = [x for x, (kind, _) in zip(ends, kinds) if kind in HOLDS_SLOPE]
@@ -101,17 +101,17 @@ class Motion:
         return matrix
 
     def deflection(self, row):
-        """At self.x, m upward; NaN where it is not known."""
+        """The deflection at self.x, m upward; NaN if unknown."""
         return self.matrix @ self.at_stations[row] + self.settled
 
     def in_words(self):
         many = len(self.stations) > 1
         said = f"between the {f'{len(self.stations)} stations' if many else 'one station'} and the supports: " \
             f"{'cubic splines' if many else 'a cubic spline'}"
-        return said + ("; spans without a station are left out" if np.isnan(self.matrix).any() else "")
+        return said + ("; spans without a station are not drawn" if np.isnan(self.matrix).any() else "")
 
     def forces(self, row):
-        """[f, 2]: places of the moving forces and the forces, m and N."""
+        """[f, 2]: positions of the moving forces and the forces, m and N."""
         return self.model.forces_at(self.time[row], self.results.options)
 
     def sway(self):
@@ -123,13 +123,13 @@ class Motion:
 
 
 class Shape(NamedTuple):
-    """A wheel about its centre, the corners of a body, or the ends of a rod or rope."""
+    """The centre of a wheel with its radius, the corners of a body, or the ends of a rod or rope."""
     points: np.ndarray  # [k, 2], m
     radius: float = 0.0
 
 
 def outline(motion, row, factor):
-    """Wheels and bodies of all vehicles at a sample, their vertical displacements and angles times the factor."""
+    """Wheels and bodies of all vehicles at a sample, with vertical displacements and angles times the factor."""
     shapes, model = [], motion.model
     for vehicle, (kind, _) in enumerate(model.train[:len(motion.results.vehicles)]):
         bodies = {body.name: body for body in motion.bodies if body.vehicle == vehicle}
@@ -158,7 +158,7 @@ def nearest(centres, point):
 
 
 def wheel_places(motion, rows):
-    """Of every wheel and moving force its x at the samples, m."""
+    """Yields x of every wheel and moving force at the samples, m."""
     model = motion.model
     for vehicle, (kind, _) in enumerate(model.train[:len(motion.results.vehicles)]):
         names, centres = model.body_names(kind), model.rows(kind, "bodies", 3)[:, :2]

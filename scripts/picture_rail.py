@@ -1,4 +1,4 @@
-"""Panels of scene_analysis rail: what temperature, weight and braking do along the rails."""
+"""Panels of scene_analysis rail: effects of temperature, weight and braking along the rails."""
 
 from picture_axes import COLOURS, LABEL_SIZE, PALE
 
@@ -7,7 +7,7 @@ CASES = {"temperature": "temperature", "bending": "the train's weight", "braking
 
 
 def draw_envelopes(ax, results, quantity, factor, at):
-    """Least and greatest of every case along the track, wherever the train stands."""
+    """Draws least and greatest values of every case along the track, over all positions of the train."""
     x = results.values(f"rail_forces/{at}")
     for i, (case, words) in enumerate(CASES.items()):
         for side in ("least", "greatest"):
@@ -30,7 +30,7 @@ def draw_stress(ax, results):
 
 def draw_slip(ax, results):
     draw_envelopes(ax, results, "slip", 1e3, "sleeper_x")
-    ax.set(title="Rail against deck or ground, least and greatest", ylabel="mm")
+    ax.set(title="Rail relative to deck or ground, least and greatest", ylabel="mm")
 
 
 PANELS = (draw_stress, draw_slip)

@@ -1,10 +1,10 @@
-"""The panels of what runs: wheel forces, accelerations of car bodies, signals of sensors."""
+"""Panels of the vehicles: wheel forces, accelerations of car bodies, signals of sensors."""
 
 import numpy as np
 from picture_axes import COLOURS, time_panel
 from picture_data import CAR, MOST_CURVES, MOST_WHEELS, bodies_of, car_body, choose, envelope, natural, ordinal
 
-# What sensors feel: the dataset, its title and unit. The first is drawn of itself, the others when asked for.
+# Signals of sensors: the dataset, its title and unit. The first is drawn by default, the others on request.
 SIGNALS = {"acceleration_y": ("Vertical acceleration at the sensors", "m/s²"),
            "acceleration_x": ("Acceleration along the track at the sensors", "m/s²"),
            "pitch_rate": ("Pitch rate of the sensors' bodies, counter-clockwise", "rad/s")}
@@ -17,7 +17,7 @@ def wheels_of(results):
 
 
 def cars_of(results):
-    """(name, its group) of the car body, else of the highest body, of the vehicles that have one."""
+    """(name, its group) of the car body, otherwise of the highest body, of each vehicle with bodies."""
     return [(name, vehicle[name]) for vehicle in results.vehicles if (name := car_body(vehicle)) is not None]
 
 
@@ -42,7 +42,7 @@ def draw_wheels(ax, results, wheels):
 
 
 def draw_static_wheels(ax, results, wheels):
-    """One instant only: a bar a wheel, from the front of the train."""
+    """Draws the wheel forces of one instant, one bar per wheel, from the front of the train."""
     forces = [1e-3 * data[0] for _, _, data in wheels]
     ax.set_title("Wheel forces, from the front of the train")
     ax.set_ylabel("kN")
@@ -57,7 +57,7 @@ def draw_static_wheels(ax, results, wheels):
 
 
 def draw_accelerations(ax, results, cars):
-    """What is no car by its name is called by that name."""
+    """Draws vertical accelerations of car bodies; other bodies keep their own names."""
     count = len(cars)
     series = [results.over_time(car["acceleration"])[:, 1] for _, car in cars]
     names = {name.replace("_", " ") for name, _ in cars}
@@ -75,7 +75,7 @@ def draw_accelerations(ax, results, cars):
 
 
 def draw_positions(ax, results, direction):
-    """Of the bodies of a mechanism, those that move most; direction 0: along x, 1: along y."""
+    """Draws the bodies of a mechanism with the largest motion; direction 0: along x, 1: along y."""
     bodies = [(name, results.over_time(vehicle[name]["position"])[:, direction])
               for vehicle in results.vehicles for name in bodies_of(vehicle)]
     chosen = choose(len(bodies), MOST_CURVES, np.array([np.ptp(values) for _, values in bodies]))

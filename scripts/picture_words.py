@@ -1,4 +1,4 @@
-"""What picture.py says about a run: its peaks, each with the place, speed and train that it belongs to."""
+"""Texts of picture.py about a run: its peaks, each with position, speed and train."""
 
 from picture_data import MOST_CURVES, place_in_words
 
@@ -8,14 +8,14 @@ def millimetres(metres):
 
 
 def run_in_words(summary, name):
-    """' by train A10 at 344 km/h': whose peak it is, in a sweep; else nothing."""
+    """Train and speed of a peak in a sweep: ' by train A10 at 344 km/h'; otherwise empty."""
     train = f" by train A{summary[f'{name}_train']}" if f"{name}_train" in summary else ""
     speed = f" at {3.6 * summary[f'{name}_speed']:.4g} km/h" if f"{name}_speed" in summary else ""
     return train + speed
 
 
 def summary_in_words(results):
-    """The peaks of /summary. The amplification is that of the greatest deflection."""
+    """The peaks of /summary as text. The amplification is that of the greatest deflection."""
     summary, said = results.summary, []
     if summary.get("deflection"):
         probed = "" if "sweep" in results.file or at_worst_place(results) else " at a probe"
@@ -32,13 +32,13 @@ def summary_in_words(results):
 
 
 def at_worst_place(results):
-    """Whether the stored shape shows the greatest deflection that the summary gives, to the digits that are shown."""
+    """Whether the stored shape contains the greatest deflection of the summary, to the printed digits."""
     shape = results.values("shape/deflection")
     return shape is None or millimetres(max(shape, key=abs)) == millimetres(results.summary.get("deflection", 0.0))
 
 
 def worst_in_words(results, x, deflection):
-    """'2.87 mm down', and why, where that is not the peak in the heading."""
+    """A deflection as text: '2.87 mm down', with the reason if it differs from the peak in the heading."""
     why = ""
     if results.summary and not at_worst_place(results):
         at_probe = abs(x - results.summary.get("deflection_place", x)) < 1e-6 * max(abs(x), 1.0)
@@ -56,7 +56,7 @@ def sweep_in_words(results):
 
 
 def method_in_words(results):
-    """How the runs of a sweep are computed, and the error of the deflections that is to be expected."""
+    """The numerical model of a sweep as text, and the estimated error of the deflections."""
     attrs = results.file["sweep"].attrs
     said = ""
     if attrs.get("modes"):
@@ -73,6 +73,6 @@ def method_in_words(results):
 
 
 def modes_in_words(frequency, shapes):
-    """How many of the modes are drawn, where these are not all."""
+    """The number of drawn modes as text; empty if all are drawn."""
     drawn = len(frequency) if shapes is None else min(len(shapes), MOST_CURVES)
     return "" if drawn == len(frequency) else f"drawn: the first {drawn} of {len(frequency)} modes"

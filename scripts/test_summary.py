@@ -1,9 +1,10 @@
-"""Sums up what CTest has run: test_summary.py [--slow SECONDS] LOG, such as build/Testing/Temporary/LastTest.log
+"""Summarises a log of CTest: test_summary.py [--slow SECONDS] LOG, such as build/Testing/Temporary/LastTest.log
 
-A case of GoogleTest counts by itself, also where several share a process; a case that such a process was to run and did
-not end is a failed one. Prints the twenty slowest, the names of the failed, and as its last line `N passed, N failed`.
+Each case of GoogleTest is counted separately, also if several cases share a process. A case that such a process did not
+finish has failed. The script prints the twenty slowest cases, the names of the failed ones, and as its last line
+`N passed, N failed`.
 
-With --slow it prints lines of tests/slow.txt instead: the slowest, until what is left takes these seconds together.
+With --slow it prints lines of tests/slow.txt instead: the slowest cases, until all others take SECONDS together.
 """
 import argparse
 import pathlib
@@ -22,7 +23,7 @@ RESULTS = {"OK": PASSED, "SKIPPED": SKIPPED, "FAILED": FAILED}
 
 
 def cases_of_program(name, text, wanted):
-    """(name, result, seconds, remark) of every case that a GoogleTest program was to run."""
+    """Yields (name, result, seconds, remark) of every case of a GoogleTest program."""
     kind = name.split(".")[0]
     ended = {case: (RESULTS[word.strip()], int(milliseconds) / 1000) for word, case, milliseconds in ENDED.findall(text)}
     started, used = STARTED.findall(text), dict(USED.findall(text))
@@ -34,7 +35,7 @@ def cases_of_program(name, text, wanted):
 
 
 def cases_in(log):
-    """(name, result, seconds, remark) of every case in a log of CTest."""
+    """Yields (name, result, seconds, remark) of every case in a log of CTest."""
     starts = list(TEST.finditer(log))
     for test, after in zip(starts, starts[1:] + [None]):
         name, text = test[1], log[test.end():after.start() if after else len(log)]
@@ -47,7 +48,7 @@ def cases_in(log):
 
 
 def slow_ones(cases, seconds):
-    """The slowest cases, without which the others take no longer than these seconds together."""
+    """Yields the slowest cases, until all others take at most these seconds together."""
     ordered = sorted(cases, key=lambda case: -case[2])
     left = sum(case[2] for case in ordered)
     while ordered and left > seconds:
@@ -74,7 +75,7 @@ def main():
     arguments.add_argument("--slow", type=float, metavar="SECONDS", help="print the slowest as tests/slow.txt has them")
     arguments.add_argument("log", type=pathlib.Path)
     chosen = arguments.parse_args()
-    # CTest writes no log where it finds no tests.
+    # CTest writes no log if it finds no tests.
     cases = list(cases_in(chosen.log.read_text(encoding="utf-8", errors="replace"))) if chosen.log.exists() else []
     if chosen.slow is None:
         print_summary(cases)

@@ -1,8 +1,8 @@
 """Runs clang-tidy on the files changed last: tidy.py [--most N] [--since REVISION] [FILE ...]
 
-Without files it takes those that are not committed yet, then those of the newest commits, newest first, N at most: a
-clean checkout knows no other base. With --since it takes all that has changed since a revision. A header stands for the
-source file of its name, which includes it. Prints what is found and fails, or one line.
+Without files it checks uncommitted files, then those of the latest commits, at most N: a clean checkout has no other
+base. With --since it checks all files changed since a revision. In place of a header it checks the source file of the
+same name, which includes it. It prints the warnings and fails, or prints one line.
 """
 import argparse
 import concurrent.futures
@@ -13,25 +13,25 @@ import shutil
 import subprocess
 import sys
 
-VERSION = "14"  # what .clang-tidy is written for: others have other checks
+VERSION = "14"  # the version of .clang-tidy; other versions have other checks
 DATABASE = "build-checks"  # made by set_up_checks of scripts/setup.sh
 FOLDERS = ("include/", "src/", "tests/", "benchmarks/")
 
 
 def git(root, *words):
-    """What git says. The checkout may be somebody else's, as in a container: it is only read."""
+    """The output of git. The checkout may belong to another user, as in a container: it is only read."""
     return subprocess.run(["git", "-c", "safe.directory=*", "-C", str(root), *words], check=True, capture_output=True,
                           text=True).stdout
 
 
 def source_of(root, name):
-    """The file to check in place of a header: the source file of its name, or else the header itself."""
+    """The file to check in place of a header: the source file of the same name, otherwise the header itself."""
     source = re.sub(r"\.hpp$", ".cpp", re.sub(r"^include/traverse/", "src/", name))
     return source if (root / source).is_file() else name
 
 
 def changed(root, since=None):
-    """Files that exist and have changed, each once: those not committed first, then the newest."""
+    """Existing changed files without duplicates: uncommitted ones first, then those of the newest commits."""
     names = [line[3:].split(" -> ")[-1] for line in git(root, "status", "--porcelain", "-uall").splitlines()]
     revisions = [f"{since}..HEAD"] if since else ["--max-count=400"]
     names += git(root, "log", "--format=", "--name-only", "--no-renames", *revisions).splitlines()
@@ -41,7 +41,7 @@ def changed(root, since=None):
 
 
 def findings(root, name):
-    """What clang-tidy says of a file; empty where it says nothing."""
+    """The warnings of clang-tidy for a file; empty if there are none."""
     run = subprocess.run(["clang-tidy", "--quiet", "--warnings-as-errors=*", "-p", DATABASE, name], cwd=root,
                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     return (run.stdout or run.stderr) if run.returncode != 0 else ""

@@ -2,12 +2,13 @@
 """Writes doc/verification.md: the references, the bounds that the tests assert and the errors that they measured.
 
 verification.py                writes the page from the bounds in tests/ and the figures in doc/verification_figures.csv
-verification.py --check        writes nothing; fails where the page is not what would be written
-verification.py --measure      runs build/tests/verification_tests first and stores what it records (--build FOLDER)
-verification.py --measure 'Study.*'      those tests alone; what the others recorded stays
+verification.py --check        writes nothing; fails if the page differs from the one that would be written
+verification.py --measure      runs build/tests/verification_tests first and stores the recorded values (--build FOLDER)
+verification.py --measure 'Study.*'      runs these tests only; recorded values of the others remain
 
-Each row of verification_rows.py and verification_ways.py names a test and the text of an assertion, with {} where the bound stands. The bound is
-read from the source there; a test or an assertion that is gone, and a figure beyond its bound, end with an error.
+Each row of verification_rows.py and verification_ways.py names a test and the text of an assertion, with {} in place of
+the bound. The script reads the bound from the source of the test. A missing test or assertion, and a measured error
+above its bound, are errors.
 """
 
 import argparse
@@ -27,30 +28,30 @@ NUMBER = r"([0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?)"
 TEST = re.compile(r"^TEST(?:_[PF])?\((\w+),\s*(\w+)\)", re.MULTILINE)
 HEAD = """# Verification
 
-What the program is checked against. Each row names the case, where its reference comes from, the bound that the test
-asserts, the largest error that the test measured, and the test. Errors are relative to the peak or to the exact value
-unless a unit stands beside them. "Asserted only" means that the test compares and does not record.
+This page lists the references of the program. Each row has the case, the source of its reference, the bound asserted by
+the test, the largest measured error, and the test. Errors are relative to the peak or to the exact value unless they
+have a unit. "Asserted only" means that the test does not record the error.
 
-This page is written by `scripts/verification.py`. Bounds are read from the tests' sources, measured errors from
-`doc/verification_figures.csv`, which holds what the tests recorded when they were last run for this page:
+`scripts/verification.py` writes this page. It reads the bounds from the sources of the tests, and the measured errors
+from `doc/verification_figures.csv`, which contains the values recorded by the last run of the tests for this page:
 
-    /usr/bin/python3 scripts/verification.py --measure    # after ./test.sh: measures anew and writes the page
-    /usr/bin/python3 scripts/measured.py build '*R1*'     # what some of the tests record, without writing anything
+    /usr/bin/python3 scripts/verification.py --measure    # after ./test.sh: measures again and writes the page
+    /usr/bin/python3 scripts/measured.py build '*R1*'     # prints recorded values of some tests, writes nothing
 
-A row is run by `./test.sh -R NAME`, with the name in its last column; rows of `tests/mpi` by
-`mpirun -n 2 build/tests/mpi_tests --gtest_filter='NAME'`. Measured errors near rounding differ from machine to machine.
+`./test.sh -R NAME` runs a row, with the name in its last column; for rows of `tests/mpi` use
+`mpirun -n 2 build/tests/mpi_tests --gtest_filter='NAME'`. Measured errors near rounding differ between machines.
 
-The references are Fryba's moving force (closed-form series), the beam of Yang and Yau 1997, the example of VBI-2D, the IVP
-test set, textbook formulas and independent modal or Runge-Kutta computations. No reference is an earlier output of this
-program."""
+The references are Fryba's moving force (closed-form series), the beam of Yang and Yau 1997, the example of VBI-2D, the
+IVP test set, textbook formulas and independent modal or Runge-Kutta computations. No reference is an earlier output of
+this program."""
 
 
 class Broken(Exception):
-    """What the page says would not be what the sources say."""
+    """The page would contradict the sources."""
 
 
 class Sources:
-    """The test programs' sources below `root`/tests."""
+    """The sources of the test programs in `root`/tests."""
 
     def __init__(self, root):
         self.root = pathlib.Path(root)
@@ -71,7 +72,7 @@ class Sources:
         return names
 
     def bound(self, test, assertion, other_file=None):
-        """The number that stands for {} in the assertion, as text: in the test, else in its file, or in another one."""
+        """The number at {} in the assertion, as text: from the test, otherwise from its file, or from another file."""
         path, body, text = self.tests[test]
         places = [(self.root / other_file).read_text()] if other_file else [body, text]
         words = r"\s+".join(re.escape(word) for word in assertion.split())
@@ -87,12 +88,12 @@ class Sources:
 
 
 def instances(figures, pattern):
-    """Figures of a test, one dictionary for each of its parameters."""
+    """Recorded values of a test, one dictionary for each parameter."""
     return {name: values for name, values in figures.items() if fnmatch.fnmatchcase(name.split("/")[0], pattern)}
 
 
 def values_of(check, found):
-    """(name of the instance, value) of every figure that a check speaks of."""
+    """(name of the instance, value) of every recorded value that a check uses."""
     result = []
     for name, figures in found.items():
         if check.instance and not re.search(check.instance, name):
@@ -146,14 +147,14 @@ def page(root, figures):
 
 
 def used(figures):
-    """Only the figures of tests that the page has."""
+    """The recorded values of the tests on the page."""
     patterns = [row.test for _, rows in SECTIONS for row in rows]
     return {name: values for name, values in figures.items()
             if any(fnmatch.fnmatchcase(name.split("/")[0], pattern) for pattern in patterns)}
 
 
 def rounded(text):
-    """A number with the digits that a difference from 1 needs; other texts as they are."""
+    """A number with twelve digits, enough for a difference from 1; other texts unchanged."""
     try:
         return f"{float(text):.12g}"
     except ValueError:

@@ -1,20 +1,20 @@
-"""What a row of doc/verification.md is made of, and the figures that follow from several recorded ones."""
+"""The types of the rows of doc/verification.md, and values derived from several recorded ones."""
 
 import math
 from typing import Callable, NamedTuple, Optional, Union
 
 
 class Check(NamedTuple):
-    """One assertion. {} in `assertion` is the bound; `figure` a pattern of recorded figures, or a function of them."""
+    """One assertion. {} in `assertion` is the bound; `figure` is a pattern or a function of recorded values."""
     assertion: str
     figure: Union[None, str, Callable] = None
-    what: str = ""                  # the quantity, where a row has several
-    bound: str = ""                 # how the bound is written, with {} for the number
-    unit: str = ""                  # of the bound and of the figure
-    file: Optional[str] = None      # where the assertion stands, if not in the test's file
-    instance: str = ""              # only parameters that fit
-    each: bool = False              # show every parameter instead of the largest value
-    below: bool = True              # the figure is to be below the bound
+    what: str = ""                  # the quantity, if a row has several
+    bound: str = ""                 # text of the bound, with {} for the number
+    unit: str = ""                  # of the bound and of the recorded value
+    file: Optional[str] = None      # file of the assertion, if not that of the test
+    instance: str = ""              # pattern of the parameters
+    each: bool = False              # shows every parameter instead of the largest value
+    below: bool = True              # the value must be below the bound
 
 
 class Row(NamedTuple):
@@ -47,7 +47,7 @@ def over_tolerance(name, tolerances):
 
 
 def over_accuracy(figures, left_out=()):
-    """The largest error over the accuracy asked for, of what has to be promised: deflections, and the rest to 1e-3."""
+    """The largest error over the accuracy, of deflections, and of all other quantities down to an accuracy of 1e-3."""
     parts = [(*name.rsplit("_", 1), abs(float(value))) for name, value in figures.items()]
     return max(error / float(wanted) for quantity, wanted, error in parts
                if quantity not in left_out and (quantity == "deflection" or float(wanted) > 5e-4))

@@ -1,4 +1,4 @@
-// A program of its own that runs scenes: one file of options crossed at several speeds, each with a results file.
+// A program that embeds Traverse: one scene at several speeds, each with a results file.
 //
 //   cmake --install build --prefix PREFIX
 //   cmake -S examples/embed -B build-embed -DCMAKE_PREFIX_PATH=PREFIX && cmake --build build-embed

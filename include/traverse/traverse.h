@@ -10,15 +10,15 @@
  *   }
  *   traverse_close(passage);
  *
- * A passage goes from sample to sample: steps end exactly at the multiples of -output_interval, at which it is read and
- * at which forces change. The words alone count: neither .petscrc nor PETSC_OPTIONS is read. Vehicles are mechanisms
- * (-model_vehicles full), unless another model is asked for. With no force set, what is read is bit for bit what the
- * program stores for the same words with -model_vehicles full.
+ * A passage advances from sample to sample: steps end exactly at the multiples of -output_interval, at which values are
+ * read and forces change. Only the given words are used: neither .petscrc nor PETSC_OPTIONS is read. Vehicles are
+ * mechanisms (-model_vehicles full), unless the words select another model. Without set forces, the values are bit for
+ * bit those that the program stores for the same words with -model_vehicles full.
  *
- * Several passages may be open at once. All calls come from one thread; each process has passages of its own, also
- * under mpirun. Units are SI; x runs along the track, y upward, angles are counter-clockwise. Functions that return int
- * return 0, or the exit status that the program would end with: 2 for wrong input, 3 where the equations cannot be
- * solved, 4 for a file, 5 for memory, 70 for an internal error; traverse_error then has one line that says why. */
+ * Several passages may be open at once. All calls must be in one thread; each process has separate passages, also under
+ * mpirun. Units are SI; x is along the track, y upward, angles are counter-clockwise. Functions that return int return
+ * 0, or the exit status of the program for the same error: 2 for invalid input, 3 if the equations cannot be solved, 4
+ * for a file, 5 for memory, 70 for an internal error; traverse_error then returns the reason in one line. */
 #ifndef TRAVERSE_TRAVERSE_H
 #define TRAVERSE_TRAVERSE_H
 
@@ -33,45 +33,46 @@ extern "C" {
 /* NOLINTBEGIN(modernize-use-using): C has no using */
 typedef struct traverse_passage traverse_passage;
 
-/* What can be read: a dataset of the results file (doc/results_file.md), without its dimension of time. */
+/* A dataset of the results file (doc/results_file.md) without its dimension of time, which traverse_read can read. */
 typedef struct {
-  const char* name; /* its path, "/probes/deflection"; valid as long as the passage is open */
-  const char* unit; /* where the numbers of a row differ it names each: "N, N, N m" */
+  const char* name; /* its path, "/probes/deflection"; valid while the passage is open */
+  const char* unit; /* different units of the numbers of a row are all listed: "N, N, N m" */
   size_t dimensions;
-  size_t shape[2]; /* as many as there are dimensions; their product is how many numbers there are */
-  int varies;      /* 1: with time; 0: stations that others belong to */
+  size_t shape[2]; /* one entry per dimension; their product is the number of values */
+  int varies;      /* 1: with time; 0: stations of other quantities */
 } traverse_quantity;
 /* NOLINTEND(modernize-use-using) */
 
-/* The scene of these words of the command line, without the program's name, at t = 0. *passage is NULL where that
- * cannot be. */
+/* Opens the scene of these words of the command line (without the program's name) at t = 0. *passage is NULL on
+ * failure. */
 TRAVERSE_API int traverse_open(int argc, const char* const* argv, traverse_passage** passage);
-/* Frees the scene. NULL and a passage that is closed already are allowed; the handle of a closed one (16 bytes) stays
- * until the process ends, and every other call refuses it, and NULL, with status 2. */
+/* Frees the scene. NULL and a closed passage are allowed. The handle of a closed passage (16 bytes) exists until the
+ * process ends; every other call rejects it, and NULL, with status 2. */
 TRAVERSE_API void traverse_close(traverse_passage* passage);
-/* One line on the last call that failed; empty before that. Valid until the next one fails. */
+/* One line on the last call that failed; empty before the first failure. Valid until the next failure. */
 TRAVERSE_API const char* traverse_error(void);
 
-/* s: of the sample that was reached, of the end of the scene, between samples; not a number for what is no open
- * passage. */
+/* The time of the present sample, the end of the scene, and the interval of samples, s; NaN for a passage that is not
+ * open. */
 TRAVERSE_API double traverse_time(const traverse_passage* passage);
 TRAVERSE_API double traverse_end(const traverse_passage* passage);
 TRAVERSE_API double traverse_interval(const traverse_passage* passage);
 
-/* Goes to the first sample that is not before t (s), or to the end where that comes first; nowhere where that was
- * reached before. Status 2 for a time beyond the end. After status 3 the passage goes no further. */
+/* Advances to the first sample that is not before t (s), or to the end if it is earlier; does nothing if that sample
+ * was reached before. Status 2 for a time after the end. After status 3 the passage cannot be advanced. */
 TRAVERSE_API int traverse_advance(traverse_passage* passage, double t);
 
-/* How many quantities there are; number i of them. Status 2 where i is too large. */
+/* The number of quantities, and the description of quantity i. Status 2 if i is too large. */
 TRAVERSE_API size_t traverse_quantities(const traverse_passage* passage);
 TRAVERSE_API int traverse_describe(const traverse_passage* passage, size_t i, traverse_quantity* quantity);
-/* Its numbers at the sample that was reached, row by row; count: of all of them. Status 2 for another count. */
+/* The values of a quantity at the present sample, row by row; count: number of all values. Status 2 for another count.
+ */
 TRAVERSE_API int traverse_read(const traverse_passage* passage, const char* name, double* values, size_t count);
 
-/* From the sample that was reached on, a constant force at the centre of mass of a body (N) and a moment (N m), or a
- * vertical force (N, upward) at a station x (m) of the beam, of a layered track of its rail; both besides all that the
- * scene has. Each takes the place of the last one on that body or at that station: 0 ends it. Status 2 for what is not
- * there, and for a model that takes no such forces. */
+/* Applies, from the present sample on, a constant force at the centre of mass of a body (N) and a moment (N m), or a
+ * vertical force (N, upward) at a station x (m) of the beam (with a layered track: of its rail), in addition to all
+ * loads of the scene. Each call replaces the previous one for this body or station: 0 removes the force. Status 2 for
+ * an unknown body or station, and for a model that accepts no such forces. */
 TRAVERSE_API int traverse_set_body_force(traverse_passage* passage, int vehicle, const char* body, double fx, double fy,
                                          double moment);
 TRAVERSE_API int traverse_set_beam_force(traverse_passage* passage, double x, double force);

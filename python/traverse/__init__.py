@@ -5,9 +5,9 @@
     results = traverse.run("options/scenes/three_span_train.yml", train_speed=70.0)
     results["deflection"].sel(x=12.5).plot()
 
-`run` computes a scene and `study` many of its runs, `open` reads a results file, each as an xarray.Dataset;
-`Passage` goes through a scene step by step. What cannot be computed raises `Error` with the program's own line.
-doc/python.md has examples.
+`run` computes a scene, `study` many runs of it, and `open` reads a results file. Each returns an xarray.Dataset.
+`Passage` computes a scene step by step. A failed computation raises `Error` with the message of the program.
+doc/python.md contains examples.
 """
 
 from .dataset import open_results as open  # noqa: A004

@@ -6,16 +6,16 @@ import xarray
 from . import places
 from .dimensions import MEANINGS, dimensions_of, name_of
 
-# The scene itself, and the state at the end where that lies between two samples: h5py reads these.
+# Omitted are the scene itself, and the state at an end between two samples; h5py reads these.
 _LEFT_OUT = ("options", "input/", "model/", "end/", "study/shape", "study/row_digest")
 
 
 def open_results(path):
     """Reads a results file of a run, a sweep, a study or modes.
 
-    Returns an xarray.Dataset in memory. Each variable has the file's unit in attrs["units"]; `time`, `x` and the like
-    are coordinates, and what a study varied is a coordinate, too. attrs has the attributes of the file, those of its
-    /summary as summary_NAME, and `options`, a line for each. Raises Error where the file cannot be read.
+    Returns an xarray.Dataset in memory. Each variable has the unit of the file in attrs["units"]; `time`, `x` and
+    similar arrays are coordinates, and so are the varied options of a study. attrs contains the attributes of the file,
+    those of its /summary as summary_NAME, and `options`, one line each. Raises Error if the file cannot be read.
     """
     try:
         with h5py.File(path, "r", locking=False) as file:
@@ -42,15 +42,15 @@ def _variable(path, item, samples):
     values = item.asstr()[()] if h5py.check_string_dtype(item.dtype) else item[()]
     dimensions = dimensions_of(path, values.ndim)
     if dimensions[:1] == ("time",):
-        values = values[:samples]  # a run that was killed may have left more rows
+        values = values[:samples]  # a killed run may have left more rows
     attributes = {"units" if key == "unit" else key: value for key, value in item.attrs.items()}
     return xarray.Variable(dimensions, values, attributes)
 
 
 def with_coordinates(variables):
-    """The Dataset of variables by their names: those named as a dimension are its coordinate.
+    """The Dataset of the variables by their names: a variable with the name of a dimension is its coordinate.
 
-    Of a table of words that is named as its rows are, the first column is the coordinate, and NAME_words has them all.
+    The first column of a table of words with the name of its rows is the coordinate; NAME_words contains all columns.
     """
     tables = {name: table for name, table in variables.items() if table.ndim > 1 and table.dims[0] == name}
     for name, table in tables.items():
@@ -75,13 +75,13 @@ def _attributes(file):
 
 
 def _along_axes(results, study):
-    """The runs of a study along its axes: what an axis alone varies is its coordinate."""
+    """The runs of a study along its axes: the only option of an axis is its coordinate."""
     axes = [axis.strip() for axis in str(study.attrs["axes"]).split(",")]
     lengths = [int(length) for length in study["shape"][()]]
     varied = {name: int(study[name].attrs["axis"]) for name in study if "axis" in study[name].attrs}
     if (results["probes_x"] == results["x"]).all():
         results = results.drop_vars("probes_x")
-    else:  # stations of the first run alone
+    else:  # stations of the first run only
         results = results.drop_vars("x").rename_dims(x="probe")
     runs = {}
     for name, variable in results.variables.items():

@@ -1,14 +1,15 @@
-"""Names and dimensions of what a results file holds (doc/results_file.md), which the file itself does not say.
+"""Names and dimensions of the datasets of a results file (doc/results_file.md), which the file does not contain.
 
-A dataset's name is its path with "_" for "/", without the leading group of what a file is about: /probes/deflection is
-`deflection`, /vehicles/0/car/position `vehicles_0_car_position`. Dimensions are named by their coordinates.
+The name of a dataset is its path with "_" for "/", without the leading groups probes, sweep and study:
+/probes/deflection is `deflection`, /vehicles/0/car/position `vehicles_0_car_position`. Dimensions have the names of
+their coordinates.
 """
 
 import re
 
 _BARE = re.compile(r"^/?(?:probes|sweep|study)/")
 
-# Of a path, the first row that fits it, and its dimensions. \1 stands for what the brackets of the row hold.
+# Patterns of paths with their dimensions; the first match is used. \1 is the group of the pattern.
 _ROWS = [(re.compile(pattern + "$"), tuple(dimensions.split())) for pattern, dimensions in (
     (r"time", "time"),
     (r"probes/x", "x"),
@@ -51,7 +52,7 @@ _ROWS = [(re.compile(pattern + "$"), tuple(dimensions.split())) for pattern, dim
     (r"static/\w+", "static_load static_x extreme"),
 )]
 
-# What the numbers along a dimension are.
+# The values along a dimension.
 MEANINGS = {
     "coordinate": ["x", "y", "angle"],
     "component": ["fx", "fy", "moment"],
@@ -67,7 +68,7 @@ def name_of(path):
 
 
 def dimensions_of(path, rank):
-    """The names of a dataset's `rank` dimensions."""
+    """The names of the `rank` dimensions of a dataset."""
     path = path.strip("/")
     for row, dimensions in _ROWS:
         fits = row.match(path)

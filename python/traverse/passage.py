@@ -43,17 +43,17 @@ def _library():
 
 
 def _checked(status, unsaid=""):
-    """Error for a status that is not 0, with the library's line; unsaid: a text that is left out of it."""
+    """Raises Error for a status other than 0, with the message of the library; unsaid: a text removed from it."""
     if status != 0:
         raise places.Error(_library().traverse_error().decode(errors="replace").replace(unsaid, ""), status)
 
 
 class Passage:
-    """One scene, from sample to sample, in this process.
+    """One scene, computed from sample to sample in this process.
 
-    scene, folder and options are those of `traverse.run`. Samples stand at the multiples of output_interval, at which
-    steps end exactly; there the passage is read, and forces change. Vehicles are mechanisms unless model_vehicles says
-    otherwise. With no force set, what is read is what `run` gives with model_vehicles="full", to the last bit.
+    scene, folder and options are those of `traverse.run`. Samples are at the multiples of output_interval, at which
+    steps end exactly; quantities are read and forces change there. Vehicles are mechanisms unless model_vehicles is
+    set. Without a set force, the values are bit-identical to those of `run` with model_vehicles="full".
     """
 
     def __init__(self, scene, *, folder=None, **options):
@@ -83,7 +83,7 @@ class Passage:
 
     @property
     def time(self):
-        """The sample that was reached, s."""
+        """The time of the current sample, s."""
         return self._library.traverse_time(self._open())
 
     @property
@@ -93,23 +93,23 @@ class Passage:
 
     @property
     def interval(self):
-        """Between samples, s."""
+        """The time between samples, s."""
         return self._library.traverse_interval(self._open())
 
     @property
     def names(self):
-        """The names of all that can be read, as `traverse.run` has them."""
+        """The names of all quantities, the same as in `traverse.run`."""
         return list(self._quantities)
 
     def advance(self, time=None):
-        """Goes to the first sample that is not before `time` (s), or to the next one. Returns its time, s."""
+        """Computes up to the first sample at or after `time` (s), or up to the next one. Returns its time, s."""
         if time is None:
             time = min(self.time + self.interval, self.end)
         _checked(self._library.traverse_advance(self._open(), time))
         return self.time
 
     def read(self, name=None):
-        """A quantity at the sample that was reached: a number, or an array; without a name all, as a Dataset."""
+        """A quantity at the current sample, a number or an array; without a name all quantities as a Dataset."""
         if name is not None:
             if name not in self._quantities:
                 raise places.Error(f"there is no quantity {name}; names has those there are", 2)
@@ -127,16 +127,16 @@ class Passage:
         return values
 
     def set_force(self, *, vehicle=0, body=None, x=None, fx=0.0, fy=0.0, moment=0.0):
-        """From here on a constant force, in place of the last one there; 0 ends it.
+        """Sets a constant force from the current sample on, which replaces the last one there; 0 removes it.
 
-        On a body of a vehicle of the train, which count from 0: fx and fy (N) at its centre of mass and a moment (N m);
-        or at the station x (m) of the beam: fy alone, upward.
+        On a body of a vehicle (vehicles are numbered from 0): fx and fy (N) at its centre of mass and a moment (N m).
+        At the station x (m) of the beam: only fy, upward.
         """
         if (body is None) == (x is None):
             raise places.Error("set_force: wanted: a body or a station x", 2)
         if body is not None:
             vehicle = operator.index(vehicle)
-            if not 0 <= vehicle <= _MOST_C_INT:  # ctypes cuts what is longer
+            if not 0 <= vehicle <= _MOST_C_INT:  # ctypes truncates larger numbers
                 raise places.Error(f"set_force: there is no vehicle {vehicle}: they count from 0", 2)
             _checked(self._library.traverse_set_body_force(self._open(), vehicle, body.encode(), fx, fy, moment))
             return
@@ -145,7 +145,7 @@ class Passage:
         _checked(self._library.traverse_set_beam_force(self._open(), x, fy))
 
     def close(self):
-        """Frees its memory; nothing can be read any more."""
+        """Frees the memory; the passage cannot be used afterwards."""
         handle, self._handle = self._handle, None
         if handle is not None:
             self._library.traverse_close(handle)
@@ -162,7 +162,7 @@ class Passage:
 
 @contextlib.contextmanager
 def _within(folder):
-    """The working directory, from which a scene's files count, as long as this lasts."""
+    """Changes the working directory, to which the files of a scene are relative, within this context."""
     before = os.getcwd()
     if folder is not None:
         os.chdir(folder)

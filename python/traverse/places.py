@@ -1,4 +1,4 @@
-"""Where the program and its library are, and the error that both raise."""
+"""The paths of the program and its library, and the error of both."""
 
 import os
 import pathlib
@@ -6,10 +6,10 @@ import shutil
 
 
 class Error(RuntimeError):
-    """What the program or its library refused or could not do, in its own line.
+    """A failure of the program or its library, with its message.
 
-    `status`: 2 for wrong input, 3 where the equations cannot be solved, 4 for a file, 5 for memory, 70 for an internal
-    error; 128 + n where signal n ended the program.
+    `status`: 2 for invalid input, 3 if the equations cannot be solved, 4 for a file, 5 for memory, 70 for an internal
+    error; 128 + n if signal n ended the program.
     """
 
     def __init__(self, message, status):
@@ -18,7 +18,7 @@ class Error(RuntimeError):
 
 
 def program():
-    """The program's path: TRAVERSE_BINARY, that of the checkout or the installation of this package, or of PATH."""
+    """The path of the program: TRAVERSE_BINARY, in the checkout or installation of this package, or in PATH."""
     named = os.environ.get("TRAVERSE_BINARY")
     if named:
         return named
@@ -35,11 +35,11 @@ def shared_library():
     if beside_program is not None and beside_program.is_file():
         return str(beside_program)
     found = _beside_package("build/libtraverse.so", "lib/*/libtraverse.so", "lib/libtraverse.so")
-    return str(found) if found else "libtraverse.so"  # where the system looks for libraries
+    return str(found) if found else "libtraverse.so"  # in the library path of the system
 
 
 def _beside_package(in_checkout, *installed):
-    """The first file there is: in the checkout that holds this package, or under the prefix it is installed to."""
+    """The first existing file: in the checkout of this package, or under its installation prefix."""
     package = pathlib.Path(__file__).resolve().parent
     checkout, prefix = package.parents[1], package.parents[3]
     places = [checkout / in_checkout] if (checkout / "CMakeLists.txt").is_file() else []

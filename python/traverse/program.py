@@ -1,4 +1,4 @@
-"""Runs of the program: each in a process of its own, so that nothing it meets ends the interpreter."""
+"""Runs of the program: each in a separate process, so that no failure ends the interpreter."""
 
 import os
 import pathlib
@@ -9,25 +9,24 @@ from .dataset import open_results
 
 
 def run(scene, *, folder=None, ranks=1, output=None, **options):
-    """Computes a scene and returns its results, an xarray.Dataset as `open` gives it.
+    """Computes a scene and returns its results, an xarray.Dataset like that of `open`.
 
-    scene: the path of a scene's file, or a dictionary of the same shape.
-    folder: where files that a dictionary names are looked for, and what a relative `output` counts from; the working
-        directory where it is left out.
-    ranks: of MPI.
-    output: the results file to keep; None: none is kept.
-    options: options of the program, which win over the scene: train_speed=70.0, output_probes=[12.5, 40.0]. Nothing is
-        taken from .petscrc and PETSC_OPTIONS.
-    Raises Error with the line that the program ends with.
+    scene: the path of a scene file, or a dictionary with the same structure.
+    folder: the folder of files named in a dictionary and of a relative `output`; default: the working directory.
+    ranks: the number of MPI ranks.
+    output: the results file; None: the file is deleted.
+    options: options of the program, with priority over the scene: train_speed=70.0, output_probes=[12.5, 40.0]. The
+        program reads neither .petscrc nor PETSC_OPTIONS.
+    Raises Error with the last message of the program.
     """
     return _computed([scene], folder, ranks, output, options)
 
 
 def study(scene, vary=None, *, folder=None, ranks=1, output=None, **options):
-    """Runs a study as `run` runs a scene: one coordinate for each option that is varied.
+    """Computes a study, with the arguments of `run`. Each varied option is a coordinate.
 
-    scene: of a study, or any scene with vary={"train_speed": {"from": 40, "to": 80, "step": 5}, "beam_EI": [7e9, 8e9]},
-    values as in `study: vary:` of a scene's file.
+    scene: that of a study, or any scene with vary={"train_speed": {"from": 40, "to": 80, "step": 5}, "beam_EI": [7e9,
+    8e9]}, with values as in `study: vary:` of a scene file.
     """
     return _computed([scene] if vary is None else [scene, {"study": {"vary": vary}}], folder, ranks, output, options)
 
@@ -47,7 +46,7 @@ def _computed(scenes, folder, ranks, output, options):
 
 
 def _environment():
-    """More ranks than processors are allowed, and mpirun as root, as run.sh does; without options of PETSc's."""
+    """Environment variables: more ranks than processors and mpirun as root, as in run.sh; no options of PETSc."""
     defaults = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}
     if os.geteuid() == 0:
         defaults |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
@@ -60,7 +59,7 @@ def _status(code):
 
 
 def _reason(ended):
-    """The program's own line, or the last one that was written."""
+    """The message of the program, or its last line."""
     lines = ended.stderr.strip().splitlines()
     own = [line.removeprefix("traverse: ") for line in lines if line.startswith("traverse: ")]
     return (own or lines or [f"the program ended with status {_status(ended.returncode)}"])[-1]

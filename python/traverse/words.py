@@ -1,4 +1,4 @@
-"""A scene and options of Python as the program's words: files of YAML and options of the command line."""
+"""Conversion of a scene and options of Python into YAML files and options of the command line."""
 
 import contextlib
 import os
@@ -10,7 +10,7 @@ import yaml
 
 
 def plain(value):
-    """The value as YAML writes it: arrays as lists, numbers of numpy as Python's, paths as texts."""
+    """The value in types of YAML: arrays as lists, numbers of numpy as those of Python, paths as texts."""
     if isinstance(value, dict):
         return {str(key): plain(inner) for key, inner in value.items()}
     if isinstance(value, np.ndarray):
@@ -30,13 +30,13 @@ def _text(value):
 
 
 def of_options(options):
-    """{"train_speed": 70.0} as ["-train_speed", "70.0"]; a value may be a number, a text, a truth or a list."""
+    """{"train_speed": 70.0} as ["-train_speed", "70.0"]; a value may be a number, a text, a boolean or a list."""
     return [word for name, value in options.items() for word in (f"-{name}", _text(value))]
 
 
 @contextlib.contextmanager
 def of_scenes(*scenes):
-    """The words that name scenes: paths, or dictionaries, which are files as long as this lasts."""
+    """The command-line words of scenes: paths, or dictionaries, which are temporary files within this context."""
     with tempfile.TemporaryDirectory(prefix="traverse-") as folder:
         words = []
         for number, scene in enumerate(scenes):

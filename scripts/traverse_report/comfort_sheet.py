@@ -1,4 +1,4 @@
-"""How passengers feel a run, where it holds its cars' accelerations: scripts/comfort.py as a page."""
+"""The page of ride comfort by scripts/comfort.py, for runs with accelerations of their cars."""
 
 import comfort
 import numpy as np
@@ -6,11 +6,11 @@ from picture_data import car_body
 
 from .page import GREY, LEFT, table
 
-LONGEST_INTERVAL = 0.01  # s, beyond which what passengers feel is not in the samples
+LONGEST_INTERVAL = 0.01  # s; longer intervals do not resolve the weighted frequencies
 
 
 def places(source, vehicle, body):
-    """Distances from the body's centre: 0 and those of its outermost springs, which stand over the bogies."""
+    """Distances from the centre of the body: 0 and those of its outermost springs, above the bogies."""
     model = source.model
     if vehicle >= len(model.train) or "vehicles" not in model.group:
         return [0.0]
@@ -28,15 +28,15 @@ def places(source, vehicle, body):
 
 
 def comfort_rows(source):
-    """(vehicle, body, distance, Comfort), or why there are none."""
+    """Rows (vehicle, body, distance, Comfort), and the reason if there are none."""
     results = source.results
     if results.time is None or results.rows < 3 or not results.vehicles:
         return [], ""
     steps = np.diff(results.time[:results.rows])
     if np.ptp(steps) > 1e-6 * steps[0]:
-        return [], "Samples are not evenly spaced: nothing is weighted."
+        return [], "Samples are not evenly spaced: comfort is not evaluated."
     if steps[0] > LONGEST_INTERVAL * (1.0 + 1e-9):
-        return [], (f"Samples every {steps[0]:g} s are too long for what passengers feel; allowed: at most "
+        return [], (f"Samples every {steps[0]:g} s are too long for the frequency weighting; allowed: at most "
                     f"{LONGEST_INTERVAL:g} s (-output_interval).")
     rows = []
     for i, vehicle in enumerate(results.vehicles):
@@ -59,8 +59,8 @@ def sheet(report, source, heading):
     time = source.results.time
     page.text(LEFT, f"Vertical accelerations of the car bodies over {time[-1] - time[0]:.4g} s of one crossing, sampled every "
                     f"{time[1] - time[0]:.4g} s: the root of their mean square, the greatest weighted by Wb of EN 12299 in "
-                    "windows of 5 s, its index N_MV of the vertical direction alone, and Sperling's ride index. A run shorter "
-                    "than 5 s is one window; the norm asks for five minutes of line, so that these figures compare runs.",
+                    "windows of 5 s, its index N_MV of the vertical direction only, and Sperling's ride index. A run shorter "
+                    "than 5 s is one window. The norm requires five minutes of line; these values are for comparison only.",
               size=8, colour=GREY)
     page.y -= 0.08
     table(report, page, [("vehicle", 0.7, "right"), ("body", 1.0, "left"), ("from its centre", 0.95, "right"),

@@ -1,4 +1,4 @@
-"""Curves over the speed, one a train, with limit lines; envelopes; time histories."""
+"""Curves over the speed, one per train, with limit lines; envelopes; time histories."""
 
 import numpy as np
 from picture_axes import COLOURS, GREY, LABEL_SIZE, PALE, End, label_at_ends, note_beside
@@ -8,18 +8,18 @@ from picture_layout import width_of, wrapped
 from .limits import STORED
 from .source import QUANTITIES
 
-RED = "#B00020"  # of limits, of nothing else
-# Ten lines differ in colour and in style at once, so that a print in grey tells them apart too.
+RED = "#B00020"  # used for limits only
+# Lines differ in colour and in style, so that a grey print distinguishes them too.
 STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (7, 1.5, 1.2, 1.5))]
 MARKS = ["o", "s", "^", "D", "v", "P"]
 MOST_LINES = len(COLOURS) * len(STYLES)
-ENOUGH_A_SPAN = 4  # probes, from which on a line joins them
-MOST_LISTED = 14  # lines of a list beside the axes
-WIDEST_NAMES = 2.4  # inches beside the axes
+ENOUGH_A_SPAN = 4  # probes per span, for a line between them
+MOST_LISTED = 14  # entries of a list beside the axes
+WIDEST_NAMES = 2.4  # inches beside the axes for names
 
 
 def look(i):
-    """Colour, style and mark of line i: neighbours differ in all of them."""
+    """Colour, style and mark of line i: neighbouring lines differ in all of them."""
     turn = i // len(COLOURS)
     return COLOURS[i % len(COLOURS)], STYLES[(i + turn) % len(STYLES)], MARKS[(i + turn) % len(MARKS)]
 
@@ -29,8 +29,7 @@ def mark_every(count):
 
 
 def draw_limits(ax, limits):
-    """limits: (value, words) in the axes' unit. A limit far above the curves is said, not drawn. Whether all are kept
-    in view."""
+    """Draws limits: (value, text) in the unit of the axes. A limit far above the curves is named, not drawn."""
     low, high = ax.get_ylim()
     shown = [limit for limit in limits if limit[0] <= 2.5 * high]
     if shown:
@@ -46,7 +45,7 @@ def draw_limits(ax, limits):
 
 
 def limit_lines(source, limits, name):
-    """Those that are drawn over a quantity of the file, in the unit of its curve."""
+    """The limits of a quantity of the file, in the unit of its curve."""
     factor = QUANTITIES.get(name, ("", "", 1.0))[2]
     spans = np.unique(np.round(np.diff(source.model.span_ends), 6))
     lines = []
@@ -58,13 +57,13 @@ def limit_lines(source, limits, name):
             lines.append((factor * limit.value * spans[0], f"limit L/{1.0 / limit.value:.4g} ({limit.clause})"))
         elif limit.quantity == "deck_acceleration" and name == "peak_acceleration" and \
                 "deck_acceleration" not in source.runs.values:
-            lines.append((limit.value, f"{limit.value:g} m/s² ({limit.clause}) is for low-passed ones"))
+            lines.append((limit.value, f"{limit.value:g} m/s² ({limit.clause}) applies to low-passed ones"))
     return lines
 
 
 def draw_resonances(ax, source, lines):
-    """Light lines at the speeds that are predicted for the first frequency: of each train in its colour where it should
-    swing, dotted where a force leaves the bridge at rest. Whether there are any."""
+    """Draws light lines at the predicted resonance speeds of the first frequency, in the colour of each train, and
+    dotted lines at the cancellation speeds. Returns whether the file contains resonance speeds."""
     file = source.file
     low, high = ax.get_xlim()
     if "cancellations/speed" in file:
@@ -89,17 +88,16 @@ def draw_resonances(ax, source, lines):
 
 
 def chosen_lines(ax, runs, values, most=MOST_LINES):
-    """(short name, runs): all of them as long as they can be told apart; else an even choice with the greatest, and a
-    word on it."""
+    """(short name, runs) of the drawn lines: all of them, or at most `most` with the greatest one, and a note."""
     lines = [(runs.curve_name(indices[0]), indices) for _, indices in runs.lines()]
     chosen = choose(len(lines), most, np.array([np.nan_to_num(values[indices]).max() for _, indices in lines]))
     if len(chosen) < len(lines):
-        note_beside(ax, f"{len(chosen)} of {len(lines)} lines, the greatest among them", 7.5)
+        note_beside(ax, f"{len(chosen)} of {len(lines)} lines, including the greatest one", 7.5)
     return [lines[i] for i in chosen]
 
 
 def over_x(ax, source, name, values, unit, limits, band=True):
-    """One line a train over the speed; where runs differ in a seed too, their median and the range of all."""
+    """Draws one line per train over the speed; for runs with several seeds also their median and range."""
     runs = source.runs
     x, label = runs.x()
     lines = chosen_lines(ax, runs, values)
@@ -139,18 +137,18 @@ def over_x(ax, source, name, values, unit, limits, band=True):
 
 
 def room_for(names):
-    """Inches right of the axes for the names of curves; longer ones go into a key."""
+    """Width right of the axes for the names of curves, inches; a key contains longer names."""
     return min(0.45 + max(width_of(name, LABEL_SIZE) for name in names), WIDEST_NAMES) if len(names) > 1 else 0.1
 
 
 def key_room(names):
-    """Inches below the axes for such a key."""
+    """Height below the axes for such a key, inches."""
     long = len(names) > 1 and max(width_of(name, LABEL_SIZE) for name in names) > WIDEST_NAMES - 0.45
     return 0.16 * (min(len(names), MOST_LINES) + 1) if long else 0.0
 
 
 def names_of(runs):
-    """Of the lines of a sweep or study."""
+    """The names of the lines of a sweep or study."""
     return [runs.curve_name(indices[0]) for _, indices in runs.lines()]
 
 
@@ -159,10 +157,10 @@ def draw_static(ax, x, static):
 
 
 def along_bridge(ax, supports, x, series, unit, marks=True, static=None):
-    """series: (name, least, greatest or None) at stations x; names stand right of the axes, in a list as curves meet at
-    the bridge's end."""
+    """Draws series: (name, least, greatest or None) at stations x; names are in a list right of the axes, because the
+    curves coincide at the end of the bridge."""
     order = np.argsort(x)
-    joined = len(x) >= ENOUGH_A_SPAN * (len(supports) - 1)  # between fewer places nothing is known
+    joined = len(x) >= ENOUGH_A_SPAN * (len(supports) - 1)  # values between fewer stations are unknown
     for i, (name, least, greatest) in enumerate(series):
         colour, style, mark = look(i)
         style = "none" if not joined else "-" if len(series) == 1 else style
@@ -187,7 +185,7 @@ def along_bridge(ax, supports, x, series, unit, marks=True, static=None):
 
 
 def history(ax, time, curves, title, unit, limits=()):
-    """curves: (name, values)."""
+    """Draws a time history. curves: (name, values)."""
     ends = []
     for i, (name, values) in enumerate(curves):
         colour, style = COLOURS[i % len(COLOURS)], STYLES[i // len(COLOURS) % len(STYLES)]

@@ -1,4 +1,4 @@
-"""Cycles of the bridge's moments in a run, where it holds them over time: scripts/fatigue.py as a page."""
+"""The page of the cycles of the bridge's moments by scripts/fatigue.py, for runs with moments over time."""
 
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ YEARS = fatigue.DAYS_A_YEAR
 
 
 class Asked(NamedTuple):
-    """How moments become stresses and damage; nothing is asked where line is None."""
+    """Parameters from moments to stresses and damage; there is no damage if line is None."""
     factor: float = 1.0
     line: object = None
     passages: float = 1.0  # a day
@@ -24,15 +24,14 @@ class Asked(NamedTuple):
 class Row(NamedTuple):
     x: float
     cycles: list
-    damage: float  # of a passage; NaN: no line
+    damage: float  # of a passage; NaN without an S-N curve
 
     def equivalent(self, slope):
         return fatigue.equivalent_range(self.cycles, slope, 1.0) if self.cycles else 0.0
 
 
 def fatigue_rows(source, asked):
-    """Of every probe, or of an even choice with the worst among them, the cycles of its moment, N m, and the damage of
-    one passage."""
+    """The cycles of the moment, N m, and the damage of one passage, for every probe or for a selection with the worst."""
     file, results = source.file, source.results
     if "probes/moment" not in file or results.rows < 3:
         return []
@@ -49,7 +48,7 @@ def fatigue_rows(source, asked):
 
 
 def draw_spectrum(ax, rows, supports):
-    """How many cycles of a passage have at least a range."""
+    """Draws the number of cycles of a passage over their range."""
     worst = sorted(rows, key=lambda row: -row.equivalent(SLOPES[-1]))[:3]
     for i, row in enumerate(worst):
         cycles = sorted(row.cycles, key=lambda c: -c.range)
@@ -71,13 +70,14 @@ def sheet(report, source, heading, asked):
     page = report.page(f"Cycles of the moments: {heading}")
     stored = source.results.time
     page.text(LEFT, "Counted by rainflow (ASTM E1049-85) between the stored instants, "
-                    f"{stored[1] - stored[0]:.4g} s apart. The equivalent range does, as one cycle, what all cycles of the "
-                    "passage do together under a line of that slope.", size=8, colour=GREY)
+                    f"{stored[1] - stored[0]:.4g} s apart. Equivalent range: the single cycle that causes the same damage "
+                    "as the whole passage, for an S-N curve of slope m.", size=8, colour=GREY)
     if asked.line:
         page.text(LEFT, f"Stress: {asked.factor:g} times the moment. Damage by {asked.line.name}, for {asked.passages:g} "
-                        "passages a day, each by itself, without partial factors.", size=8, colour=GREY)
+                        "passages a day, without partial factors.", size=8, colour=GREY)
     else:
-        page.text(LEFT, "--factor and --line of traverse-report give stress, damage and life.", size=8, colour=GREY)
+        page.text(LEFT, "Stress, damage and life require the options --factor and --line of traverse-report.", size=8,
+                  colour=GREY)
     ax = page.axes(2.2, right=0.1, below=0.6)
     draw_spectrum(ax, rows, source.results.supports)
     columns = [("probe (m)", 0.8, "right"), ("cycles", 0.7, "right"), ("largest range kN m", 1.25, "right")]

@@ -1,4 +1,4 @@
-"""The governing run of a sweep or a study, run again for its time histories, envelopes and all its verdicts."""
+"""The repeated governing run of a sweep or a study, for its time histories, envelopes and verdicts."""
 
 import os
 import pathlib
@@ -10,8 +10,8 @@ import numpy as np
 from .limits import values_of
 
 STATIONS_A_SPAN, MOST_STATIONS = 20, 161
-LONGEST = 120.0  # s that a run may take
-# What asks for many runs, or is the first run's own.
+LONGEST = 120.0  # s, limit for the run
+# Options of the sweep or study, or of the first run only.
 LEFT_OUT = re.compile(r"^(sweep|study|output|limits|scene_name|options_file|restart|checkpoint|log_view|malloc_debug|"
                       r"skip_petscrc)")
 
@@ -21,7 +21,7 @@ def value_text(value):
 
 
 def options_of(source, run):
-    """The options of one run of the table, those of vehicle files apart: name -> value."""
+    """The options of one run of the table: name -> value."""
     options = {name: value for name, value in source.options.items() if not LEFT_OUT.match(name)}
     group = "sweep" if "sweep" in source.file else "study"
     attributes = source.file[group].attrs
@@ -49,7 +49,7 @@ def options_of(source, run):
 
 
 def stations(source, run):
-    """Those of the sweep, and as many between as draw an envelope."""
+    """The stations of the sweep, and further ones for an envelope."""
     ends = source.model.span_ends
     own = source.runs.probes[run] if source.runs.probes.ndim == 2 else source.runs.probes
     each = max(min(STATIONS_A_SPAN, MOST_STATIONS // max(len(ends) - 1, 1)), 2)
@@ -58,7 +58,7 @@ def stations(source, run):
 
 
 def write_vehicles(options, folder):
-    """Vehicles into files of their own, as the table of PETSc's options is small; what is left of the options."""
+    """Writes vehicles to separate files, because the table of PETSc's options is small. Returns the other options."""
     left = dict(options)
     for name in [name for name in options if re.fullmatch(r"vehicle_\w+_file", name)]:
         vehicle = name[len("vehicle_"):-len("_file")]
@@ -75,7 +75,7 @@ def write_vehicles(options, folder):
 
 
 def governing_run(source, limits):
-    """The run with the least margin of a limit, else that with the largest deflection."""
+    """The run with the least margin of a limit, otherwise the one with the largest deflection, and the reason."""
     worst, margin = int(np.nanargmax(source.runs.of_run("peak_deflection"))), np.inf
     why = "it has the greatest deflection"
     for limit in limits:
@@ -86,12 +86,12 @@ def governing_run(source, limits):
             continue
         if 1.0 - np.nanmax(values) / limit.value < margin:
             worst, margin = int(np.nanargmax(values)), 1.0 - np.nanmax(values) / limit.value
-            why = f"it comes nearest to, or goes farthest beyond, the limit of {limit.quantity.replace('_', ' ')}"
+            why = f"it has the least margin to the limit of {limit.quantity.replace('_', ' ')}"
     return worst, why
 
 
 def repeat(source, run, limits, program, folder, scratch):
-    """Runs it; the path of its results and the program's words where it failed."""
+    """Computes the run. Returns the path of its results, or None and the message of the program."""
     options = write_vehicles(options_of(source, run), scratch)
     out = scratch / "governing.h5"
     options["output_file"] = str(out)

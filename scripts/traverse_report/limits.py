@@ -1,4 +1,4 @@
-"""Limits and what they say of the runs: verdicts of the file where it holds them, else computed from its numbers."""
+"""Limits and verdicts of the runs: those of the file, otherwise computed from its values."""
 
 import pathlib
 from typing import NamedTuple
@@ -8,9 +8,9 @@ import yaml
 
 from .source import ReportError
 
-# Of static effects of EN 1991-2: no run knows them, the computation judges them once.
+# Static effects by EN 1991-2: they are independent of the runs and checked once.
 OF_NORM = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "train_over_lm71"}
-# Quantities of limits that a table of runs has under another name.
+# Quantities of limits with another name in a table of runs.
 STORED = {"unfiltered_deck_acceleration": "peak_acceleration", "contact_loss": "longest_loss"}
 
 
@@ -25,9 +25,9 @@ class Limit(NamedTuple):
 class Verdict(NamedTuple):
     limit: Limit
     word: str      # kept, broken, not judged
-    value: float   # NaN: not judged
-    run: str       # which run
-    where: str     # place and time, or why it is not judged
+    value: float   # NaN without a verdict
+    run: str       # name of the run
+    where: str     # place and time, or the reason of a missing verdict
 
     @property
     def margin(self):
@@ -51,7 +51,7 @@ def read_limits(path):
 
 
 def limits_of(source, given, folder):
-    """Those given, those of the stored verdicts, or those of the file that the run's options name; with their units."""
+    """The given limits, those of the stored verdicts, or those of the file in the options; with their units."""
     units = dict(row for name in ("verdicts/quantity", "quantities/limits") if name in source.file
                  for row in source.file[name].asstr()[:])
     return [limit._replace(unit=units.get(limit.quantity, "1").replace("2", "²").replace("1", ""))
@@ -71,7 +71,7 @@ def _limits_of(source, given, folder):
 
 
 def stored(source):
-    """The rows of /verdicts."""
+    """The verdicts of /verdicts."""
     group = source.file["verdicts"] if "verdicts" in source.file else {}
     if "limit" not in group:
         return []
@@ -87,7 +87,7 @@ def stored(source):
 
 
 def spans_of(source, stations):
-    """The length of the span that holds each station; at a support the shorter one."""
+    """The length of the span of each station; at a support the shorter one."""
     ends = source.model.span_ends
     lengths = np.full(np.shape(stations), np.inf)
     for left, right in zip(ends[:-1], ends[1:]):
@@ -97,22 +97,22 @@ def spans_of(source, stations):
 
 
 def values_of(source, quantity):
-    """One number a run in the limit's unit; None and why not."""
+    """One value per run in the unit of the limit, or None and the reason."""
     runs = source.runs
     for name in (quantity, STORED.get(quantity)):
         if name in runs.values:
             return runs.of_run(name), ""
     if quantity == "deflection_over_span":
         if not len(source.model.span_ends):
-            return None, "the file holds no spans"
+            return None, "the file contains no spans"
         return (np.abs(runs.values["peak_deflection"]) / spans_of(source, runs.probes)).max(axis=1), ""
     if quantity == "deck_acceleration":
         return None, "its runs were stored without a low-pass"
-    return None, "the file does not hold it of every run"
+    return None, "the file does not contain it for every run"
 
 
 def judge(source, limits):
-    """The worst run against each limit."""
+    """The verdict of the worst run for each limit."""
     if source.runs is None:
         return judge_run(source, limits)
     verdicts, known = [], {verdict.limit.quantity: verdict for verdict in stored(source)}
@@ -143,7 +143,7 @@ def word_of(value, limit):
 
 
 def judge_run(source, limits):
-    """A single run, by what it has been watched for, else by its peaks."""
+    """The verdicts of a single run: the stored ones, otherwise by its peaks."""
     known, verdicts, summary = {verdict.limit.quantity: verdict for verdict in stored(source)}, [], source.summary
     peaks = {"unfiltered_deck_acceleration": "acceleration", "deck_acceleration": "acceleration_lowpass",
              "amplification": "amplification", "contact_loss": "longest_loss"}
@@ -158,14 +158,14 @@ def judge_run(source, limits):
             where = f"x = {summary[f'{name}_place']:.6g} m" if f"{name}_place" in summary else ""
             verdicts.append(Verdict(limit, word_of(value, limit), value, "", where))
         else:
-            verdicts.append(Verdict(limit, "not judged", np.nan, "", "the run was not watched for it: -limits of traverse "
-                                                                     "asks for that"))
+            verdicts.append(Verdict(limit, "not judged", np.nan, "", "the run did not evaluate it; use the option "
+                                                                     "-limits of traverse"))
     return verdicts
 
 
 def with_governing(verdicts, alone):
-    """What the table of runs cannot judge as the governing run judges it: broken there is broken, kept there is no
-    more than that."""
+    """Adds the verdicts of the governing run for limits that the table of runs does not contain: broken remains broken,
+    kept is valid for this run only."""
     found = {verdict.limit[:3]: verdict._replace(word="kept alone" if verdict.word == "kept" else verdict.word)
              for verdict in alone if verdict.word != "not judged"}
     return [found.get(verdict.limit[:3], verdict) if verdict.word == "not judged" else verdict for verdict in verdicts]
@@ -176,8 +176,8 @@ class LineVerdict(NamedTuple):
     limit: Limit
     value: float
     x: float
-    broken: list  # ranges of x, (from, to)
-    filtered: bool  # else a limit of low-passed values is compared with others
+    broken: list  # intervals of x, (from, to)
+    filtered: bool  # False: unfiltered values for a limit of low-passed ones
 
     @property
     def word(self):
@@ -189,7 +189,7 @@ class LineVerdict(NamedTuple):
 
 
 def judge_lines(source, limits):
-    """Every line (train) against each limit: its greatest value, where, and the ranges in which it is broken."""
+    """The greatest value of every line (train) for each limit, its x, and the intervals in which it is broken."""
     runs, rows = source.runs, []
     if runs is None or runs.x_name is None:
         return rows
@@ -210,7 +210,7 @@ def judge_lines(source, limits):
 
 
 def ranges(x, where):
-    """[(from, to)] of neighbours that are in it."""
+    """The intervals [(from, to)] of neighbouring x for which `where` is true."""
     found = []
     for i in np.flatnonzero(where):
         if found and i > 0 and where[i - 1]:

@@ -1,4 +1,4 @@
-"""From results files to the report: what to draw of each, in which order."""
+"""The command traverse-report: pages of each results file in their order."""
 
 import argparse
 import datetime
@@ -20,9 +20,9 @@ from .source import ReportError, Source
 
 
 class Governing(NamedTuple):
-    words: str  # which run it is
+    words: str  # name of the run
     why: str
-    source: Optional[Source]  # its results; None: it could not be repeated
+    source: Optional[Source]  # its results; None if it could not be repeated
     trouble: str
 
 
@@ -57,7 +57,7 @@ def arguments_of(words):
 
 
 def program_beside(given):
-    """The program to repeat a run with; None where there is none."""
+    """The program that repeats a run; None if there is none."""
     if given:
         if not pathlib.Path(given).is_file():
             raise ReportError(f"--program {given}: there is no such file")
@@ -70,7 +70,7 @@ def program_beside(given):
 
 
 def governing_of(source, limits, arguments, scratch):
-    """The worst run of a table, by itself."""
+    """Repeats the worst run of a table."""
     if source.runs is None or arguments.no_governing_run or not source.runs.finished.any():
         return None
     run, why = again.governing_run(source, limits)
@@ -106,7 +106,7 @@ def add_pages(report, source, limits, verdicts, governing, asked):
 
 
 def has_limits(path):
-    """Whether it is a sweep or a study that was given limits."""
+    """Whether a file is that of a sweep or a study with limits."""
     with h5py.File(path, "r", locking=False) as file:
         many = "sweep/speed" in file or "study/finished" in file
         return many and "options" in file and "limits" in [name.lstrip("-") for name in file["options"].asstr()[:, 0]]

@@ -1,4 +1,4 @@
-"""What was modelled: the bridge and the train drawn, their numbers, and the error that is promised."""
+"""The page of the model: drawings of bridge and train, their properties, and the error estimates."""
 
 import numpy as np
 from picture_model import (
@@ -8,11 +8,11 @@ from .page import GREY, INK, LEFT, RIGHT, table
 from .source import digits
 
 MOST_TRAIN_ROWS = 10
-TALLEST = 3.0  # inches, of a vehicle
+TALLEST = 3.0  # inches, of a drawn vehicle
 
 
 def draw_bridge(page, source, height=0.42):
-    """The bridge with its supports, springs and hinges; spans to scale."""
+    """Draws the bridge with its supports, springs and hinges; spans to scale."""
     model = source.model
     ends = model.span_ends
     ax = page.axes(height, left=0.2, right=0.2, above=0.25, below=0.35)
@@ -41,7 +41,7 @@ def scale_bar(ax, length, y):
 
 
 def draw_train(page, source):
-    """The whole train to scale, the first vehicle of each type larger; or the forces of each train."""
+    """Draws the whole train to scale, the first vehicle of each type larger; or the forces of each train."""
     model = source.model
     if len(model.train):
         draw_vehicles(page, source)
@@ -115,11 +115,11 @@ def draw_force_trains(page, source):
 
 def range_in_words(data, unit):
     low, high = data[:, 1].min(), data[:, 1].max()
-    return f"{low:.5g} {unit}" if low == high else f"{low:.5g} to {high:.5g} {unit}, along the bridge as the file holds it"
+    return f"{low:.5g} {unit}" if low == high else f"{low:.5g} to {high:.5g} {unit}, variable along the bridge"
 
 
 def properties(source):
-    """(what, value) of bridge, track and train."""
+    """Rows (name, value) of bridge, track and train."""
     model, options, rows = source.model, source.options, []
     spans = np.diff(model.span_ends)
     if len(spans):
@@ -162,26 +162,26 @@ def properties(source):
 
 
 def promises(source):
-    """(quantity, what is expected) of what accuracy promises."""
+    """Rows (quantity, estimated error) of the peaks."""
     rows = []
     for name in ("deflection", "acceleration", "moment") + (("wheel_force",) if len(source.model.train) else ()):
         error = source.summary.get(f"expected_error_{name}")
         rows.append((f"peaks of the {name.replace('_', ' ')}",
                      f"expected relative error {error:.1g}" if error is not None else
-                     "none is promised: mesh, modes or step were given, or the trial runs could not tell"))
+                     "not estimated: mesh, modes or step were given, or the trial runs did not determine it"))
     return rows
 
 
 def sheet(report, source):
-    page = report.page(f"What was modelled: {source.title()}")
+    page = report.page(f"Model: {source.title()}")
     if len(source.model.span_ends) > 1:
         draw_bridge(page, source)
     draw_train(page, source)
     page = table(report, page, [("model", 2.0, "left"), ("", 4.7, "left")], properties(source))
     if not source.is_rail:
-        page = table(report, page, [("promised error", 2.0, "left"), ("", 4.7, "left")], promises(source))
+        page = table(report, page, [("estimated error", 2.0, "left"), ("", 4.7, "left")], promises(source))
     if source.model.notes:
         rows = [(str(i), note) for i, note in enumerate(source.model.notes, 1)]
-        table(report, page, [("", 0.3, "left"), ("what the program said of its model", 6.4, "left")], rows)
+        table(report, page, [("", 0.3, "left"), ("notes of the program on its model", 6.4, "left")], rows)
 
 

@@ -12,7 +12,7 @@ COLUMNS = ("phi_dyn", "phi_dyn_speed", "train_static", "train_dynamic", "train_x
 
 
 def verdict_rows(source):
-    """The rows of /norm, in SI units: one dictionary an effect."""
+    """The rows of /norm, in SI units: one dictionary for each effect."""
     if "norm/effect" not in source.file:
         return []
     group = source.file["norm"]
@@ -23,7 +23,7 @@ def verdict_rows(source):
 
 
 def sentence(source):
-    """Which governs, in one line; empty where nothing was compared."""
+    """The governing load in one line; empty without a comparison."""
     rows = verdict_rows(source)
     if not rows:
         return ""
@@ -46,7 +46,7 @@ def place(x):
 
 
 def draw_effect(page, source, name, words, row):
-    """Least and greatest along the bridge: the load model and the train at rest, and both with their factors."""
+    """Draws least and greatest values along the bridge: static load model and train, and both with their factors."""
     file = source.file
     loads = [text[0] for text in file["static/load"].asstr()[:]]
     x, values = file["static/x"][:], file[f"static/{name}"][:]
@@ -72,8 +72,8 @@ def sheet(report, source):
     if not rows:
         return
     page = report.page("Trains and load models: EN 1991-2, 6.4.6.5")
-    page.text(LEFT, "The worse of (1 + φ'dyn + φ''/2) times the static effect of a train and of Phi times alpha times that "
-                    "of LM71, or of SW/0 on continuous bridges, wherever they stand.", size=8.5)
+    page.text(LEFT, "The larger of (1 + φ'dyn + φ''/2) times the static effect of a train and of Phi times alpha times that "
+                    "of LM71, or of SW/0 on continuous bridges, over all positions of the load.", size=8.5)
     page.text(LEFT, str(source.file["norm"].attrs["words"]), size=8.5, colour=GREY)
     page.y -= 0.1
     cells = [[row["effect"], row["train"], f"{row['phi_dyn']:.3f} at {3.6 * row['phi_dyn_speed']:.4g} km/h",
@@ -81,10 +81,10 @@ def sheet(report, source):
               row["model"], f"{scaled(row['model_with_phi'], row['unit'])}, {place(row['model_x'])}",
               f"{row['train_over_model']:.3f}", row["train"] if row["governs"] == "train" else row["model"]] for row in rows]
     page = table(report, page, [("effect", 0.7, "left"), ("train", 0.4, "left"), ("φ'dyn", 1.15, "left"),
-                                ("at rest", 0.75, "right"), ("dynamic", 1.3, "left"), ("model", 0.45, "left"),
+                                ("static", 0.75, "right"), ("dynamic", 1.3, "left"), ("model", 0.45, "left"),
                                 ("with Phi", 1.15, "left"), ("ratio", 0.4, "right"), ("governs", 0.5, "left")], cells, size=7)
     page.text(LEFT, "φ'dyn is the greatest of all speeds, and of the probes with at least a quarter of the greatest static "
-                    "effect; shear, reactions and rotations take that of the deflection.", size=8, colour=GREY)
+                    "effect; shear, reactions and rotations have the factor of the deflection.", size=8, colour=GREY)
     page.y -= 0.1
     known = {row["effect"]: row for row in rows}
     for name, words in (("deflection", "Deflection, upward positive"), ("moment", "Bending moment, positive in sagging")):
@@ -93,14 +93,14 @@ def sheet(report, source):
 
 
 def workbook_rows(source):
-    """Head and rows: the verdict, then the static effects along the bridge of every load."""
+    """Head and rows of the verdict of EN 1991-2 6.4.6.5."""
     rows = verdict_rows(source)
     head = ["effect", "unit", "train", "model", "governs", *COLUMNS]
     return head, [[row[name] for name in head] for row in rows]
 
 
 def static_rows(source):
-    """Head and rows: least and greatest of deflection, moment and shear of every load along the bridge."""
+    """Head and rows: least and greatest deflection, moment and shear of every load along the bridge."""
     file = source.file
     if "static/x" not in file:
         return [], []

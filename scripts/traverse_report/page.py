@@ -1,16 +1,16 @@
-"""A4 pages: headings, text and tables laid out in inches, and axes for curves."""
+"""A4 pages: headings, text, tables and axes; all sizes are in inches."""
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
-import picture_axes  # noqa: E402, F401: its style first
+import picture_axes  # noqa: E402, F401: sets its style first
 import picture_layout  # noqa: E402
 from matplotlib.backends.backend_pdf import PdfPages  # noqa: E402
 from picture_layout import wrapped  # noqa: E402
 
 plt.rcParams.update({"font.size": 8.5, "axes.titlesize": 10, "axes.titlepad": 6, "lines.linewidth": 1.2,
-                     "figure.max_open_warning": 0})  # a page is a figure
+                     "figure.max_open_warning": 0})  # one figure per page
 
 WIDTH, HEIGHT = 8.27, 11.69
 LEFT, RIGHT, TOP, BOTTOM = 0.8, 7.6, 11.0, 0.75
@@ -19,7 +19,7 @@ SIZE = 8.5
 
 
 class Page:
-    """One sheet. y: where the next thing goes, inches from the bottom."""
+    """One page. y: position of the next item, inches from the bottom."""
 
     def __init__(self, heading):
         self.figure = plt.figure(figsize=(WIDTH, HEIGHT))
@@ -32,7 +32,7 @@ class Page:
         self.y -= 0.12
 
     def text(self, x, text, size=SIZE, colour=INK, width=None, **words):
-        """Lines from y downward."""
+        """Writes lines from y downward."""
         room = (RIGHT - x) if width is None else width
         for line in wrapped(text, room, size, words.get("weight", "normal")):
             self.paper.text(x, self.y, line, fontsize=size, color=colour, va="top", **words)
@@ -42,14 +42,14 @@ class Page:
         return self.y - BOTTOM
 
     def fit(self, ax, below=0.45):
-        """Once the axes are drawn: makes room for long titles above them and for a key of long names below."""
+        """Adapts drawn axes to long titles above them and to a key of long names below."""
         above, key = picture_layout.fit(ax, RIGHT / WIDTH, below, size=7.5)
         box = ax.get_position()
         ax.set_position([box.x0, box.y0 - above / HEIGHT, box.width, box.height])
         self.y -= above + key
 
     def axes(self, height, left=0.55, right=0.0, above=0.3, below=0.45):
-        """Axes of that height within the margins, with room for a title, labels and names."""
+        """Adds axes of this height within the margins, with space for a title, labels and names."""
         bottom = self.y - above - height
         self.y = bottom - below
         return self.figure.add_axes([(LEFT + left) / WIDTH, bottom / HEIGHT, (RIGHT - right - LEFT - left) / WIDTH,
@@ -57,7 +57,7 @@ class Page:
 
 
 class Report:
-    """Pages in their order."""
+    """The pages of a report in their order."""
 
     def __init__(self, title, foot):
         self.title, self.foot, self.pages = title, foot, []
@@ -78,8 +78,8 @@ class Report:
 
 
 def table(report, page, columns, rows, size=7.5, heading=None):
-    """columns: (name, width in inches, alignment). A cell is a text, or (text, colour). Goes on over further pages,
-    whose heading is that of the first. The page that it ends on."""
+    """Draws a table. columns: (name, width in inches, alignment). A cell is a text, or (text, colour). The table
+    continues on further pages with the heading of the first one. Returns its last page."""
     step = 1.35 * size / 72.0
 
     def draw_head():

@@ -1,4 +1,4 @@
-"""Rail and bridge together, UIC 774-3: what temperature, weight and braking do along the track, by each and together."""
+"""The page of track-bridge interaction by UIC 774-3: effects of temperature, weight and braking along the track."""
 
 import picture_rail
 
@@ -8,19 +8,19 @@ from .source import digits
 CASES = ("temperature", "bending", "braking", "traction", "separate", "in_sequence", "at_once")
 WORDS = {**picture_rail.CASES, "separate": "these added up"}
 PEAKS = {"tension": ("tension", "MPa", 1e-6), "compression": ("compression", "MPa", 1e-6),
-         "slip": ("rail against deck or ground", "mm", 1e3), "end": ("deck end", "mm", 1e3)}
+         "slip": ("rail relative to deck or ground", "mm", 1e3), "end": ("deck end", "mm", 1e3)}
 FORCES = {"bearing": ("bearing", "kN", 1e-3), "opening": ("device opening", "mm", 1e3)}
 
 
 def places(source):
-    """(quantity, what it is called, unit, factor, x) of what is stored for bearings and devices."""
+    """(quantity, name, unit, factor, x) of the stored values of bearings and devices."""
     group = source.file["rail_forces"]
     return [(name, *FORCES[name], group[f"{at}_x"][:]) for name, at in (("bearing", "bearing"), ("opening", "device"))
             if f"{at}_x" in group and len(group[f"{at}_x"])]
 
 
 def rows(source):
-    """Head and rows in SI units, a row a case: each peak with its place, forces of bearings, openings of devices."""
+    """Head and rows in SI units, one row per case: peaks with their x, bearing forces, openings of devices."""
     if not source.is_rail:
         return [], []
     group = source.file["rail_forces"]
@@ -44,7 +44,7 @@ def envelope_rows(source):
 
 
 def peak_rows(source):
-    """(quantity, value, place) of what is there one after the other."""
+    """Rows (quantity, value, place) of the peaks under the loads in sequence."""
     case = source.file["rail_forces/in_sequence"]
     found = [(words, f"{digits(factor * case[name][0])} {unit}", f"x = {case[name][1]:.4g} m, train's front at "
               f"{case[name][2]:.4g} m") for name, (words, unit, factor) in PEAKS.items()]
@@ -56,9 +56,9 @@ def peak_rows(source):
 def sheet(report, source):
     if not source.is_rail:
         return
-    page = report.page("Rail and bridge together: UIC 774-3")
-    page.text(LEFT, "The largest for all places of the train, @ x in m. Stress is additional to that of a rail that cannot "
-                    "lengthen. Limits are for one after the other: temperature first, then the train.", size=8.5)
+    page = report.page("Track-bridge interaction: UIC 774-3")
+    page.text(LEFT, "The largest values over all positions of the train, @ x in m. The stress is additional to that of a "
+                    "restrained rail. Limits apply to the sequence of temperature and train.", size=8.5)
     page.y -= 0.1
     group, cells = source.file["rail_forces"], []
     for case in CASES:
@@ -73,6 +73,6 @@ def sheet(report, source):
     columns += [(words, 0.85, "left") for _, words, *_ in places(source)]
     page = table(report, page, columns, cells, size=6.5)
     residual = float(group.attrs["residual"])
-    page.text(LEFT, f"All forces along x balance to {residual:.1g} of the largest.", size=8, colour=GREY)
+    page.text(LEFT, f"Sum of all forces along x: {residual:.1g} of the largest force.", size=8, colour=GREY)
     for draw in picture_rail.PANELS:
         draw(page.axes(2.3, right=1.75), source.results)

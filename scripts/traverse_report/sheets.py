@@ -13,7 +13,7 @@ COLOURS = {"kept": GREEN, "kept alone": GREY, "broken": RED, "not judged": GREY,
 
 
 def shown(value, limit):
-    """A number of a limit's quantity, as engineers write it."""
+    """A value of the quantity of a limit as text, with the usual unit."""
     if np.isnan(value):
         return ""
     if limit.quantity.endswith("deflection_over_span") and value > 0.0:
@@ -23,15 +23,15 @@ def shown(value, limit):
 
 
 def outcome(verdicts):
-    """The one sentence that is looked for first, and its colour."""
+    """The main result in one sentence, and its colour."""
     judged = [verdict for verdict in verdicts if verdict.word in ("kept", "broken")]
     broken = [verdict for verdict in judged if verdict.word == "broken"]
     alone = sum(verdict.word == "kept alone" for verdict in verdicts)
     left = len(verdicts) - len(judged) - alone
     rest = f"; {left} could not be judged" if left else ""
-    rest = f"; {alone} more kept in the governing run, of other runs unknown{rest}" if alone else rest
+    rest = f"; {alone} more kept in the governing run, unknown for the other runs{rest}" if alone else rest
     if not verdicts:
-        return "No limits were given: nothing is judged.", GREY
+        return "No limits were given.", GREY
     if not judged:
         return "None of the limits could be judged.", GREY
     if broken:
@@ -54,14 +54,14 @@ def verdict_table(report, page, verdicts):
 
 
 def is_known(runs, name):
-    """Whether there is something to show; losses of contact only where there are any."""
+    """Whether a quantity has values; for losses of contact, whether there are any."""
     if name not in runs.values or np.isnan(runs.of_run(name)).all():
         return False
     return name != "longest_loss" or np.nanmax(runs.of_run(name)) > 0.0
 
 
 def peak_rows(source):
-    """(quantity, value, run and place) of the greatest of all."""
+    """Rows (quantity, value, run and place) of the greatest values."""
     rows, runs = [], source.runs
     if source.is_rail:
         return rail_sheet.peak_rows(source)
@@ -75,7 +75,7 @@ def peak_rows(source):
                 where = place_in_words(source.summary[f"{name}_place"], supports)
                 rows.append((words, f"{digits(factor * abs(source.summary[name]))} {unit}",
                              f"{where}, t = {source.summary[f'{name}_time']:.4g} s"))
-        for name, words, unit, factor in (("amplification", "of the deflection, over what stands on the bridge at rest",
+        for name, words, unit, factor in (("amplification", "of the deflection, relative to the static one",
                                            "", 1.0), ("least_wheel_force", "least wheel force", "kN", 1e-3)):
             if name in source.summary and (name == "amplification" or "least_wheel" in source.summary):
                 rows.append((words if name != "amplification" else "amplification",
@@ -94,7 +94,7 @@ def peak_rows(source):
 
 
 def front(report, source, verdicts, governing):
-    """The first page of a file: what was asked, whether it passes, and by which margin."""
+    """The first page of a file: the scene, the verdicts and their margins."""
     page = report.page(source.title())
     train = "" if source.runs is not None and "hslm_a" in source.runs.parameters else f"{source.train_in_words()}; "
     page.text(LEFT, f"{train}{source.kind_in_words()}", size=9.5)
@@ -119,20 +119,20 @@ def front(report, source, verdicts, governing):
 
 
 def front_of_governing(page, governing):
-    page.text(LEFT, f"The governing run, {governing.words}, was run again by itself, as {governing.why}. Verdicts of "
-                    "a run that is called alone are of this run only.", size=8.5)
+    page.text(LEFT, f"The governing run, {governing.words}, was repeated, because {governing.why}. Results marked "
+                    "'kept alone' refer to that run only.", size=8.5)
     if governing.trouble:
-        page.text(LEFT, f"That could not be done: {governing.trouble}", size=8.5, colour=RED)
+        page.text(LEFT, f"The run could not be repeated: {governing.trouble}", size=8.5, colour=RED)
 
 
 def line_sheet(report, source, limits):
-    """Every train against each limit: the greatest value, its speed and margin, and the speeds at which it is broken."""
+    """Every train with each limit: greatest value, its speed and margin, and the speeds at which it is broken."""
     rows = judge_lines(source, limits)
     if not rows:
         return
     _, label = source.runs.x()
     unit = label.split("(")[-1].rstrip(")") if "(" in label else ""
-    page = report.page("Which train at which speed" if "hslm_a" in source.runs.line_names else "Every case and its limits")
+    page = report.page("Every train and its limits" if "hslm_a" in source.runs.line_names else "Every case and its limits")
     cells, short = [], dict(zip((name for name, _ in source.runs.lines()), curves.names_of(source.runs)))
     for row in rows:
         broken = "; ".join(number(a) if a == b else f"{number(a)} to {number(b)}" for a, b in row.broken)
@@ -140,9 +140,9 @@ def line_sheet(report, source, limits):
                       shown(row.limit.value, row.limit), shown(row.value, row.limit), number(row.x),
                       f"{100.0 * row.margin:.1f} %", (row.word, COLOURS[row.word]), broken])
     if any(row.word in ("above", "below") for row in rows):
-        page.text(LEFT, "Above and below: peaks without a filter, compared with a limit of low-passed ones. What is below "
-                        "keeps the limit but for what a filter may add; what is above may still keep it.", size=8,
-                  colour=GREY)
+        page.text(LEFT, "Above and below: unfiltered peaks, compared with a limit of low-passed ones. A peak below the "
+                        "limit almost certainly keeps it; a low-passed peak may keep it although the unfiltered "
+                        "one is above.", size=8, colour=GREY)
         page.y -= 0.08
     case = source.runs.lines_in_words() or "case"
     table(report, page, [(case, 1.45, "left"), ("limit", 1.4, "left"), ("allowed", 0.65, "right"),
@@ -152,7 +152,7 @@ def line_sheet(report, source, limits):
 
 
 def curve_sheets(report, source, limits):
-    """Every quantity over the speed, two a page; the number of lines in each."""
+    """Every quantity over the speed, two per page. Returns the number of lines of each."""
     runs, drawn = source.runs, {}
     if runs is None or runs.x_name is None:
         return drawn
@@ -167,11 +167,11 @@ def curve_sheets(report, source, limits):
             if runs.line_names and runs.line_names != ["hslm_a"]:
                 page.text(LEFT, f"One line for each {runs.lines_in_words()}.", size=8, colour=GREY)
             if len(runs.lines()) > curves.MOST_LINES:
-                page.text(LEFT, "Of more lines than can be told apart some are drawn; the workbook has all.", size=8,
+                page.text(LEFT, "Only some of the lines are drawn; the workbook contains all of them.", size=8,
                           colour=GREY)
             if runs.over:
-                page.text(LEFT, f"Of all {' and '.join(runs.over)}: thick the greatest (of least values the least), "
-                                "dotted the median, shaded all of them.", size=8, colour=GREY)
+                page.text(LEFT, f"Over all values of {' and '.join(runs.over)}: thick: greatest (of least values the "
+                                "least); dotted: median; shaded: range.", size=8, colour=GREY)
             if "resonances" in source.file or "cancellations" in source.file:
                 page.text(LEFT, resonances_in_words(source), size=8, colour=GREY)
         ax = page.axes(3.7, right=curves.room_for(names))
@@ -185,15 +185,14 @@ def resonances_in_words(source):
     file, said = source.file, []
     if "resonances/speed" in file:
         several = len(source.runs.lines()) > 3
-        said.append(f"Light lines: v = f1 d{'' if several else ' / i'}, where a train of regular distance d should make the "
-                    "bridge swing.")
+        said.append(f"Light lines: resonance speeds v = f1 d{'' if several else '/i'}.")
     if "cancellations/speed" in file:
-        said.append("Dotted: v = 2 f1 L/(2k + 1), where a force leaves it at rest.")
+        said.append("Dotted lines: cancellation speeds v = 2 f1 L/(2k+1).")
     return " ".join(said)
 
 
 def envelope_sheet(report, source):
-    """Of a table of runs the largest deflection, acceleration and moment of each train at every probe."""
+    """The largest deflection, acceleration and moment of each train at every probe, for a table of runs."""
     runs = source.runs
     stations = runs.probes[0] if runs.probes.ndim == 2 else runs.probes
     if len(stations) < 3 or (runs.probes.ndim == 2 and np.ptp(runs.probes, axis=0).max() > 0.0):
@@ -220,7 +219,7 @@ def envelope_sheet(report, source):
 
 
 def run_envelope_sheet(report, source, heading):
-    """Of one run its shape at the worst instant, and the least and greatest at every probe, with the static line."""
+    """The deflected shape of one run at the largest deflection, and its envelopes with the static line."""
     file, x = source.file, source.results.probes
     page = report.page(f"Along the bridge: {heading}")
     if "shape/x" in file and len(file["shape/x"]) > 1:
@@ -228,12 +227,12 @@ def run_envelope_sheet(report, source, heading):
         ax.plot(file["shape/x"][:], 1e3 * file["shape/deflection"][:], color=curves.COLOURS[0], lw=1.8)
         ax.axhline(0.0, color=curves.PALE, lw=0.8)
         ends = source.model.span_ends
-        ax.set(title=f"Deflection at the worst instant, t = {file['shape/deflection'].attrs['time']:.4g} s", ylabel="mm",
+        ax.set(title=f"Deflection at its maximum, t = {file['shape/deflection'].attrs['time']:.4g} s", ylabel="mm",
                xlabel="place along the bridge (m)", xlim=(ends[0], ends[-1]))
     if "envelope/deflection" not in file:
         return
     if len(x) < curves.ENOUGH_A_SPAN * (len(source.model.span_ends) - 1):
-        page.text(LEFT, f"Envelopes are drawn from {curves.ENOUGH_A_SPAN} probes a span on (-output_probes); "
+        page.text(LEFT, f"Envelopes are drawn for at least {curves.ENOUGH_A_SPAN} probes in each span (-output_probes); "
                         f"this run has {len(x)} in all.", size=8.5, colour=GREY)
         return
     for name, words, unit, factor in (("deflection", "Deflection", "mm", 1e3),
@@ -250,11 +249,11 @@ def run_envelope_sheet(report, source, heading):
         if name == "deflection" and "envelope/static_deflection" in file:
             order = np.argsort(x)
             curves.draw_static(ax, x[order], file["envelope/static_deflection"][:][order])
-            ax.set_title(f"{words}: least and greatest; dashed the largest static one, drawn downward")
+            ax.set_title(f"{words}: least and greatest; dashed: largest static deflection, drawn downward")
 
 
 def history_sheets(report, source, heading, limits):
-    """Over time: the bridge where it answers most, the bearings, the wheels."""
+    """Time histories: the bridge at the probes with the largest responses, the bearings, the wheels."""
     results, file = source.results, source.file
     time, probes = results.time, results.probes
     panels = []
@@ -308,6 +307,6 @@ def wheel_panels(source):
         return []
     forces = [1e-3 * results.over_time(data) for _, _, data in wheels]
     chosen = choose(len(wheels), 4, np.array([-force.min() for force in forces]))
-    note = "" if len(chosen) == len(wheels) else f" ({len(chosen)} of {len(wheels)}, that with the least force among them)"
+    note = "" if len(chosen) == len(wheels) else f" ({len(chosen)} of {len(wheels)}, with the one of the least force)"
     return [(f"Wheel forces{note}", "kN",
              [(f"vehicle {wheels[i][0]}, {wheels[i][1].replace('_', ' ')}", forces[i]) for i in chosen], [])]

@@ -1,4 +1,4 @@
-"""A results file as the report sees it: a single run, or a table of runs with what was varied and what came out."""
+"""A results file for the report: a single run, or a table of runs with varied options and results."""
 
 import pathlib
 import re
@@ -10,10 +10,10 @@ from picture_model import Model
 
 
 class ReportError(Exception):
-    """What stops the report, in one line."""
+    """The reason why the report fails, in one line."""
 
 
-# Name in the file: what it is, the unit that people read, and the factor to it.
+# Name in the file: description, unit in the report, and the factor to this unit.
 QUANTITIES = {
     "peak_deflection": ("greatest deflection", "mm", 1e3),
     "peak_acceleration": ("greatest deck acceleration, unfiltered", "m/s²", 1.0),
@@ -26,15 +26,15 @@ QUANTITIES = {
     "end_rotation": ("greatest rotation at the bridge's ends", "mrad", 1e3),
     "joint_rotation": ("greatest rotation between two decks", "mrad", 1e3),
     "car_acceleration": ("greatest vertical acceleration of car bodies", "m/s²", 1.0),
-    "wheel_unloading": ("greatest part of its force that a wheel loses, unfiltered", "", 1.0),
-    "filtered_wheel_unloading": ("greatest part of its force that a wheel loses, low-passed", "", 1.0),
-    "unloading_time": ("longest time that a low-passed wheel force is unloaded", "ms", 1e3),
+    "wheel_unloading": ("greatest wheel unloading, unfiltered", "", 1.0),
+    "filtered_wheel_unloading": ("greatest wheel unloading, low-passed", "", 1.0),
+    "unloading_time": ("longest time of unloading, low-passed", "ms", 1e3),
 }
 PARAMETERS = {"speed": ("speed", "km/h", 3.6), "seed": ("seed", "", 1.0)}
 
 
 def parameter_words(name):
-    """What a varied option is called, its unit and the factor to it."""
+    """The name of a varied option, its unit and the factor to this unit."""
     for end, words in PARAMETERS.items():
         if name.endswith(end):
             return (words[0] if name in ("train_speed", "load_speed", "speed") else name, words[1], words[2])
@@ -46,18 +46,18 @@ def number(value):
 
 
 def digits(value):
-    """Four digits that count, and no exponent where that is readable."""
+    """A number with four significant digits, without an exponent if possible."""
     short = f"{value:.4g}"
     return f"{value:,.0f}" if "e" in short and 1e4 <= abs(value) < 1e6 else re.sub(r"e\+?(-?)0*", r"e\1", short)
 
 
 class Runs:
-    """The runs of a sweep or a study: one row each. values: name -> [runs] or [runs, probes]; NaN: not run."""
+    """The runs of a sweep or a study. values: name -> [runs] or [runs, probes]; NaN without a result."""
 
     def __init__(self, parameters, values, probes, static, over=(), units=None):
         self.parameters, self.values, self.probes, self.static = parameters, values, probes, static
         self.units = units or {}
-        self.places = {}  # of what has one number a run: the stations
+        self.places = {}  # stations of quantities with one value per run
         self.count = len(next(iter(parameters.values())))
         varied = {name: column for name, column in parameters.items() if len(np.unique(column)) > 1}
         self.over = [name for name in over if name in varied]
@@ -80,11 +80,11 @@ class Runs:
         return factor * self.parameters[self.x_name], f"{label} ({unit})" if unit else label
 
     def unit(self, name):
-        """Of a varied option in the file."""
+        """The unit of a varied option in the file."""
         return self.units.get(name, "").replace("2", "²").replace("3", "³") if self.units.get(name) != "1" else ""
 
     def lines_in_words(self):
-        """What tells the lines apart, in the order of the numbers in their names."""
+        """The varied options of the lines, in the order of the numbers in their names."""
         units = {name: parameter_words(name)[1] or self.unit(name) for name in self.line_names}
         return ", ".join("train" if name == "hslm_a" else f"{name} ({units[name]})" if units[name] else name
                          for name in self.line_names)
@@ -100,14 +100,14 @@ class Runs:
         return ", ".join(parts) or "all runs"
 
     def curve_name(self, run):
-        """Short, for a picture that has lines_in_words in its heading: of several options the values alone."""
+        """A short name for a picture with lines_in_words in its heading: only the values of several options."""
         if len(self.line_names) < 2:
             return self.line_name(run)
         return ", ".join(f"A{self.parameters[name][run]:.0f}" if name.endswith("hslm_a") else
                          number(parameter_words(name)[2] * self.parameters[name][run]) for name in self.line_names)
 
     def lines(self):
-        """(name, indices of its runs in the order of x): what is drawn as one line, all values of `over` together."""
+        """(name, indices of its runs by ascending x) of each drawn line, with all values of `over` together."""
         groups = {}
         for run in range(self.count):
             groups.setdefault(tuple(self.parameters[name][run] for name in self.line_names), []).append(run)
@@ -116,7 +116,7 @@ class Runs:
                 for runs in groups.values()]
 
     def of_run(self, name):
-        """One number a run: the largest of its probes (of amplifications that at the largest deflection)."""
+        """One value per run: the largest of its probes (for amplifications that at the largest deflection)."""
         values = np.abs(self.values[name])
         if values.ndim == 1:
             return values
@@ -127,7 +127,7 @@ class Runs:
         return values.max(axis=1)
 
     def place(self, name, run):
-        """The station of that number."""
+        """The station of this value."""
         if name in self.places:
             station = float(self.places[name][run])
             return None if np.isnan(station) else station
@@ -136,7 +136,7 @@ class Runs:
         return None if values.ndim == 1 else float(stations[int(np.nanargmax(np.abs(values[run])))])
 
     def run_in_words(self, run):
-        """'A10, 344 km/h'"""
+        """The name of a run: 'A10, 344 km/h'."""
         name = self.line_names[0] if len(self.line_names) == 1 and not self.line_names[0].endswith("hslm_a") else ""
         parts = [f"{name} {self.line_name(run)}".strip()] if self.line_names else []
         for name in ([self.x_name] if self.x_name else []) + self.over:
@@ -147,7 +147,7 @@ class Runs:
 
 
 class Source:
-    """One results file, with everything that pages are made of."""
+    """One results file with the data of all pages."""
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
@@ -172,7 +172,7 @@ class Source:
                               "nothing to report on")
 
     def _judged(self, runs):
-        """What limits were judged by, one number a run."""
+        """Adds the values of quantities with limits, one per run."""
         columns, places = runs.values.pop("judged", None), runs.values.pop("judged_x", None)
         if columns is None or "verdicts/quantity" not in self.file:
             return runs

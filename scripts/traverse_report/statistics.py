@@ -1,4 +1,4 @@
-"""Statistics of a study over its seeds or draws: a table of quantiles, and how the peaks are distributed."""
+"""Statistics of a study over its seeds or samples: a table of quantiles, and distributions of the peaks."""
 
 import numpy as np
 
@@ -22,13 +22,13 @@ def groups_in_words(source):
 
 
 def judged_quantities(source):
-    """In the order of the limits."""
+    """The quantities of the limits in their order."""
     return [row[0] for row in source.file["verdicts/quantity"].asstr()[:]] if "verdicts/quantity" in source.file else []
 
 
 def statistic_rows(source):
-    """(group, quantity, unit, samples, mean, deviation, [(quantile, value, low, high)]), at the probe where the mean is
-    largest."""
+    """Rows (group, quantity, unit, samples, mean, deviation, [(quantile, value, low, high)]) at the probe with the
+    largest mean."""
     if "study/statistics" not in source.file:
         return []
     group, rows = source.file["study/statistics"], []
@@ -65,8 +65,8 @@ def sheet(report, source):
     page = report.page(f"Statistics: {source.title()}")
     confidence = source.file["study/statistics"].attrs.get("confidence", 0.95)
     page.text(LEFT, f"Over {' and '.join(source.runs.over) or 'all runs'}; each at the probe where its mean is largest. "
-                    f"In brackets the interval that holds a quantile with {100 * confidence:g} % confidence whatever the "
-                    "distribution is; ?: so few runs do not bound that side.", size=8, colour=GREY)
+                    f"Brackets: distribution-free confidence interval of a quantile, {100 * confidence:g} %; ?: too few "
+                    "runs for a bound on this side.", size=8, colour=GREY)
     page.y -= 0.08
     if len(np.unique([row[0] for row in rows])) == 1:
         distributions(page, source)
@@ -84,7 +84,7 @@ def sheet(report, source):
 
 
 def distributions(page, source):
-    """Of one group: which part of the runs stays below a value."""
+    """Draws the cumulative distributions of the peaks of one group."""
     shown = [name for name in ("peak_deflection", "peak_acceleration", "least_wheel_force", "greatest_wheel_force")
              if name in source.runs.values][:4]
     for name in shown:
@@ -95,4 +95,4 @@ def distributions(page, source):
             continue
         ax = page.axes(1.1, right=0.1)
         ax.step(values, np.arange(1, len(values) + 1) / len(values), where="post", color=curves.COLOURS[0])
-        ax.set(title=f"{words[0].upper()}{words[1:]}: part of the runs that stay below", xlabel=unit, ylim=(0, 1.02))
+        ax.set(title=f"{words[0].upper()}{words[1:]}: share of the runs below", xlabel=unit, ylim=(0, 1.02))

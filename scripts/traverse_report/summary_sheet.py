@@ -1,4 +1,4 @@
-"""The first page of a report of several results files: the worst of all, and each file with its outcome and its page."""
+"""The first page of a report of several results files: the worst result, and each file with its result and page."""
 
 import matplotlib.pyplot as plt
 
@@ -11,7 +11,7 @@ COLUMNS = [("results file", 1.7, "left"), ("what it is", 1.9, "left"), ("outcome
 
 
 def outcome_of(source, verdicts):
-    """A sentence and its colour; the worst where the computation has not reached its end."""
+    """A sentence and its colour; red if the computation has not reached its end."""
     sentence, colour = outcome(verdicts)
     ended = source.summary.get("ended", "it was killed")
     if ended != "reached its end":
@@ -20,7 +20,7 @@ def outcome_of(source, verdicts):
 
 
 def draw(report, entries, own, pages_before):
-    """The pages of the summary, at the end of the report."""
+    """Adds the pages of the summary at the end of the report."""
     page = report.page("All results")
     worst = max((colour for _, colour in own), key=SEVERITY.index)
     sentence, _ = outcome([verdict for _, verdicts, _ in entries for verdict in verdicts])

@@ -1,4 +1,4 @@
-"""The same numbers as a workbook, in SI units as the results file holds them: XLSX."""
+"""The workbook of the report (XLSX), in the SI units of the results file."""
 
 import re
 
@@ -22,7 +22,7 @@ MOST_HISTORY_ROWS = 20_000
 
 
 def plain(value):
-    """What a cell takes: no NaN, no numpy, no control characters."""
+    """A value for a cell, without NaN, types of numpy and control characters."""
     if isinstance(value, (np.floating, float)):
         return float(value) if np.isfinite(value) else None
     if isinstance(value, np.integer):
@@ -31,13 +31,13 @@ def plain(value):
 
 
 def write_as_text(book):
-    """No cell is a formula or an error: what a file of limits or a scene says is text, also where it begins with =."""
+    """Stores all strings as text, also those from files that begin with =: no cell becomes a formula or an error."""
     for sheet in book:
         for row in sheet.iter_rows():
             for cell in row:
                 if isinstance(cell.value, str):
                     cell.data_type = "s"
-                    cell.quotePrefix = cell.value[:1] in "=+-@"  # it stays text when somebody edits it
+                    cell.quotePrefix = cell.value[:1] in "=+-@"  # it remains text when a user edits it
 
 
 def add_sheet(book, name, head, rows):
@@ -73,7 +73,7 @@ def add_verdicts(book, name, verdicts):
 
 
 def add_runs(book, prefix, source):
-    """One row a run: what was varied, then the largest of its probes; the unit stands behind each name."""
+    """Adds one row per run: varied options, then the largest value of its probes; heads contain the units."""
     runs = source.runs
     units = {**{name: "1" for name in runs.values},
              **{name: str(data.attrs.get("unit", "1")) for group in ("sweep", "study") if group in source.file
@@ -112,7 +112,7 @@ def add_statistics(book, prefix, source):
 
 
 def add_run(book, prefix, source):
-    """Envelope and time histories of a single run."""
+    """Adds envelopes and time histories of a single run."""
     file, results = source.file, source.results
     x = results.probes
     if "envelope/deflection" in file:

@@ -25,7 +25,7 @@
 namespace {
 
 // The system calls what stands here before it sets up the libraries.
-[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = traverse::app::look_at_ignored_signals;
+[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = traverse::app::store_ignored_signals;
 
 /// Open MPI's mpirun tells the ranks their number before MPI has started.
 bool first_rank() {
@@ -79,8 +79,8 @@ int after_output(int status) {
 int main(int argc, char** argv) {
   traverse::app::guard_standard_output();
   traverse::app::install_handlers();
-  traverse::app::heed_cpu_limit();
-  traverse::app::speak_of_signals(first_rank());
+  traverse::app::set_cpu_limit_timer();
+  traverse::app::print_signals(first_rank());
   traverse::app::start_lightly();
   try {
     traverse::options::Input input = read_input(argc, argv);
@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
     traverse::app::started();
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
     traverse::app::install_handlers();  // from PETSc
-    traverse::app::speak_of_signals(first_rank());
+    traverse::app::print_signals(first_rank());
     const int status = run(input);
     (void)SlepcFinalize();
     return after_output(status);

@@ -16,7 +16,7 @@ namespace {
 
 Choice try_models(MPI_Comm comm, Scene scene, std::vector<std::string>& notes) {
   if (chooses_mode_mesh(scene)) return choose_mode_mesh(comm, scene, notes);
-  if (chooses(scene)) fix_low_pass(comm, scene, notes);
+  if (chooses(scene)) set_low_pass(comm, scene, notes);
   Choice choice = choose(comm, scene, notes);
   choice.low_pass = scene.output.low_pass;
   return choice;
@@ -47,7 +47,7 @@ double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::
   shared.prepare(scene, notes);
   const bool limited = scene.limits_deck_acceleration();
   const double counting =
-      limited || scene.output.low_pass_asked ? frequency_that_counts(scene, shared, cheap || limited, notes) : 0.0;
+      limited || scene.output.low_pass_requested ? cutoff_frequency(scene, shared, cheap || limited, notes) : 0.0;
   if (counting > 0.0) scene.sampling_interval = spacing_for(counting);
   if (filters_wheels(scene))
     scene.sampling_interval = std::min(scene.sampling_interval, spacing_for(scene.output.wheel_low_pass));

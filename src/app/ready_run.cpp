@@ -33,7 +33,7 @@ ReadyRun::ReadyRun(Job& given)
       passage(scene, given.beam, given.notes, earlier ? &*earlier : nullptr),
       wheels(wheels_at_start(scene).size()) {
   MPI_Comm_rank(job.comm, &rank);
-  if (earlier && scene.model.step && earlier->time_step < *scene.model.step) accuracy.promise_nothing();
+  if (earlier && scene.model.step && earlier->time_step < *scene.model.step) accuracy.reject_all();
   if (goes_on() && !(passage.plan().end_time > job.earlier->time))
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  passage.plan().end_time));
@@ -65,13 +65,13 @@ void ReadyRun::record_rounding() {
 
 void ReadyRun::choose_filters() {
   if (counting > 0.0) {
-    const std::string trouble = no_filter(counting, passage.plan(), scene.output.probes.size());
+    const std::string trouble = filter_obstacle(counting, passage.plan(), scene.output.probes.size());
     filters_deck = trouble.empty();
-    if (!filters_deck) accuracy.estimates[low_passed].kept = false;
+    if (!filters_deck) accuracy.estimates[low_passed].accepted = false;
     if (!filters_deck) job.notes.push_back("deck accelerations are not low-passed: " + trouble);
   }
   if (filters_wheels(scene)) {
-    const std::string trouble = no_filter(scene.output.wheel_low_pass, passage.plan(), wheels, "wheels");
+    const std::string trouble = filter_obstacle(scene.output.wheel_low_pass, passage.plan(), wheels, "wheels");
     filters_forces = trouble.empty();
     if (!filters_forces) job.notes.push_back("wheel forces are not low-passed: " + trouble);
   }

@@ -13,6 +13,7 @@
 #include "run/checkpoints.hpp"
 #include "run/rank_choice.hpp"
 #include "study/study.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::app {
 
@@ -27,11 +28,11 @@ void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
       scene.vehicles.empty() || !scene.train.steady() || scene.start != Start::equilibrium)
     return;
   scene.model.vehicles = VehicleModel::linear;
-  scene.model.most_residual = most_residual(scene);
+  scene.model.residual_limit = default_residual_limit(scene);
   notes.push_back(
       fmt::format("vehicles are linearised as long as the residual is below {:.1g} of their weights; "
                   "-model_vehicles full keeps the mechanisms",
-                  scene.model.most_residual));
+                  scene.model.residual_limit));
 }
 
 /// A run that goes on has as many as it had, of as many.
@@ -52,6 +53,8 @@ int run(MPI_Comm comm, const Scene& given) {
   MPI_Comm_rank(comm, &rank);
   const results::Heartbeat heartbeat(given.quiet || rank != 0);
   if (given.check) return run_check(comm, given);
+  if (given.study && has_own_contact_law(given))
+    throw InputError("study_vary: a study reads its scenes from the options, without contact laws of the program");
   Scene asked = given;
   const std::optional<results::Checkpoint> earlier = earlier_of(comm, asked);
   results::Place place = claim_outputs(comm, asked);
@@ -64,7 +67,7 @@ int run(MPI_Comm comm, const Scene& given) {
     const Accuracy accuracy = choose_model(some, scene, notes);
     take_linear_vehicles(scene, notes);
     const RankChoice ranks = ranks_for(some, scene, earlier);
-    if (const std::string& said = ranks.said.empty() ? at_first.said : ranks.said; !said.empty()) notes.push_back(said);
+    if (const std::string& said = ranks.note.empty() ? at_first.note : ranks.note; !said.empty()) notes.push_back(said);
     return run_on_first(some, ranks.ranks, [&](MPI_Comm fewer) {
       SharedBeam shared(fewer, scene, notes);
       notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());

@@ -13,7 +13,7 @@ int run_envelope(Job job) {
   if (!scene.vehicles.empty()) shared.prepare(scene, job.notes);
   for (const std::string& note : options::notes_on_unused(options::in_force())) job.notes.push_back(note);
   print_notes(job.comm, job.notes);
-  const norm::NormCheck check = norm_check(scene, trains_at_rest(scene, shared));
+  const norm::NormCheck check = norm_check(scene, static_trains(scene, shared));
   if (check.effects().loads.empty())
     throw InputError(
         "scene_analysis: there is nothing to envelop; allowed: load_forces, train_vehicles, norm_load_models");

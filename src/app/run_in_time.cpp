@@ -35,11 +35,11 @@ int run_in_time(Job job) {
       notes.push_back(fmt::format(
           "the residual of the linearised vehicles exceeded {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
-          scene.model.most_residual));
+          scene.model.residual_limit));
     } else {
       --halvings;
       scene.model.step = 0.5 * end.step;
-      accuracy.promise_nothing();
+      accuracy.reject_all();
       notes.push_back(fmt::format("the run is repeated with steps of {:g} s, without error estimates: {}",
                                   *scene.model.step, end.why));
     }

@@ -83,7 +83,7 @@ int run_modes(Job job) {
         "  damped modes are listed below |lambda| = 1/b = {:.6g} rad/s: above it the elements decide, not the beam\n",
         1.0 / std::abs(ab.b));
   if (scene.output.file.empty()) return 0;
-  const SignalsNoted noted;  // a moment, and the file is complete
+  const DeferredSignals noted;  // a moment, and the file is complete
   results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
   record_model(scene, notes, recorder);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);

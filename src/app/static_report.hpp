@@ -32,7 +32,7 @@ int report_at_rest(Job& job, const Found& found) {
     results::print_verdicts(verdicts, scene.unusual);
   }
   if (scene.output.file.empty()) return 0;
-  const SignalsNoted noted;  // a moment, and the file is complete
+  const DeferredSignals noted;  // a moment, and the file is complete
   results::Layout layout;
   layout.constants = stations({}, job.beam.beam->mesh().span_ends());
   results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, scene), scene.options);

@@ -48,9 +48,9 @@ StepByStep::StepByStep(const Scene& scene)
 
 void StepByStep::see(const integrate::Instant& instant) {
   watch_->sample(instant);
-  if (instant.purpose == integrate::Purpose::look) return;
+  if (instant.purpose == integrate::Purpose::peaks) return;
   time_ = instant.time;
-  outputs_->fill(watch_->seen(), values_);
+  outputs_->fill(watch_->observed(), values_);
 }
 
 double StepByStep::interval() const { return passage_->plan().interval * static_cast<double>(passage_->plan().stored); }

@@ -52,7 +52,7 @@ double total(MPI_Comm comm, double share) {
 
 /// The promise against what a refined run gives. False where it is broken.
 bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const ResponseExtremes& peaks) {
-  if (!scene.beam) return report_alone(comm, scene, accuracy);
+  if (!scene.beam) return report_multibody(comm, scene, accuracy);
   const Scene fine = refined(scene);
   const ResponseExtremes truth = [&] {
     const results::Stage stage("the refined run of -accuracy_report");
@@ -123,7 +123,7 @@ class WatchedRun {
   bool may_shorten_;  // steps, after StepTooLong
   Passage& passage_;
   coupling::System& system_;
-  std::optional<SignalsNoted> noted_{std::in_place};  // from here on what is stored is to stay readable
+  std::optional<DeferredSignals> noted_{std::in_place};  // from here on what is stored is to stay readable
   Outputs outputs_;
   results::Recorder recorder_;
   RunObserver watch_;
@@ -131,7 +131,7 @@ class WatchedRun {
   double before_, reached_;  // s: of wall time and of motion, of the run that this one goes on from, and so far
   results::Progress progress_;
   Clock::time_point begin_ = Clock::now();
-  Asked asked_;
+  Requests asked_;
   bool reaches_end_ = false;
   bool repeated_ = false;  // or will be
 };
@@ -155,8 +155,8 @@ WatchedRun::WatchedRun(ReadyRun& ready, results::Repeated repeated, bool may_sho
   if (ready.filters_forces && prints())
     watch_.keep_wheel_forces({scene_.output.wheel_low_pass, scene_.output.unloading_level, plan, ready.wheels});
   if (!scene_.output.passages.empty()) watch_.record_axle_passages({scene_, plan.time_step});
-  if (!scene_.limits.empty()) watch_.judge();
-  watch_.tell_beyond_trials(ready.accuracy.seen_until);
+  if (!scene_.limits.empty()) watch_.check_limits();
+  watch_.check_extrapolation(ready.accuracy.covered_until);
   if (ready.archive) watch_.keep(*ready.archive);
   ready.archive.reset();
 }
@@ -169,7 +169,7 @@ void WatchedRun::step_through() {
                  reached_ = t;
                  progress_.update(t, steps);
                  results::Stage::advance(t / passage_.plan().end_time);
-                 asked_ = asked_on_any(ready_.job.comm, checkpoints_.wanted());
+                 asked_ = requests_on_any(ready_.job.comm, checkpoints_.wanted());
                  return asked_.signal == 0;
                },
                [&](double t) {
@@ -191,14 +191,14 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   summary.solves = system_.beam_solves();
   summary.factorisations = system_.factorisations();
   summary.wall_seconds = wall;
-  summary.linear_defect = system_.defect();
+  summary.linear_defect = system_.linearisation_residual();
   if (system_.structure() != nullptr && system_.structure()->energy_left())
     summary.energy_left = total(ready_.job.comm, *system_.structure()->energy_left());
   summary.static_error = system_.static_error();
   const std::vector<std::string> withdrawn = withdraw();
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
-  const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.model.most_residual);
+  const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.model.residual_limit);
   std::vector<results::Verdict> verdicts;
   std::optional<norm::NormCheck> check;
   if (reaches_end_ && counts) {
@@ -219,16 +219,17 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
 /// The promises that do not hold, in words.
 std::vector<std::string> WatchedRun::withdraw() {
   Accuracy& accuracy = ready_.accuracy;
-  return {accuracy.withdrawn(watch_.losses()), accuracy.invalidate_by_new_event(watch_.beyond_trials().new_event()),
-          accuracy.invalidate_if_rougher(watch_.bends_beyond_trials(), scene_.accuracy),
+  return {accuracy.invalidate_by_contact_loss(watch_.losses()),
+          accuracy.invalidate_by_new_event(watch_.extrapolation_check().new_event()),
+          accuracy.invalidate_if_rougher(watch_.roughness_ratio(), scene_.accuracy),
           accuracy.invalidate_at_end(watch_.ends_unsettled())};
 }
 
 /// Where the scene asks for it; with its own verdicts.
 std::optional<norm::NormCheck> WatchedRun::judge_by_norm(std::vector<results::Verdict>& verdicts) {
   if (!scene_.norm) return std::nullopt;
-  norm::NormCheck check = norm_check(scene_, {train_at_rest("train", system_.weights().all())});
-  if (compares_with_lm71(scene_)) check.judge(passed_once(scene_, watch_.finished_peaks()));
+  norm::NormCheck check = norm_check(scene_, {static_train("train", system_.weights().all())});
+  if (compares_with_lm71(scene_)) check.compare(peaks_of_run(scene_, watch_.finished_peaks()));
   check.find(verdicts);
   check.record(recorder_);
   return check;
@@ -237,7 +238,7 @@ std::optional<norm::NormCheck> WatchedRun::judge_by_norm(std::vector<results::Ve
 /// What no summary holds.
 void WatchedRun::say_what_happened(bool by_signal) const {
   if (!prints()) return;
-  if (const auto& crowded = system_.fleet().crowded(); crowded.contact >= 0) {
+  if (const auto& crowded = system_.fleet().unmodelled_contact(); crowded.contact >= 0) {
     const train::WheelContact& c = system_.fleet().wheels[static_cast<std::size_t>(crowded.contact)];
     fmt::print(
         "  note: {} of vehicle {} overlapped the track's profile at more than {} points (first at x = {:g} m): the {} "
@@ -259,7 +260,7 @@ RunEnd WatchedRun::take() {
       checkpoints_.write(reached_, wall_seconds());
       by_signal = true;
     }
-    if (system_.defect() <= scene_.model.most_residual) check_balance(scene_, watch_.extremes());
+    if (system_.linearisation_residual() <= scene_.model.residual_limit) check_balance(scene_, watch_.extremes());
   } catch (const FileError& error) {
     leave_together(comm, error);
   } catch (const StepTooLong& error) {
@@ -284,7 +285,7 @@ RunEnd WatchedRun::take() {
   say_what_happened(by_signal);
   if (reaches_end_ && !passage_.stopped_at_limit()) checkpoints_.forget();
   noted_.reset();
-  if (reaches_end_ && summary.linear_defect > scene_.model.most_residual) return {0, Retry::mechanisms, {}, 0.0};
+  if (reaches_end_ && summary.linear_defect > scene_.model.residual_limit) return {0, Retry::mechanisms, {}, 0.0};
   check_deflection(comm, scene_, summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, watch_.finished_peaks()))

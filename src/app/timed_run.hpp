@@ -8,7 +8,7 @@
 namespace traverse::app {
 
 /// Whether a run has to be taken again, and how. mechanisms: linear vehicles were out of balance by more than
-/// Scene::most_residual; shorter_steps: StepTooLong.
+/// NumericalModel::residual_limit; shorter_steps: StepTooLong.
 enum class Retry { none, mechanisms, shorter_steps };
 
 struct RunEnd {

@@ -1,6 +1,6 @@
-// State as bytes. An object has one function `void keep(base::Bytes& bytes) { bytes(a_, b_); }` that names what belongs
-// to its state: the same line writes it and reads it back, to the last bit. State that ranks share goes through Archive
-// (archive.hpp).
+// State as bytes. An object has one function `void keep(base::Bytes& bytes) { bytes(a_, b_); }` that lists the members
+// of its state; the same line writes and reads them, exact to the last bit. State that is distributed over ranks uses
+// Archive (archive.hpp).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,109 +19,109 @@ namespace traverse::base {
 
 class Bytes {
  public:
-  /// Empty, to be written.
+  /// An empty object for writing.
   Bytes() = default;
-  /// To be read from its beginning; what it reads from must outlive it.
+  /// Reads from the first byte of `from`, which must outlive this object.
   explicit Bytes(std::span<const char> from) : from_(from), reads_(true) {}
 
   bool reads() const { return reads_; }
   const std::string& written() const { return to_; }
-  /// Whether all has been read.
+  /// Whether all bytes have been read.
   bool at_end() const { return from_.empty(); }
 
-  /// FileError where there is less to read than asked for.
+  /// Throws FileError if fewer bytes are available than needed.
   template <class... Values>
   void operator()(Values&... values) {
-    (one(values), ...);
+    (transfer(values), ...);
   }
 
  private:
   template <class T>
-  void one(T& value) {
+  void transfer(T& value) {
     if constexpr (requires { value.keep(*this); }) {
       value.keep(*this);
     } else {
       static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "it needs a function keep(Bytes&)");
-      raw(&value, sizeof(T));
+      transfer_raw(&value, sizeof(T));
     }
   }
-  void one(bool& value) {
+  void transfer(bool& value) {
     unsigned char byte = value ? 1 : 0;
-    raw(&byte, 1);
-    if (byte > 1) damaged();  // no bool holds that
+    transfer_raw(&byte, 1);
+    if (byte > 1) damaged();  // not a value of a bool
     value = byte == 1;
   }
   template <class T>
-  void one(std::vector<T>& list) {
+  void transfer(std::vector<T>& list) {
     auto size = list.size();
-    one(size);
+    transfer(size);
     if (reads_) {
-      check_left(size);
+      check_available(size);
       list.resize(size);
     }
-    each(list.data(), size);
+    transfer_each(list.data(), size);
   }
   template <class T, std::size_t n>
-  void one(std::array<T, n>& list) {
-    each(list.data(), n);
+  void transfer(std::array<T, n>& list) {
+    transfer_each(list.data(), n);
   }
   template <class T, class U>
-  void one(std::pair<T, U>& pair) {
+  void transfer(std::pair<T, U>& pair) {
     (*this)(pair.first, pair.second);
   }
-  void one(std::string& text) {
+  void transfer(std::string& text) {
     auto size = text.size();
-    one(size);
+    transfer(size);
     if (reads_) {
-      check_left(size);
+      check_available(size);
       text.resize(size);
     }
-    raw(text.data(), size);
+    transfer_raw(text.data(), size);
   }
   template <class T>
-  void one(std::optional<T>& value) {
-    bool there = value.has_value();
-    one(there);
-    if (reads_ && there != value.has_value()) {
+  void transfer(std::optional<T>& value) {
+    bool present = value.has_value();
+    transfer(present);
+    if (reads_ && present != value.has_value()) {
       if constexpr (std::is_default_constructible_v<T>) {
-        value = there ? std::optional<T>(std::in_place) : std::nullopt;
+        value = present ? std::optional<T>(std::in_place) : std::nullopt;
       } else {
-        damaged();  // what a scene has is set up before
+        damaged();  // the scene has created such a member, or not, before
       }
     }
-    if (there) one(*value);
+    if (present) transfer(*value);
   }
   template <class T, int rows, int columns, int options>
-  void one(Eigen::Matrix<T, rows, columns, options>& matrix) {
+  void transfer(Eigen::Matrix<T, rows, columns, options>& matrix) {
     Eigen::Index m = matrix.rows(), n = matrix.cols();
     (*this)(m, n);
     if (reads_) {
-      const auto most = static_cast<Eigen::Index>(from_.size());
-      if (m < 0 || n < 0 || (n > 0 && m > most / n)) damaged();
+      const auto available = static_cast<Eigen::Index>(from_.size());
+      if (m < 0 || n < 0 || (n > 0 && m > available / n)) damaged();
       matrix.resize(m, n);
     }
-    raw(matrix.data(), sizeof(T) * static_cast<std::size_t>(matrix.size()));
+    transfer_raw(matrix.data(), sizeof(T) * static_cast<std::size_t>(matrix.size()));
   }
   template <class T>
-  void each(T* values, std::size_t count) {
+  void transfer_each(T* values, std::size_t count) {
     if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
-      raw(values, sizeof(T) * count);
+      transfer_raw(values, sizeof(T) * count);
     } else {
-      for (std::size_t i = 0; i < count; ++i) one(values[i]);
+      for (std::size_t i = 0; i < count; ++i) transfer(values[i]);
     }
   }
 
   [[noreturn]] static void damaged() { throw FileError("the checkpoint does not fit this scene"); }
-  void check_left(std::size_t least) const {
+  void check_available(std::size_t least) const {
     if (least > from_.size()) damaged();
   }
-  void raw(void* values, std::size_t size) {
+  void transfer_raw(void* values, std::size_t size) {
     if (size == 0) return;
     if (!reads_) {
       to_.append(static_cast<const char*>(values), size);
       return;
     }
-    check_left(size);
+    check_available(size);
     std::memcpy(values, from_.data(), size);
     from_ = from_.subspan(size);
   }

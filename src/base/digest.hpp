@@ -1,5 +1,5 @@
-// A short number that tells texts, or rows of numbers, apart (FNV-1a of 64 bits). It tells what has been damaged, not
-// what somebody has changed on purpose.
+// A 64-bit hash (FNV-1a) that distinguishes texts or rows of numbers. It detects accidental damage, not deliberate
+// changes.
 #pragma once
 
 #include <bit>
@@ -12,13 +12,13 @@ namespace traverse::base {
 class Digest {
  public:
   Digest() = default;
-  /// To go on from the value of another.
+  /// Continues from the value of another digest.
   explicit Digest(std::uint64_t value) : value_(value) {}
   void add(std::string_view text) {
     for (const char c : text) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211U;
   }
-  /// By whole numbers: another digest than that of their bytes, in an eighth of the time. The product carries nothing
-  /// downwards: without the shift, two changed signs would cancel.
+  /// Adds whole numbers instead of single bytes; the digest differs from that of the bytes and needs an eighth of the
+  /// time. A product changes higher bits only: without the shift, two changed signs would cancel.
   void add(std::span<const double> numbers) {
     for (const double number : numbers) {
       value_ = (value_ ^ std::bit_cast<std::uint64_t>(number)) * 1099511628211U;

@@ -13,8 +13,10 @@ namespace traverse::multibody {
 
 namespace {
 
-constexpr double engagement = 1e-9;         // m or rad: over which the damper of a spring that lets go comes on
-constexpr double rounding_of_zero = 1e-12;  // of a table's largest value: what interpolation leaves of a zero
+constexpr double engagement =
+    1e-9;  // m or rad: range over which the damper of a spring that can disengage increases from zero
+constexpr double rounding_of_zero =
+    1e-12;  // relative to a table's largest value: rounding error of an interpolated zero
 
 std::string text(double value) {
   std::ostringstream out;
@@ -38,7 +40,7 @@ void check_points(const std::vector<double>& x, const std::vector<double>& y) {
   }
 }
 
-/// What the spring is stretched or pressed by once it is taut; 0 where it is loose.
+/// The elongation relative to the end of the loose range; 0 if the spring is loose.
 double engaged(const ForceLaw& law, double elongation) {
   if (elongation > law.gap && law.side != Side::compression) return elongation - law.gap;
   if (elongation < -law.gap && law.side != Side::tension) return elongation + law.gap;
@@ -104,21 +106,21 @@ std::string Polyline::opposing() const {
 }
 
 std::optional<double> ForceLaw::elongation_at(double tension) const {
-  if (tension == 0.0 && lets_go()) return 0.0;
+  if (tension == 0.0 && can_disengage()) return 0.0;
   const std::optional<double> x = elastic.inverse(tension);
-  if (!x || !lets_go()) return x;
+  if (!x || !can_disengage()) return x;
   const double e = *x + std::copysign(gap, *x);
   return engaged(*this, e) != 0.0 ? std::optional(e) : std::nullopt;
 }
 
 Tension tension(const ForceLaw& law, double elongation, double rate) {
-  const bool lets_go = law.lets_go();
-  const double x = lets_go ? engaged(law, elongation) : elongation;
-  if (lets_go && x == 0.0) return {};
-  const double share = lets_go ? std::min(1.0, std::abs(x) / engagement) : 1.0;
+  const bool can_disengage = law.can_disengage();
+  const double x = can_disengage ? engaged(law, elongation) : elongation;
+  if (can_disengage && x == 0.0) return {};
+  const double share = can_disengage ? std::min(1.0, std::abs(x) / engagement) : 1.0;
   const double spring = law.elastic.value(x), full_damper = law.damper.value(rate), damper = share * full_damper;
   Tension t;
-  if (lets_go && !((spring + damper) * x > 0.0)) {
+  if (can_disengage && !((spring + damper) * x > 0.0)) {
     t.dissipation = -spring * rate;
     return t;
   }
@@ -131,7 +133,7 @@ Tension tension(const ForceLaw& law, double elongation, double rate) {
 }
 
 double stored_energy(const ForceLaw& law, double elongation) {
-  return law.elastic.integral(law.lets_go() ? engaged(law, elongation) : elongation);
+  return law.elastic.integral(law.can_disengage() ? engaged(law, elongation) : elongation);
 }
 
 }  // namespace traverse::multibody

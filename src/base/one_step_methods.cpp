@@ -20,8 +20,8 @@ void scale(Weights& weights, double by) {
   for (double& w : weights) w *= by;
 }
 
-/// A Runge-Kutta method by Butcher's table, whose first row is the start of the step and whose last row is its end:
-/// v_i = v_n + h sum_k a_ik w_k with w_k = w_n + h sum_j a_kj A_j.
+/// A Runge-Kutta method from its Butcher table, whose first row is the start of the step and whose last row is its
+/// end: v_i = v_n + h sum_k a_ik w_k with w_k = w_n + h sum_j a_kj A_j.
 template <int s>
 Method runge_kutta(const double (&a)[s][s]) {
   static_assert(s <= most_accelerations);
@@ -47,7 +47,7 @@ Method runge_kutta(const double (&a)[s][s]) {
   return m;
 }
 
-/// Adds the estimate of errors: by the weights of an embedded method of one order less.
+/// Adds the error estimate, from the weights of an embedded method of one order less.
 template <int s>
 void embed(const double (&weights)[s], const double (&a)[s][s], Method& m) {
   for (int k = 0; k < s; ++k) {
@@ -105,7 +105,8 @@ Method esdirk4() {
 }
 
 Method generalised_alpha(double radius) {
-  const double alpha = (radius - 1.0) / (radius + 1.0);  // the step's inertia: M ((1 - alpha) a_{n+1} + alpha a_n)
+  const double alpha =
+      (radius - 1.0) / (radius + 1.0);  // inertia forces of the step: M ((1 - alpha) a_{n+1} + alpha a_n)
   const double gamma = 0.5 - alpha, beta = 0.25 * (1.0 - alpha) * (1.0 - alpha);
   // a_{n+1} = (A_1 - alpha A_0)/(1 - alpha)
   const double next0 = -alpha / (1.0 - alpha), next1 = 1.0 / (1.0 - alpha);

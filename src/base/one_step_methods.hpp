@@ -1,8 +1,9 @@
-// One-step methods for second-order equations of motion, written for accelerations: what a stage and a step combine.
+// One-step methods for second-order equations of motion in terms of accelerations: the coefficients of stages and
+// steps.
 //
 //   stage:  w = w~ + rate*a,  v = v~ + displacement*a,   w~ = w_n + sum_j a_in_w[j] A_j
 //                                                        v~ = v_n + w_in_v w_n + sum_j a_in_v[j] A_j
-//   with a, the new A, from the equations of motion at `time`; beam and vehicles alike.
+//   with a, the new A, from the equations of motion at `time`. Beam and vehicles use the same rules.
 #pragma once
 
 #include <array>
@@ -17,48 +18,48 @@ using Weights = std::array<double, most_accelerations>;
 
 struct StageRule {
   double time = 0.0;  // s, from the start of the step
-  int known = 0;      // accelerations A_0 ... A_{known-1}; the stage's own becomes A_known
+  int known = 0;      // number of accelerations A_0 ... A_{known-1}; the stage's acceleration becomes A_known
   double w_in_v = 0.0;
   Weights a_in_v{}, a_in_w{};
   double rate = 0.0, displacement = 0.0;  // s, s2
 };
 
-/// The end of the step from all its accelerations; the last one belongs to the equations of motion there.
+/// The end of the step from all its accelerations, the last of which satisfies the equations of motion at the end.
 struct StepRule {
   int known = 0;
   double w_in_v = 0.0;
   Weights a_in_v{}, a_in_w{};
   Weights a_next{};  // the next step's A_0
-  Weights power{};   // s: integral over the step of a power known at the accelerations' states
-  /// By how much the end of an embedded method of one order less is elsewhere: the estimate of the step's error; all 0
-  /// where there is no such method. error_in_a is that of w over the length of the step.
+  Weights power{};   // s: weights of the integral over the step of a power at the accelerations' states
+  /// The result of the step minus that of an embedded method of one order less, as an estimate of the step's error; all
+  /// 0 without such a method. error_in_a is the error of w over the length of the step.
   Weights error_in_v{}, error_in_w{}, error_in_a{};
 };
 
-/// Stage i has the i + 1 accelerations before it; the last stage is the end of the step.
+/// Stage i uses the i + 1 accelerations before it; the last stage is the end of the step.
 struct Method {
   std::vector<StageRule> stages;
   StepRule step;
-  /// From steps of 1 to steps of h, s.
+  /// Scales the coefficients from steps of 1 to steps of h, s.
   void scale_to(double h);
 };
 
-/// Additive Runge-Kutta ARK4(3)6L[2]SA's implicit part (Kennedy and Carpenter 2003): order 4, L-stable, five implicit
-/// stages. The same numbers as PETSc's ARKIMEX 4, fully implicit.
+/// The implicit part of the additive Runge-Kutta method ARK4(3)6L[2]SA (Kennedy and Carpenter 2003): order 4, L-stable,
+/// five implicit stages. Its coefficients are those of PETSc's ARKIMEX 4, fully implicit.
 Method esdirk4();
-/// Generalised-alpha with all forces at the end of the step (Wood, Bossak and Zienkiewicz 1980): order 2, one stage;
-/// what oscillates fast within a step shrinks by `radius` (0..1) each step. 1: the trapezoidal rule.
+/// Generalised-alpha with all forces at the end of the step (Wood, Bossak and Zienkiewicz 1980): order 2, one stage.
+/// Each step multiplies oscillations that are fast within a step by `radius` (0..1). 1: the trapezoidal rule.
 Method generalised_alpha(double radius);
 
-/// A number that a method takes from an option.
+/// A parameter of a method, read from an option.
 struct MethodParameter {
-  const char* option = nullptr;  // with its dash; null: there is none
+  const char* option = nullptr;  // with its dash; null: no parameter
   const char* words = "";
-  double value = 0.0;  // where the option is not given
+  double value = 0.0;  // default
   double least = 0.0, most = 0.0;
 };
 
-/// A method as `-ts_type NAME` chooses it. Its tests walk the rows (order_conditions_test.cpp).
+/// A method with its name in `-ts_type NAME`. The tests in order_conditions_test.cpp check every row.
 struct MethodRow {
   const char* name;
   int order;
@@ -66,15 +67,15 @@ struct MethodRow {
   Method (*make)(double parameter);
   MethodParameter parameter{};
 
-  /// Of the beam in a step.
+  /// Number of solves of the beam per step.
   double solves() const { return static_cast<double>(make(parameter.value).stages.size()); }
-  /// Whether there is an embedded method, whose difference is the estimate of a step's error.
+  /// Whether the method has an embedded method, whose difference estimates the step's error.
   bool estimates_errors() const;
 };
 
-/// All of them, the default first.
+/// All methods, the default first.
 std::span<const MethodRow> methods();
-/// Null: none has this name.
+/// The method of this name, or null.
 const MethodRow* find_method(std::string_view name);
 
 }  // namespace traverse::structure

@@ -1,4 +1,4 @@
-// The peaks that a passage of a train leaves, whoever has computed it.
+// The peaks of one passage of a train, independent of the solver that computed it.
 #pragma once
 
 #include <vector>
@@ -10,13 +10,13 @@ namespace traverse::base {
 /// Magnitudes at a station: m, m/s2, N m, m/s2.
 struct ProbePeaks {
   Extreme deflection, acceleration, moment;
-  Extreme low_passed{};  // of the acceleration, where it was filtered
+  Extreme low_passed{};  // of the acceleration, if it was filtered
 };
 
 struct PassagePeaks {
   std::vector<ProbePeaks> peaks;
   double least_wheel_force = 0.0, greatest_wheel_force = 0.0;  // N, of all wheels
-  double contact_losses = 0.0, longest_loss = 0.0;             // of all wheels; s, to a step
+  double contact_losses = 0.0, longest_loss = 0.0;             // of all wheels; number, and s to within a step
 };
 
 }  // namespace traverse::base

@@ -1,5 +1,5 @@
-// Converts PETSc's error codes to C++ exceptions; an exception thrown inside a callback is kept and rethrown once PETSc
-// has returned.
+// Converts PETSc's error codes to C++ exceptions. An exception thrown inside a callback is stored and rethrown after
+// PETSc has returned.
 #include "base/petsc.hpp"
 
 #include <new>
@@ -7,17 +7,17 @@
 
 namespace traverse::base {
 namespace {
-std::exception_ptr kept;  // the exception on its way through PETSc's frames
+std::exception_ptr pending;  // the exception that passes through PETSc's frames as an error code
 }
 
 PetscErrorCode keep_exception() noexcept {
-  if (!kept) kept = std::current_exception();
+  if (!pending) pending = std::current_exception();
   return PETSC_ERR_LIB;
 }
 
 void check(PetscErrorCode code) {
   if (code == 0) return;
-  if (kept) std::rethrow_exception(std::exchange(kept, nullptr));
+  if (pending) std::rethrow_exception(std::exchange(pending, nullptr));
   if (code == PETSC_ERR_MEM) throw std::bad_alloc();
   const char* text = nullptr;
   (void)PetscErrorMessage(code, &text, nullptr);

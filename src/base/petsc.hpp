@@ -11,15 +11,14 @@
 
 namespace traverse::base {
 
-/// Turns a PETSc error code into a SolverError; the one place where codes become exceptions.
+/// Turns a PETSc error code into a SolverError. Only this function turns codes into exceptions.
 void check(PetscErrorCode code);
 
-/// Keeps the exception now in flight for the next `check`, and returns a PETSc error code.
-/// Only for use by `guard`.
+/// Stores the current exception for the next `check` and returns a PETSc error code. Only `guard` calls it.
 PetscErrorCode keep_exception() noexcept;
 
-/// Runs `body` inside a PETSc callback: an exception becomes a PETSc error code, and comes out again,
-/// whole, at the `check` around the PETSc call that led here. Nothing is thrown across PETSc's frames.
+/// Runs `body` inside a PETSc callback. An exception becomes a PETSc error code, and the `check` around the PETSc call
+/// rethrows it unchanged. No exception passes through PETSc's frames.
 template <class Body>
 PetscErrorCode guard(Body&& body) noexcept {
   try {
@@ -30,7 +29,7 @@ PetscErrorCode guard(Body&& body) noexcept {
   }
 }
 
-/// Move-only owner of one PETSc object (Mat, Vec, TS, EPS, ...). What is borrowed stays raw.
+/// Move-only owner of one PETSc object (Mat, Vec, TS, EPS, ...). Borrowed objects remain raw.
 template <class Object>
 class Handle {
  public:
@@ -52,7 +51,7 @@ class Handle {
     *this = Handle();
     return &object_;
   }
-  operator Object() const { return object_; }  // NOLINT: a handle stands for its object
+  operator Object() const { return object_; }  // NOLINT: a handle is used in place of its object
 
  private:
   Object object_ = nullptr;

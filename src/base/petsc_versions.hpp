@@ -1,5 +1,5 @@
-// All that PETSc and SLEPc 3.18 to 3.25 name or type differently and Traverse calls. scripts/petsc_versions.sh compiles
-// against each of them.
+// The names and types of PETSc and SLEPc that Traverse uses and that differ between 3.18 and 3.25.
+// scripts/petsc_versions.sh compiles against each version.
 #pragma once
 
 #include <petscmat.h>
@@ -10,19 +10,19 @@
 
 namespace traverse::base {
 
-/// What callbacks return: PETSC_SUCCESS from 3.19 on, where codes may be a type of their own.
+/// The success code of callbacks: PETSC_SUCCESS from 3.19 on, where codes may have a separate type.
 inline constexpr auto success = static_cast<PetscErrorCode>(0);
 
-/// What setfromoptions of a type takes: PetscOptionItems is a pointer itself from 3.23 on.
+/// The argument type of setfromoptions: PetscOptionItems is a pointer from 3.23 on.
 using OptionItems = std::conditional_t<std::is_pointer_v<PetscOptionItems>, PetscOptionItems, PetscOptionItems*>;
 
-/// The last argument of MatShellSetOperation: a function that returns nothing, from 3.24 on a PetscErrorCode.
+/// The last argument of MatShellSetOperation: a function without a result, from 3.24 on with a PetscErrorCode.
 template <class Operation>
 Operation operation_of(PetscErrorCode (*)(Mat, MatOperation, Operation));
 using ShellOperation = decltype(operation_of(MatShellSetOperation));
 
-/// What PETSc says of the error at hand besides its kind; empty where it says nothing. `message` is PetscErrorMessage,
-/// whose last argument is of constant text from 3.25 on.
+/// PETSc's specific text on the present error; empty if there is none. `message` is PetscErrorMessage, whose last
+/// argument points to constant text from 3.25 on.
 template <class Text>
 std::string details_of(PetscErrorCode code, PetscErrorCode (*message)(PetscErrorCode, const char**, Text**)) {
   Text* details = nullptr;
@@ -30,8 +30,8 @@ std::string details_of(PetscErrorCode code, PetscErrorCode (*message)(PetscError
   return details != nullptr ? details : "";
 }
 
-/// An option that has another name from 3.25 on. Traverse takes both and calls it by the first one, with any PETSc;
-/// `known` is the name that the PETSc at hand reads.
+/// An option with a different name from 3.25 on. Traverse accepts both names and uses the first one with any PETSc;
+/// `known` is the name that the present PETSc reads.
 struct RenamedOption {
   const char *name, *newer;
   constexpr const char* known() const { return PETSC_VERSION_LT(3, 25, 0) ? name : newer; }

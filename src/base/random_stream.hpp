@@ -1,4 +1,4 @@
-// Random numbers of a named stream: number i of a stream is the same whatever else is drawn, and however often.
+// Random numbers of a named stream: number i of a stream is independent of all other draws.
 #pragma once
 
 #include <cmath>

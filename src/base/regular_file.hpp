@@ -1,4 +1,4 @@
-// The bytes of a file that is one: no pipe, which waits, no device, which has no end, no folder.
+// Reads a regular file; pipes (which wait), devices (which have no end) and folders are rejected.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace traverse::base {
 
-/// Fills in `bytes`. Otherwise why that cannot be, in words: "is a folder, not a file", "the file cannot be read:
-/// Input/ output error", or `too_long` where it has more than `most`.
+/// Fills `bytes` and returns an empty text; on failure returns the reason in words: "is a folder, not a file", "the
+/// file cannot be read: Input/output error", or `too_long` for a file of more than `most` bytes.
 std::string read_regular_file(const std::string& path, std::size_t most, std::string& bytes);
 inline constexpr const char* too_long = "too long";
 

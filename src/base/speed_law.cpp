@@ -31,8 +31,8 @@ void check_rows(const std::vector<double>& x, const std::vector<double>& speeds)
     if (!(x[i + 1] > x[i])) throw InputError("the first column of a table of speeds must rise strictly");
 }
 
-/// The smallest s above 0 with v s + a/2 s^2 = d, for d, v not below 0 and at least one of v, a above 0; infinite:
-/// none.
+/// The smallest s above 0 with v s + a/2 s^2 = d, for d, v not below 0 and at least one of v, a above 0; infinite if
+/// there is none.
 double time_for(double d, double v, double a) {
   const double square = v * v + 2.0 * a * d;
   return square < 0.0 ? infinite : 2.0 * d / (v + std::sqrt(square));
@@ -44,7 +44,7 @@ SpeedLaw SpeedLaw::over_time(std::vector<double> times, std::vector<double> spee
   check_rows(times, speeds);
   direction_of(speeds);
   SpeedLaw law;
-  law.way_ = TimeFunction::integral(0.0, std::move(times), std::move(speeds));
+  law.distance_ = TimeFunction::integral(0.0, std::move(times), std::move(speeds));
   if (law.fastest() == 0.0) throw InputError("every speed from t = 0 on is 0; wanted: at least one that is not");
   return law;
 }
@@ -56,41 +56,41 @@ SpeedLaw SpeedLaw::over_place(std::vector<double> places, std::vector<double> sp
     if (speeds[i] == 0.0 && speeds[i + 1] == 0.0)
       throw InputError("rows " + std::to_string(i + 1) + " and " + std::to_string(i + 2) +
                        " have the speed 0: what stands never comes from one to the other");
-  if (direction < 0.0) {  // as it is met: everything counts along the run
+  if (direction < 0.0) {  // rows in the order of the motion
     std::reverse(places.begin(), places.end());
     std::reverse(speeds.begin(), speeds.end());
   }
-  std::vector<double> times = {0.0}, met = {0.0};
-  double at = direction * start;
+  std::vector<double> times = {0.0}, row_speeds = {0.0};
+  double position = direction * start;
   std::size_t next = 0;
-  while (next < places.size() && direction * places[next] <= at) ++next;
+  while (next < places.size() && direction * places[next] <= position) ++next;
   if (next == 0) {
-    met[0] = std::abs(speeds.front());
+    row_speeds[0] = std::abs(speeds.front());
   } else if (next == places.size()) {
-    met[0] = std::abs(speeds.back());
+    row_speeds[0] = std::abs(speeds.back());
   } else {
-    const double before = speeds[next - 1] * speeds[next - 1], behind = speeds[next] * speeds[next];
-    const double part = (at - direction * places[next - 1]) / std::abs(places[next] - places[next - 1]);
-    met[0] = std::sqrt(before + (behind - before) * part);
+    const double squared_before = speeds[next - 1] * speeds[next - 1], squared_after = speeds[next] * speeds[next];
+    const double fraction = (position - direction * places[next - 1]) / std::abs(places[next] - places[next - 1]);
+    row_speeds[0] = std::sqrt(squared_before + (squared_after - squared_before) * fraction);
   }
-  if (met[0] == 0.0 && (next == 0 || next == places.size()))
+  if (row_speeds[0] == 0.0 && (next == 0 || next == places.size()))
     throw InputError("at the start, at x = " + std::to_string(start) + " m, the speed is 0 for good");
   for (; next < places.size(); ++next) {
     const double place = direction * places[next], speed = std::abs(speeds[next]);
-    times.push_back(times.back() + 2.0 * (place - at) / (met.back() + speed));
-    met.push_back(speed);
-    at = place;
+    times.push_back(times.back() + 2.0 * (place - position) / (row_speeds.back() + speed));
+    row_speeds.push_back(speed);
+    position = place;
     if (speed == 0.0 && next + 1 == places.size()) break;
   }
-  if (times.size() == 1) return SpeedLaw(direction * met[0]);
-  for (double& speed : met) speed *= direction;
+  if (times.size() == 1) return SpeedLaw(direction * row_speeds[0]);
+  for (double& speed : row_speeds) speed *= direction;
   SpeedLaw law;
-  law.way_ = TimeFunction::integral(0.0, std::move(times), std::move(met));
+  law.distance_ = TimeFunction::integral(0.0, std::move(times), std::move(row_speeds));
   return law;
 }
 
 TimeFunction SpeedLaw::from(double x) const {
-  TimeFunction place = way_;
+  TimeFunction place = distance_;
   place.shift(x);
   return place;
 }
@@ -108,17 +108,17 @@ double SpeedLaw::time_of(double distance) const {
     if (speed(0.0) != 0.0) return distance / speed(0.0);
     return distance == 0.0 ? 0.0 : infinite;
   }
-  const double along = direction(), wanted = along * distance;
-  if (wanted <= 0.0) return wanted < 0.0 ? -infinite : 0.0;
+  const double along = direction(), target = along * distance;
+  if (target <= 0.0) return target < 0.0 ? -infinite : 0.0;
   std::vector<double> from = {0.0};
   for (const double t : kinks())
     if (t > 0.0) from.push_back(t);
   for (std::size_t i = 0; i < from.size(); ++i) {
-    const double gone = along * way_.value(from[i]), v = along * way_.rate(from[i]);
-    const double a = along * way_.acceleration(from[i]), left = wanted - gone;
-    if (left <= 0.0) return from[i];
+    const double covered = along * distance_.value(from[i]), v = along * distance_.rate(from[i]);
+    const double a = along * distance_.acceleration(from[i]), remaining = target - covered;
+    if (remaining <= 0.0) return from[i];
     if (v <= 0.0 && a <= 0.0) continue;
-    const double t = from[i] + time_for(left, v, a);
+    const double t = from[i] + time_for(remaining, v, a);
     if (i + 1 == from.size() || t <= from[i + 1]) return t;
   }
   return infinite;
@@ -127,9 +127,9 @@ double SpeedLaw::time_of(double distance) const {
 double SpeedLaw::standstill() const {
   if (constant()) return speed(0.0) == 0.0 ? 0.0 : infinite;
   const std::vector<double> times = kinks();
-  if (way_.rate(times.back()) != 0.0) return infinite;
+  if (distance_.rate(times.back()) != 0.0) return infinite;
   std::size_t last = times.size() - 1;
-  while (last > 0 && way_.rate(times[last - 1]) == 0.0) --last;
+  while (last > 0 && distance_.rate(times[last - 1]) == 0.0) --last;
   return std::max(0.0, times[last]);
 }
 

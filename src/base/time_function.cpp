@@ -48,7 +48,7 @@ std::vector<double> natural_curvatures(const std::vector<double>& t, const std::
   return curvature;
 }
 
-/// The interval [k, k+1] of `times` that holds t.
+/// The index k of the interval [k, k+1] of `times` that contains t.
 std::size_t interval(const std::vector<double>& times, double t) {
   const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, t);
   return static_cast<std::size_t>(next - times.begin()) - 1;
@@ -80,12 +80,12 @@ TimeFunction TimeFunction::integral(double value, std::vector<double> times, std
   return f;
 }
 
-// Piece k of an integral ends at the time k; the last one begins at the last time.
+// Piece k of an integral ends at time k; the last piece begins at the last time.
 int TimeFunction::piece_at(double t) const {
   return static_cast<int>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin());
 }
 
-bool TimeFunction::take_piece(double t) { return std::exchange(piece_, piece_at(t)) != piece_; }
+bool TimeFunction::select_piece(double t) { return std::exchange(piece_, piece_at(t)) != piece_; }
 
 TimeFunction::Piece TimeFunction::piece(double t) const {
   const int number = piece_ < 0 ? piece_at(t) : piece_;

@@ -1,4 +1,4 @@
-// Characters of UTF-8.
+// Lengths of UTF-8 characters.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace traverse::base {
 
-/// Bytes of the UTF-8 character that starts at `at`; 0 where none does.
+/// The number of bytes of the UTF-8 character that starts at `at`; 0 if no valid character starts there.
 inline std::size_t length_of_character(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(at);
@@ -21,10 +21,10 @@ inline std::size_t length_of_character(std::string_view text, std::size_t at) {
     if ((byte(i) & 0xc0) != 0x80) return 0;
   }
   if (length < 2) return length;
-  const unsigned char second = byte(at + 1);  // none is written longer than needed, none is a surrogate or too high
-  const bool strange = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
+  const unsigned char second = byte(at + 1);  // rejects overlong forms, surrogates and values above U+10FFFF
+  const bool invalid = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
                        (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
-  return strange ? 0 : length;
+  return invalid ? 0 : length;
 }
 
 }  // namespace traverse::base

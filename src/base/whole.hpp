@@ -1,11 +1,11 @@
-// Whole numbers from ratios of what a user gives, which may be larger than any whole number can be.
+// Conversion to int of ratios of user values, which may exceed the range of int.
 #pragma once
 
 #include <limits>
 
 namespace traverse::base {
 
-/// x without its fraction, within -most and most; `most` for what is no number.
+/// x truncated to an integer and limited to [-most, most]; `most` for NaN.
 inline int whole(double x, int most = std::numeric_limits<int>::max()) {
   if (!(x < most)) return most;
   return x > -most ? static_cast<int>(x) : -most;

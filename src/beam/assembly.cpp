@@ -7,8 +7,8 @@
 namespace traverse::beam {
 namespace {
 
-/// Calls add(e, matrices) for the elements of the slice; `compute` runs once for equal neighbours of a beam whose
-/// data do not change along x.
+/// Calls add(e, matrices) for the elements of the slice. If the beam's data are constant along x, `compute` runs once
+/// for neighbouring elements of equal length.
 template <class Compute, class Add>
 void for_elements(const Line& line, const Slice& slice, bool uniform, Compute compute, Add add) {
   double length = 0.0;

@@ -6,21 +6,23 @@
 
 namespace traverse::beam {
 
-/// Mass and stiffness of a beam itself, eqs. 8-12.
+/// Adds mass and stiffness of a beam without foundation, eqs. 8-12.
 void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness);
 
-/// The springs of cracks, each between the rotations of its node: into K*, no part of what is damped by b K.
+/// Adds the springs of cracks, each between the two rotations of its node, to K*; the damping b K does not include
+/// them.
 void add_cracks(const Line& line, const Slice& slice, Rows& stiffness);
 
-/// An element of a line, and where in it: for a point of the foundation.
+/// The element of a foundation point and the position in the element.
 Station station_of(const Mesh& mesh, const PointFoundation& point);
 
 enum class Term { stiffness, damping };
 
-/// Eqs. 22-24, 31-33 and 40 as matrices: the sum of {s} k {s}^T over the points, s the shape vector at the station. Of
-/// a rotational kind s holds the slopes of the shape functions: at a node it is that node's rotation alone.
+/// Eqs. 22-24, 31-33 and 40 as matrices: the sum of {s} k {s}^T over the points, with the shape vector s at the
+/// station. For a rotational kind s contains the slopes of the shape functions; at a node it is the node's rotation
+/// alone.
 Rows points_of(const FoundationKind& kind, const Line& line, const Slice& slice, Term term);
-/// Eqs. 27, 29 and 36, 38; there is a bed.
+/// Eqs. 27, 29 and 36, 38; the kind must have a bed.
 Rows bed_of(const FoundationKind& kind, const Line& line, const Slice& slice, Term term);
 
 }  // namespace traverse::beam

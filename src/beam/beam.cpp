@@ -15,7 +15,7 @@
 namespace traverse::beam {
 namespace {
 
-/// First columns of the parts that do not touch: spans between separate joints. A track joins them all.
+/// First columns of the connected parts: spans between separate joints. A track connects all spans.
 std::vector<int> columns_of_parts(const Line& bridge, bool track, int columns) {
   std::vector<int> begins = {0};
   for (int end = 1; end < bridge.mesh.spans() && !track; ++end) {
@@ -26,8 +26,9 @@ std::vector<int> columns_of_parts(const Line& bridge, bool track, int columns) {
   return begins;
 }
 
-/// Each rank's first column, and the end: contiguous, as even as possible; between parts where there are enough.
-std::vector<int> cut(const std::vector<int>& parts, int ranks) {
+/// Each rank's first column, and the end. The ranges are contiguous and as even as possible. They end between parts if
+/// there are at least as many parts as ranks.
+std::vector<int> rank_begins(const std::vector<int>& parts, int ranks) {
   const int columns = parts.back();
   std::vector<int> begins;
   for (int rank = 0; rank <= ranks; ++rank) {
@@ -46,8 +47,8 @@ BeamModel checked(BeamModel model) {
   return model;
 }
 
-/// Whether there is anything of a kind that is linear.
-bool any(const Foundation& foundation, const FoundationKind& kind, Term term) {
+/// Whether the foundation contains a linear member of a kind with this term.
+bool has_linear(const Foundation& foundation, const FoundationKind& kind, Term term) {
   if (kind.bed != nullptr) {
     const std::optional<Bed>& bed = foundation.*kind.bed;
     return bed && !bed->law.nonlinear() && (term == Term::stiffness ? bed->k : bed->c).maximum() > 0.0;
@@ -58,22 +59,23 @@ bool any(const Foundation& foundation, const FoundationKind& kind, Term term) {
   });
 }
 
-/// A second owner of the same object.
+/// A second owner of the same matrix.
 base::Handle<Mat> shared(Mat matrix) {
   base::check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   return base::Handle<Mat>(matrix);
 }
 
-/// The bridge's first node among the columns.
+/// The column of the bridge's first node.
 int first_column_of(const BeamModel& model) { return model.track ? rail_mesh(model).first_from(model.start) : 0; }
 
-/// The unknowns that a line's nodes have.
+/// Releases the unknowns of a line's nodes.
 void release_nodes(const Line& line, Slice& slice) {
   const int from = std::max(0, slice.first - 1 - line.first_column);
   const int past = std::min(line.mesh.nodes(), slice.first + slice.local + 1 - line.first_column);
   for (int node = from; node < past; ++node) {
-    for (int which = 0; which < (line.mesh.hinged(node) ? 4 : 3); ++which) slice.release(line.unknown(node, which));
-    if (line.mesh.parted(node)) slice.release(line.unknown(node, 4));
+    for (int component = 0; component < (line.mesh.hinged(node) ? 4 : 3); ++component)
+      slice.release(line.unknown(node, component));
+    if (line.mesh.has_expansion_device(node)) slice.release(line.unknown(node, 4));
   }
 }
 
@@ -101,14 +103,15 @@ Beam::Beam(MPI_Comm comm, BeamModel model)
   MPI_Comm_rank(comm_, &rank);
   MPI_Comm_size(comm_, &ranks);
   parts_ = columns_of_parts(bridge_, rail_.has_value(), columns());
-  cuts_ = cut(parts_, ranks);
-  first_ = cuts_[index(rank)];
-  local_ = cuts_[index(rank + 1)] - first_;
+  rank_begins_ = rank_begins(parts_, ranks);
+  first_ = rank_begins_[index(rank)];
+  local_ = rank_begins_[index(rank + 1)] - first_;
   assemble(slice());
 }
 
 int Beam::owner(int column) const {
-  return static_cast<int>(std::upper_bound(cuts_.begin(), cuts_.end(), column) - cuts_.begin()) - 1;
+  return static_cast<int>(std::upper_bound(rank_begins_.begin(), rank_begins_.end(), column) - rank_begins_.begin()) -
+         1;
 }
 
 Slice Beam::slice() const {
@@ -120,11 +123,11 @@ Slice Beam::slice() const {
     release_links(bridge_, layout_, slice);
   }
   hold_supports(bridge_, slice);
-  for (const int node : ends_held_of_rail()) slice.hold(rail_->unknown(node, 0));
+  for (const int node : held_rail_ends()) slice.hold(rail_->unknown(node, 0));
   return slice;
 }
 
-std::vector<int> Beam::ends_held_of_rail() const {
+std::vector<int> Beam::held_rail_ends() const {
   if (!rail_ || !model().axial || !model().track->rail_ends_held) return {};
   return {0, rail_->mesh.nodes() - 1};
 }
@@ -155,8 +158,9 @@ void Beam::assemble(const Slice& slice) {
   stiffness.add(1.0, beams);
   if (model().strained()) record_strains(slice, springs);
   record_reactions(slice, beams, mass, beam_mass, beam_stiffness, stiffness, damping);
-  const auto falls = [&](int unknown) { return Layout::falls(layout_.kind[index(unknown % block())]); };
-  for (int i = begin; i < end; ++i) weight_.push_back(mass.times(i, [&](int j) { return falls(j) ? -1.0 : 0.0; }));
+  const auto is_vertical = [&](int unknown) { return Layout::is_vertical(layout_.kind[index(unknown % block())]); };
+  for (int i = begin; i < end; ++i)
+    weight_.push_back(mass.times(i, [&](int j) { return is_vertical(j) ? -1.0 : 0.0; }));
 
   Rows pattern(slice);
   for (const Rows* rows : {&mass, &beam_stiffness, &stiffness, &damping}) pattern.add_pattern(*rows);
@@ -174,7 +178,7 @@ void Beam::add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
     const FoundationKind& kind = foundation_kinds[i];
     if (!acts(kind, model())) continue;
     for (Term term : {Term::stiffness, Term::damping}) {
-      if (!any(model().foundation, kind, term)) continue;
+      if (!has_linear(model().foundation, kind, term)) continue;
       own.emplace_back(&foundation_.of_kind[i][term == Term::stiffness ? 0 : 1],
                        (kind.bed != nullptr ? bed_of : points_of)(kind, bridge_, slice, term));
       (term == Term::stiffness ? stiffness : damping).add(1.0, own.back().second);
@@ -183,8 +187,8 @@ void Beam::add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
 }
 
 double Beam::settlement_of(int unknown) const {
-  const auto found = std::lower_bound(settled_.begin(), settled_.end(), std::pair(unknown, -HUGE_VAL));
-  return found != settled_.end() && found->first == unknown ? found->second : 0.0;
+  const auto found = std::lower_bound(settlements_.begin(), settlements_.end(), std::pair(unknown, -HUGE_VAL));
+  return found != settlements_.end() && found->first == unknown ? found->second : 0.0;
 }
 
 void Beam::record_strains(const Slice& slice, const Rows& springs) {
@@ -193,9 +197,9 @@ void Beam::record_strains(const Slice& slice, const Rows& springs) {
   for (std::size_t end = 0; end < settlement.size(); ++end) {
     const auto [left, right] = mesh().nodes_at(static_cast<int>(end));
     for (int node = left; node <= right && settlement[end] != 0.0; ++node)
-      settled_.emplace_back(bridge_.unknown(node, 1), settlement[end]);
+      settlements_.emplace_back(bridge_.unknown(node, 1), settlement[end]);
   }
-  for (int i = 0; i < local_unknowns() && !settled_.empty(); ++i) {
+  for (int i = 0; i < local_unknowns() && !settlements_.empty(); ++i) {
     const int unknown = first_ * block() + i;
     imposed_.push_back(settlement_of(unknown));
     strain_forces_[index(i)] -= springs.times(unknown, [&](int j) { return settlement_of(j); });
@@ -211,10 +215,10 @@ void Beam::record_temperature(const Slice& slice, const Line& line) {
     if (unknown >= 0 && local(unknown) >= 0) strain_forces_[index(local(unknown))] += force;
   };
   for (int e = first; e < past; ++e) {
-    const auto bent = strain_load(line.model, line.mesh.element(e));
-    const auto stretched = axial_strain_load(line.model, line.mesh.element(e));
-    for (std::size_t i = 0; i < 4; ++i) add(line.transverse(e)[i], bent[i]);
-    for (std::size_t i = 0; i < 2; ++i) add(line.axial(e)[i], stretched[i]);
+    const auto bending = strain_load(line.model, line.mesh.element(e));
+    const auto axial = axial_strain_load(line.model, line.mesh.element(e));
+    for (std::size_t i = 0; i < 4; ++i) add(line.transverse(e)[i], bending[i]);
+    for (std::size_t i = 0; i < 2; ++i) add(line.axial(e)[i], axial[i]);
   }
 }
 

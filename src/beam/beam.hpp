@@ -1,12 +1,12 @@
-// The assembled structure (the paper's section 2 with the foundation of section 3), cut over ranks by columns.
+// The assembled structure (section 2 of the paper with the foundation of section 3), distributed over ranks by columns.
 //
 //   M a + C* w + K* v = P        v, w, a: nodal displacements, velocities, accelerations
 //
-// A column holds the unknowns of one node (line.hpp). The vectors have all of them; those that a support holds, or
-// that nothing belongs to, stay zero, or at their settlement: their rows and columns are empty in M, C and K ("aa" of
-// eq. 17), and the rows "c" of eq. 18 are kept apart for the reactions. A foundation with a law that is not linear is a
-// force in P. All matrices are AIJ, assembled by each rank from its own columns without communication; M, K_aa, K* and
-// C* have the same pattern of non-zeros.
+// A column contains the unknowns of one node (line.hpp). The vectors contain all unknowns of the columns. Held and
+// unused unknowns remain zero, or at their settlement; their rows and columns are empty in M, C and K ("aa" of eq. 17).
+// The rows "c" of eq. 18 are stored separately for the reactions. A foundation with a nonlinear law is a force in P.
+// All matrices are AIJ, and each rank assembles its own columns without communication. M, K_aa, K* and C* have the same
+// pattern of non-zeros.
 #pragma once
 
 #include <mpi.h>
@@ -33,7 +33,7 @@ struct Slice;
 
 class Beam {
  public:
-  /// Collective. Checks the model: InputError naming the option.
+  /// Collective. Checks the model; throws InputError that names the option.
   Beam(MPI_Comm comm, BeamModel model);
 
   const BeamModel& model() const { return bridge_.model; }
@@ -42,44 +42,43 @@ class Beam {
   const Mesh& mesh() const { return bridge_.mesh; }
   /// The rail of a layered track, or null.
   const Line* rail() const { return rail_ ? &*rail_ : nullptr; }
-  /// Where wheels run: on the rail, or on the bridge.
+  /// The line on which wheels run: the rail, or the bridge if there is no rail.
   const Line& running() const { return rail_ ? *rail_ : bridge_; }
   const Layout& layout() const { return layout_; }
   MPI_Comm comm() const { return comm_; }
-  int block() const { return layout_.block; }  // unknowns a column
+  int block() const { return layout_.block; }  // unknowns per column
   int columns() const { return rail_ ? rail_->mesh.nodes() : bridge_.mesh.nodes(); }
   int first_column() const { return first_; }  // owned by this rank: [first_column, first_column + local_columns)
   int local_columns() const { return local_; }
   int local_unknowns() const { return local_ * block(); }
-  /// First columns of the parts that do not touch each other (between separate joints), and the end. Ranks are cut
-  /// there where there are at least as many parts.
+  /// First columns of the connected parts (between separate joints), and the end. The ranges of ranks end there if
+  /// there are at least as many parts as ranks.
   const std::vector<int>& parts() const { return parts_; }
-  /// Which rank owns a column.
+  /// The rank that owns a column.
   int owner(int column) const;
-  /// The place of a global unknown among this rank's, or -1.
+  /// The index of a global unknown among this rank's unknowns, or -1.
   int local(int unknown) const {
     const int i = unknown - first_ * block();
     return i >= 0 && i < local_unknowns() ? i : -1;
   }
-  /// One entry for each local unknown: 1 where the unknown is held at zero, 0 where it is free.
+  /// One entry for each local unknown: 1 if it is held or unused, 0 if it is free.
   const std::vector<char>& fixed() const { return fixed_; }
 
   /// Collective; must be called once before damping() and reactions() are used.
   void set_rayleigh(Rayleigh ab);
   Rayleigh rayleigh() const { return rayleigh_; }
 
-  /// Frees M, K and C, which are most of what a long beam takes, once a BeamOperator has read them: null from then on.
-  /// What the foundation and the track add is kept. Memory that is free goes back to the operating system.
+  /// Frees M, K and C, most of the memory of a long beam, after a BeamOperator has read them; they are null afterwards.
+  /// The matrices of foundation and track remain. Free memory is returned to the operating system.
   void release_matrices();
   Mat mass() const { return mass_; }                      // M_aa, with that of a layered track
   Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
-  Mat springs() const { return springs_; }                // K* less all beams': foundation, track layers; or null
+  Mat springs() const { return springs_; }                // K* without the beams: foundation, track layers; or null
   Mat dampers() const { return foundation_damping_; }     // of foundation and track layers; or null
   Mat beam_mass() const { return beam_mass_; }            // of the bridge alone
   Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
   Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
-  /// Stiffness and damping matrix of each kind of foundation of section 3 by itself; null where the scene has no such
-  /// kind.
+  /// Stiffness and damping matrix of each kind of foundation of section 3; null if the scene has no such kind.
   struct FoundationMats {
     using Pair = std::array<base::Handle<Mat>, 2>;  // [0] stiffness, [1] damping
     std::array<Pair, foundation_kind_count> of_kind;
@@ -88,42 +87,41 @@ class Beam {
   };
   const FoundationMats& foundation() const { return foundation_; }
 
-  /// Nodal forces of the structure's own weight, this rank's unknowns (consistent with psi: the mass matrix times a
-  /// fall of all that has mass), g > 0 pulls down; added to P.
+  /// Adds the nodal forces of the structure's weight for this rank's unknowns to P. They are consistent with psi: the
+  /// mass matrix times a uniform downward acceleration of all masses. gravity > 0 acts downward.
   void add_self_weight(double gravity, double* P) const;
 
-  /// Displacements of held unknowns, settlements, which nodal displacements hold there: this rank's, 0 elsewhere;
-  /// empty: none. They are no part of the matrices' columns: products with the elements' forces (InternalForces) see
-  /// them.
+  /// Displacements of held unknowns by settlements for this rank, 0 elsewhere; empty if there are none. The matrices do
+  /// not contain these unknowns, but InternalForces includes them in the elements' forces.
   const std::vector<double>& imposed() const { return imposed_; }
-  /// Nodal forces of the beam's temperature, and of springs that a settlement turns or bends; this rank's. Empty: none.
+  /// Nodal forces of the beam's temperature and of springs that a settlement deforms, for this rank; or empty.
   const std::vector<double>& strain_forces() const { return strain_forces_; }
 
-  /// Collective. Forces and moment of the supports ON the beam at every span end, {fx, fy, moment} each, and last,
-  /// where the ends of the rail are held along x, {fx, 0, 0} of both; on all ranks (eq. 18 as corrected in
-  /// doc/theory.md: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal vectors. P must hold the load
-  /// on held unknowns too. Where spans are separate both spans' parts are added.
+  /// Collective. Forces and moment of the supports on the beam at every span end, {fx, fy, moment} each, followed by
+  /// {fx, 0, 0} of both ends of the rail if they are held along x; on all ranks. They are eq. 18 as corrected in
+  /// doc/theory.md, M_ca a + C_ca w + K_ca v - P_c, from this rank's slices of the nodal vectors. P must contain the
+  /// load on held unknowns too. At separate spans the reactions of both spans are added.
   void reactions(const double* v, const double* w, const double* a, const double* P,
                  std::vector<std::array<double, 3>>& out) const;
-  /// Adds `factor` times a reaction at rest (component 0 fx, 1 fy, 2 moment), as a form of this rank's nodal
-  /// displacements, to `forces`. Loads on the held unknowns are no part of it.
+  /// Adds `factor` times a static reaction (component 0 fx, 1 fy, 2 moment), as a linear form of this rank's nodal
+  /// displacements, to `forces`. Loads on the held unknowns are not included.
   void add_reaction_form(int span_end, int component, double factor, double* forces) const;
 
  private:
   /// Coefficients of one free local unknown in the row of one held unknown, eq. 18.
   struct ReactionTerm {
-    std::size_t slot;     // in the reactions, 3 a span end
+    std::size_t slot;     // in the reactions, 3 per span end
     std::size_t unknown;  // local
     double mass, beam_mass, beam_stiffness, stiffness, foundation_damping, damping;
   };
-  /// Where the load on a held unknown enters, and what settlements make of the elements' forces there.
+  /// The load on a held unknown, and the effect of settlements on the elements' forces there.
   struct HeldLoad {
     std::size_t slot, unknown;
     double by_settlement = 0.0;
   };
 
   Slice slice() const;
-  std::vector<int> ends_held_of_rail() const;  // its nodes
+  std::vector<int> held_rail_ends() const;  // nodes
   void assemble(const Slice& slice);
   void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
                       std::vector<std::pair<base::Handle<Mat>*, Rows>>& own);
@@ -137,14 +135,14 @@ class Beam {
   Layout layout_;
   Line bridge_;
   std::optional<Line> rail_;
-  std::vector<int> parts_, cuts_;
+  std::vector<int> parts_, rank_begins_;
   int first_ = 0, local_ = 0;  // columns
   std::vector<char> fixed_;
   Rayleigh rayleigh_;
   base::Handle<Mat> mass_, beam_mass_, beam_stiffness_, springs_, stiffness_, damping_;
-  base::Handle<Mat> foundation_damping_;  // of all kinds together, with the pattern of the mass; null without any
-  std::vector<double> weight_;            // nodal forces of self-weight for a gravity of 1 m/s2, this rank
-  std::vector<std::pair<int, double>> settled_;  // held unknowns of the whole beam, ascending, and by how much
+  base::Handle<Mat> foundation_damping_;             // of all kinds together, with the pattern of the mass; or null
+  std::vector<double> weight_;                       // nodal forces of self-weight for a gravity of 1 m/s2, this rank
+  std::vector<std::pair<int, double>> settlements_;  // settlements of held unknowns of the whole beam, ascending
   std::vector<double> imposed_, strain_forces_;
   FoundationMats foundation_;
   std::vector<ReactionTerm> reaction_terms_;

@@ -11,7 +11,7 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double off_node = 1e-6;  // of an element's length: joints farther from a node are beside it
+constexpr double node_tolerance = 1e-6;  // of an element's length: largest distance of a joint from its node
 
 std::string text_of(double value) {
   char text[32];
@@ -19,19 +19,19 @@ std::string text_of(double value) {
   return text;
 }
 
-[[noreturn]] void refuse_track(const std::string& option, double value, const std::string& allowed) {
+[[noreturn]] void reject(const std::string& option, double value, const std::string& allowed) {
   throw InputError(option + " is " + text_of(value) + "; " + allowed);
 }
 
 void check_positive(const Distribution& d, const std::string& option, const std::string& unit) {
   for (const double value : {d.minimum(), d.maximum()})
-    if (!std::isfinite(value) || !(value > 0.0)) refuse_track(option, value, "it must be positive (" + unit + ")");
+    if (!std::isfinite(value) || !(value > 0.0)) reject(option, value, "it must be positive (" + unit + ")");
 }
 
 void check_not_negative(const Distribution& d, const std::string& option, std::string_view unit) {
   for (const double value : {d.minimum(), d.maximum()})
     if (!std::isfinite(value) || !(value >= 0.0))
-      refuse_track(option, value, "it must not be negative (" + std::string(unit) + ")");
+      reject(option, value, "it must not be negative (" + std::string(unit) + ")");
 }
 
 void check_properties(const LayeredTrack& track) {
@@ -46,7 +46,7 @@ void check_properties(const LayeredTrack& track) {
   check_not_negative(track.shear.c, "track_shear_c", "N s/m");
 }
 
-/// The stations of the grid of sleepers, from the left end of the track.
+/// Visits the stations of the grid of sleepers, from the left end of the track.
 template <class Visit>
 void for_sleepers(const BeamModel& model, Visit visit) {
   const RailMesh rail = rail_mesh(model);
@@ -56,19 +56,20 @@ void for_sleepers(const BeamModel& model, Visit visit) {
   }
 }
 
-/// A value that has to be positive at a sleeper: it is that of the whole track, or that of the last stretch.
+/// Checks a value that must be positive at a sleeper. The message names the option of the whole track or of the last
+/// stretch that sets it.
 void check_at(double value, double x, const LayeredTrack& track, const char* name) {
   if (value > 0.0) return;
   std::string option = "track_" + std::string(name);
   for (const TrackStretch& s : track.stretches)
     for (std::size_t i = 0; i < track_property_count; ++i)
-      if (s.values[i] && track_properties[i].name == name && s.holds(x, 1e-9 * track.spacing))
+      if (s.values[i] && track_properties[i].name == name && s.contains(x, 1e-9 * track.spacing))
         option = "track_" + s.name + "_" + name;
   throw InputError(option + " is " + text_of(value) + " at the sleeper at x = " + text_of(x) +
                    " m; it must be positive");
 }
 
-/// Whether what stands at a station of the grid can stand. Pads may have failed, or ballast: not both.
+/// Checks that a station of the grid is supported. Pads or ballast may have failed, but not both.
 void check_sleeper(const LayeredTrack& track, double x, bool on_bridge) {
   const TrackValues values = track.at(x);
   if (track.ballast && track.subballast && (!on_bridge || track.own_mass)) {
@@ -89,21 +90,21 @@ void check_sleeper(const LayeredTrack& track, double x, bool on_bridge) {
                      " m has neither pad nor ballast (track_pad_k, track_ballast_k); to leave it out: sleepers none");
 }
 
-/// Whether the rail stands on this sleeper without a gap.
-bool carries(const LayeredTrack& track, double x, bool on_bridge) {
+/// Whether this sleeper supports the rail without a gap.
+bool supports_rail(const LayeredTrack& track, double x, bool on_bridge) {
   const TrackValues values = track.at(x);
   const double below = track.ballast ? values.ballast.k : track.subballast && !on_bridge ? values.subballast.k : 1.0;
   return values.gap == 0.0 && values.pad.k > 0.0 && below > 0.0;
 }
 
-/// The rail, or what is left of it between its joints, stands on two sleepers at least.
-void check_rail_stands(const BeamModel& model) {
+/// Checks that each part of the rail between its joints is supported by at least two sleepers.
+void check_rail_support(const BeamModel& model) {
   BeamModel rail = rail_model(model);
   rail.axial = false;
   rail.foundation = {};
   bool along = false;
   for_sleepers(model, [&](double x, bool on_bridge) {
-    if (carries(*model.track, x, on_bridge)) {
+    if (supports_rail(*model.track, x, on_bridge)) {
       PointFoundation point;
       point.x = x;
       point.k = 1.0;
@@ -122,7 +123,7 @@ void check_rail_stands(const BeamModel& model) {
 void check_stretches(const BeamModel& model) {
   for (const TrackStretch& s : model.track->stretches) {
     bool any = false;
-    for_sleepers(model, [&](double x, bool) { any = any || s.holds(x, 1e-9 * model.track->spacing); });
+    for_sleepers(model, [&](double x, bool) { any = any || s.contains(x, 1e-9 * model.track->spacing); });
     if (!any)
       throw InputError("track_" + s.name + "_from, track_" + s.name + "_to: no sleeper of the track stands from " +
                        text_of(s.from) + " to " + text_of(s.to) + " m; they stand every " +
@@ -130,48 +131,49 @@ void check_stretches(const BeamModel& model) {
   }
 }
 
-/// Joints and expansion devices stand at nodes of the rail.
+/// Checks that joints and expansion devices are at nodes of the rail.
 void check_at_nodes(const RailMesh& rail, const std::vector<double>& stations, const char* option,
-                    const std::string& things) {
+                    const std::string& subject) {
   double before = rail.start;
   for (const double x : stations) {
     if (!(x > before) || !(x < rail.x(rail.elements)))
-      refuse_track(option, x, things + " lie within the track, from left to right, each at a place of its own");
+      reject(option, x, subject + " lie within the track, from left to right, each at a place of its own");
     const double nodes = (x - rail.start) / rail.element;
-    if (std::abs(nodes - std::round(nodes)) > off_node)
-      refuse_track(option, x,
-                   things + " stand at nodes of the rail, which are " + text_of(rail.element) +
-                       " m apart (track_spacing over track_elements_per_bay), one at every sleeper");
+    if (std::abs(nodes - std::round(nodes)) > node_tolerance)
+      reject(option, x,
+             subject + " stand at nodes of the rail, which are " + text_of(rail.element) +
+                 " m apart (track_spacing over track_elements_per_bay), one at every sleeper");
     before = x;
   }
 }
 
-/// A sleeper at a device would hold both of its sides; without one between two devices nothing holds the rail there.
+/// Checks expansion devices. A sleeper at a device would hold both of its sides, and the rail between two devices needs
+/// a sleeper that holds it.
 void check_devices(const BeamModel& model) {
   const LayeredTrack& track = *model.track;
   const RailMesh rail = rail_mesh(model);
   const char* option = "track_rail_expansion_devices";
   const std::vector<double>& devices = track.expansion_devices;
   check_at_nodes(rail, devices, option, "expansion devices");
-  std::vector<char> held(devices.size() + 1, 0);  // the rail between two devices
+  std::vector<char> held(devices.size() + 1, 0);  // whether the rail between two devices is held along x
   held.front() = held.back() = track.rail_ends_held ? 1 : 0;
-  const double near = off_node * rail.element;
+  const double tolerance = node_tolerance * rail.element;
   for_sleepers(model, [&](double x, bool) {
-    const auto device = std::lower_bound(devices.begin(), devices.end(), x - near);
-    if (device != devices.end() && *device <= x + near && track.has_sleeper(x))
-      refuse_track(option, *device,
-                   "a sleeper stands there; expansion devices stand between sleepers, at nodes of the rail " +
-                       text_of(rail.element) + " m apart (track_spacing over track_elements_per_bay)");
+    const auto device = std::lower_bound(devices.begin(), devices.end(), x - tolerance);
+    if (device != devices.end() && *device <= x + tolerance && track.has_sleeper(x))
+      reject(option, *device,
+             "a sleeper stands there; expansion devices stand between sleepers, at nodes of the rail " +
+                 text_of(rail.element) + " m apart (track_spacing over track_elements_per_bay)");
     if (track.at(x).longitudinal.k > 0.0) held[static_cast<std::size_t>(device - devices.begin())] = 1;
   });
   for (const double x : track.rail_hinges)
-    if (std::any_of(devices.begin(), devices.end(), [&](double device) { return std::abs(device - x) <= near; }))
-      refuse_track(option, x, "a joint of the rail stands there (track_rail_hinges)");
+    if (std::any_of(devices.begin(), devices.end(), [&](double device) { return std::abs(device - x) <= tolerance; }))
+      reject(option, x, "a joint of the rail stands there (track_rail_hinges)");
   for (std::size_t i = 0; i < held.size(); ++i)
     if (held[i] == 0)
-      refuse_track(option, devices[std::min(i, devices.size() - 1)],
-                   i < devices.size() ? "no sleeper to its left holds the rail along x (track_longitudinal_k)"
-                                      : "no sleeper to its right holds the rail along x (track_longitudinal_k)");
+      reject(option, devices[std::min(i, devices.size() - 1)],
+             i < devices.size() ? "no sleeper to its left holds the rail along x (track_longitudinal_k)"
+                                : "no sleeper to its right holds the rail along x (track_longitudinal_k)");
 }
 
 }  // namespace
@@ -182,21 +184,21 @@ void check_track(const BeamModel& model) {
   if (model.axial) check_positive(t.rail_EA, "track_rail_EA", "N");
   check_positive(t.rail_mass, "track_rail_mass", "kg/m");
   check_positive(t.spacing, "track_spacing", "m");
-  if (t.elements_per_bay < 1) refuse_track("track_elements_per_bay", t.elements_per_bay, "at least 1");
+  if (t.elements_per_bay < 1) reject("track_elements_per_bay", t.elements_per_bay, "at least 1");
   check_not_negative(t.approach, "track_approach", "m");
   if (!((model.length() + 2.0 * t.approach) / t.spacing * t.elements_per_bay < 1e8))
-    refuse_track("track_spacing", t.spacing, "fewer than 1e8 rail elements are possible");
+    reject("track_spacing", t.spacing, "fewer than 1e8 rail elements are possible");
   check_properties(t);
   for (const char* name : {"longitudinal_loaded_k", "longitudinal_loaded_limit"})
-    if (t.somewhere(name) && !t.slides())
+    if (t.any_positive(name) && !t.slides())
       throw InputError(std::string("track_") + name +
                        " needs track_longitudinal_limit: it is that of sleepers that slide");
   if (!t.ballast && t.hangs()) throw InputError("track_gap needs track_ballast_k: it lies below a sleeper on ballast");
   if (t.uniform()) {
-    if (!(t.pad.k.maximum() > 0.0)) refuse_track("track_pad_k", 0.0, "it must be positive (N/m)");
-    if (t.ballast && !(t.ballast->k.maximum() > 0.0)) refuse_track("track_ballast_k", 0.0, "it must be positive (N/m)");
+    if (!(t.pad.k.maximum() > 0.0)) reject("track_pad_k", 0.0, "it must be positive (N/m)");
+    if (t.ballast && !(t.ballast->k.maximum() > 0.0)) reject("track_ballast_k", 0.0, "it must be positive (N/m)");
     if (t.subballast && !(t.subballast->k.maximum() > 0.0))
-      refuse_track("track_subballast_k", 0.0, "it must be positive (N/m)");
+      reject("track_subballast_k", 0.0, "it must be positive (N/m)");
   }
   const RailMesh rail = rail_mesh(model);
   if (t.uniform()) {
@@ -209,13 +211,13 @@ void check_track(const BeamModel& model) {
   check_at_nodes(rail, t.rail_hinges, "track_rail_hinges", "joints");
   if (!t.expansion_devices.empty()) check_devices(model);
   if (!t.uniform() || !t.rail_hinges.empty() || t.hangs())
-    check_rail_stands(model);
+    check_rail_support(model);
   else if (model.axial)
     check_positive(t.longitudinal.k, "track_longitudinal_k", "N/m");
   for (const Piece& piece : pieces_of(model)) {
     if (piece.elements < 1)
-      refuse_track("track_spacing", t.spacing,
-                   "every span, and what hinges leave of it, needs two rail elements or more (track_elements_per_bay)");
+      reject("track_spacing", t.spacing,
+             "every span, and what hinges leave of it, needs two rail elements or more (track_elements_per_bay)");
   }
 }
 

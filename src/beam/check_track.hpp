@@ -1,11 +1,11 @@
-// Whether a layered track can be assembled.
+// Checks whether a layered track can be assembled.
 #pragma once
 
 #include "traverse/beam/model.hpp"
 
 namespace traverse::beam {
 
-/// Throws InputError when it cannot: the message names the option or the sleeper, the value and what is allowed.
+/// Throws InputError if it cannot; the message names the option or the sleeper, the value and what is allowed.
 void check_track(const BeamModel& model);
 
 }  // namespace traverse::beam

@@ -1,4 +1,4 @@
-// Cubic polynomials along a piece of an element.
+// Cubic polynomials along a part of an element.
 #pragma once
 
 #include <Eigen/Dense>
@@ -6,9 +6,9 @@
 
 namespace traverse::beam {
 
-using Cubic = std::array<double, 4>;  // by powers
+using Cubic = std::array<double, 4>;  // coefficients of the powers
 
-/// An element's deflection by its nodal values (v1, theta1, v2, theta2): of length h, shear as in shape.hpp.
+/// The deflection of an element of length h from its nodal values (v1, theta1, v2, theta2), with shear as in shape.hpp.
 inline Cubic hermite_cubic(const std::array<double, 4>& end, double h, double shear) {
   const double rise = (end[2] - end[0]) / h;
   const double gamma = shear / (1.0 + shear) * (rise - 0.5 * (end[1] + end[3]));
@@ -16,7 +16,7 @@ inline Cubic hermite_cubic(const std::array<double, 4>& end, double h, double sh
   return {end[0], left, (3.0 * rise - 2.0 * left - right) / h, (left + right - 2.0 * rise) / (h * h)};
 }
 
-/// Through four points inside a piece of length h, at whose ends a response may jump.
+/// The cubic through four points inside a part of length h, at whose ends the response may jump.
 template <class Response>
 Cubic cubic_through(double h, Response response) {
   Eigen::Matrix4d powers;
@@ -30,7 +30,7 @@ Cubic cubic_through(double h, Response response) {
   return {c[0], c[1] / h, c[2] / (h * h), c[3] / (h * h * h)};
 }
 
-/// The polynomial as one of x - d.
+/// The same polynomial in powers of x - d.
 inline Cubic shifted(const Cubic& c, double d) {
   return {c[0] + d * (c[1] + d * (c[2] + d * c[3])), c[1] + d * (2.0 * c[2] + 3.0 * d * c[3]), c[2] + 3.0 * d * c[3],
           c[3]};

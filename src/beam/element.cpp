@@ -1,4 +1,4 @@
-// The integrals of equations 8 to 10 and of beds (equations 27, 29, 36 and 38 of the paper) in closed form or by Gauss
+// Evaluates the integrals of eqs. 8 to 10 and of beds (eqs. 27, 29, 36 and 38 of the paper) in closed form or by Gauss
 // quadrature, and mass terms for fourth-order accurate frequencies of Timoshenko elements.
 #include "beam/element.hpp"
 
@@ -11,7 +11,8 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double enough_turning = 32.0;  // times rho I/(m h^2), from which on it keeps every such mass positive
+constexpr double rotary_factor =
+    32.0;  // times rho I/(m h^2): from 1 on the rotary inertia keeps the mass with the whole first term positive
 
 template <std::size_t N>
 void add_outer(std::array<double, N * N>& matrix, double c, const std::array<double, N>& s) {
@@ -29,7 +30,7 @@ std::array<double, N * N> integral(const Distribution& density, const Element& e
   return matrix;
 }
 
-Transverse bending(const Distribution& EI, const Element& e) {
+Transverse bending_stiffness(const Distribution& EI, const Element& e) {
   const double h = e.length;
   const auto constant = constant_value(EI, e.x, e.x + h);
   if (!constant || e.shear != 0.0)
@@ -40,38 +41,38 @@ Transverse bending(const Distribution& EI, const Element& e) {
 }
 
 /// Integral of GA gamma gamma^T.
-void add_shearing(const Distribution& GA, const Element& e, Transverse& stiffness) {
+void add_shear_stiffness(const Distribution& GA, const Element& e, Transverse& stiffness) {
   const auto gamma = shear_strain(e.length, e.shear);
   integrate(GA, e.x, e.x + e.length, [&](double, double weight) { add_outer<4>(stiffness, weight, gamma); });
 }
 
-/// To the mass what one gamma an element leaves out of the answer to its inertia, to fourth order in its length: with
-/// s = shear/(1 + shear) and means over the element
+/// Adds to the mass the response of the element to its own inertia that a constant gamma neglects, to fourth order in
+/// the element's length: with s = shear/(1 + shear) and means over the element
 ///   m h^2/12 v' gamma + s rho I (h^2/12 theta'^2 - theta gamma/shear).
-/// The first is what the mean of consistent and lumped mass has for a bar; it is taken as far as the rotary inertia
-/// keeps the mass positive.
-void add_sheared_mass(const BeamModel& model, const Element& e, Transverse& mass) {
+/// The first term is that of the mean of consistent and lumped mass of a bar. It is reduced where the rotary inertia
+/// would not keep the mass positive.
+void add_shear_mass(const BeamModel& model, const Element& e, Transverse& mass) {
   const double h = e.length, s = e.shear / (1.0 + e.shear);
   const auto gamma = shear_strain(h, e.shear);
   const auto add_pair = [&](double factor, const std::array<double, 4>& other) {
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j) mass[4 * i + j] += 0.5 * factor * (gamma[i] * other[j] + other[i] * gamma[j]);
   };
-  double all = 0.0, turning = 0.0;
-  std::array<double, 4> turned{};  // integral of rho I theta
-  integrate(model.mass, e.x, e.x + h, [&](double, double weight) { all += weight; });
+  double total_mass = 0.0, rotary = 0.0;
+  std::array<double, 4> rotary_load{};  // integral of rho I theta
+  integrate(model.mass, e.x, e.x + h, [&](double, double weight) { total_mass += weight; });
   integrate(model.rotary_inertia, e.x, e.x + h, [&](double x, double weight) {
     const double xi = (x - e.x) / h;
     const auto theta = rotation(xi, h, e.shear);
-    turning += weight;
-    for (std::size_t i = 0; i < 4; ++i) turned[i] += weight * theta[i];
+    rotary += weight;
+    for (std::size_t i = 0; i < 4; ++i) rotary_load[i] += weight * theta[i];
     add_outer<4>(mass, s * h * h / 12.0 * weight, hermite(xi, h, e.shear).curvature);
   });
-  add_pair(std::min(1.0, enough_turning * turning / (all * h * h)) * all * h / 12.0, {-1.0, 0.0, 1.0, 0.0});
-  add_pair(-s / e.shear, turned);
+  add_pair(std::min(1.0, rotary_factor * rotary / (total_mass * h * h)) * total_mass * h / 12.0, {-1.0, 0.0, 1.0, 0.0});
+  add_pair(-s / e.shear, rotary_load);
 }
 
-Axial stretching(const Distribution& EA, const Element& e) {
+Axial axial_stiffness_of(const Distribution& EA, const Element& e) {
   const double h = e.length;
   double mean = 0.0;
   integrate(EA, e.x, e.x + h, [&](double, double weight) { mean += weight / h; });
@@ -104,7 +105,7 @@ Transverse slope_bed(const Distribution& density, const Element& e) {
 
 std::array<double, 4> transverse_load(const Distribution& density, const Element& e) {
   const double h = e.length;
-  if (const auto constant = constant_value(density, e.x, e.x + h)) {  // sheared elements have the same ones
+  if (const auto constant = constant_value(density, e.x, e.x + h)) {  // the same with shear
     const double force = *constant * h / 2, moment = *constant * h * h / 12;
     return {force, moment, force, -moment};
   }
@@ -127,8 +128,8 @@ std::array<double, 4> slope_load(const Distribution& density, const Element& e) 
   const double h = e.length;
   std::array<double, 4> load{};
   integrate(density, e.x, e.x + h, [&](double x, double weight) {
-    const auto turn = rotation((x - e.x) / h, h, e.shear);
-    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * turn[i];
+    const auto theta = rotation((x - e.x) / h, h, e.shear);
+    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * theta[i];
   });
   return load;
 }
@@ -146,7 +147,7 @@ std::array<double, 4> strain_load(const BeamModel& model, const Element& element
 
 std::array<double, 2> axial_strain_load(const BeamModel& model, const Element& element) {
   if (!model.temperature || !model.axial) return {};
-  const double force = stretching(model.EA, element)[0] * element.length * model.temperature->strain();
+  const double force = axial_stiffness_of(model.EA, element)[0] * element.length * model.temperature->strain();
   return {-force, force};
 }
 
@@ -154,14 +155,14 @@ ElementMatrices element_matrices(const BeamModel& model, const Element& element)
   ElementMatrices m;
   m.mass = transverse_bed(model.mass, element);
   if (model.rotary_inertia.maximum() > 0.0) {
-    const Transverse turning = slope_bed(model.rotary_inertia, element);
-    for (std::size_t i = 0; i < turning.size(); ++i) m.mass[i] += turning[i];
-    if (element.shear != 0.0) add_sheared_mass(model, element, m.mass);
+    const Transverse rotary = slope_bed(model.rotary_inertia, element);
+    for (std::size_t i = 0; i < rotary.size(); ++i) m.mass[i] += rotary[i];
+    if (element.shear != 0.0) add_shear_mass(model, element, m.mass);
   }
-  m.stiffness = bending(model.EI, element);
-  if (element.shear != 0.0) add_shearing(*model.GA, element, m.stiffness);
+  m.stiffness = bending_stiffness(model.EI, element);
+  if (element.shear != 0.0) add_shear_stiffness(*model.GA, element, m.stiffness);
   m.axial_mass = axial_bed(model.mass, element);
-  if (model.axial) m.axial_stiffness = stretching(model.EA, element);
+  if (model.axial) m.axial_stiffness = axial_stiffness_of(model.EA, element);
   return m;
 }
 

@@ -1,5 +1,5 @@
-// Element matrices of the beam, the paper's eqs. 4-11, with shear and rotary inertia where the model has them, and what
-// acts along an element.
+// Element matrices of the beam, eqs. 4-11 of the paper, with shear and rotary inertia if the model has them, and nodal
+// forces of loads and strains along an element.
 #pragma once
 
 #include <array>
@@ -16,29 +16,29 @@ using Transverse = std::array<double, 16>;  // 4 x 4
 
 /// Eqs. 8 and 9, without foundation. kg, kg m, kg m2 and N/m, N, N m.
 struct ElementMatrices {
-  Axial axial_mass{}, axial_stiffness{};  // the stiffness is zero where the model has no axial unknowns
+  Axial axial_mass{}, axial_stiffness{};  // the stiffness is zero if the model has no axial unknowns
   Transverse mass{}, stiffness{};
 };
-/// Closed form where EI, EA and mass are constant over the element, else Gauss integration between the breaks of
-/// their tables: exact for piecewise linear data.
+/// In closed form if EI, EA and mass are constant over the element; otherwise by Gauss integration between the breaks
+/// of their tables, which is exact for piecewise linear data.
 ElementMatrices element_matrices(const BeamModel& model, const Element& element);
 
 /// Integral of density(x) psi psi^T over the element: the mass matrix, a vertical bed (eqs. 27 and 29).
 Transverse transverse_bed(const Distribution& density, const Element& element);
 /// Integral of density(x) phi phi^T: the axial mass matrix, a longitudinal bed (eqs. 36 and 38).
 Axial axial_bed(const Distribution& density, const Element& element);
-/// Integral of density(x) theta theta^T, theta the shapes of the rotation (psi' without shear): a bed that holds the
-/// rotation, rotary inertia.
+/// Integral of density(x) theta theta^T, theta the shapes of the rotation (psi' without shear): rotary inertia, or a
+/// bed that resists the rotation.
 Transverse slope_bed(const Distribution& density, const Element& element);
 /// Integral of density(x) psi: nodal forces of a distributed force (eq. 10).
 std::array<double, 4> transverse_load(const Distribution& density, const Element& element);
-/// Integral of density(x) phi: of one along x.
+/// Integral of density(x) phi: nodal forces of a distributed force along x.
 std::array<double, 2> axial_load(const Distribution& density, const Element& element);
-/// Integral of density(x) theta: of a distributed moment.
+/// Integral of density(x) theta: nodal forces of a distributed moment.
 std::array<double, 4> slope_load(const Distribution& density, const Element& element);
 
-/// Nodal forces of a bridge's own strains, its temperature: what its elements would push their ends apart and turn them
-/// by if these were held. They balance each other.
+/// Nodal forces of the bridge's temperature: the forces of an element on its nodes if these are held. They are in
+/// equilibrium.
 std::array<double, 4> strain_load(const BeamModel& model, const Element& element);
 std::array<double, 2> axial_strain_load(const BeamModel& model, const Element& element);
 

@@ -27,12 +27,12 @@ ElementRows::Run ElementRows::run_of(const Beam& beam, const Line& line) {
     all[static_cast<std::size_t>(line.first_column + element.left - beam.first_column() + 1)] = c;
   }
   Run run{line.place[0], line.place[1], line.place[2], {}, {}};
-  const auto mark = [&](std::ptrdiff_t j) { return solve::mark_of(0, all[static_cast<std::size_t>(j)]); };
+  const auto hash = [&](std::ptrdiff_t j) { return solve::hash_of(0, all[static_cast<std::size_t>(j)]); };
   const auto same = [&](std::ptrdiff_t i, std::ptrdiff_t j) {
     return all[static_cast<std::size_t>(i)] == all[static_cast<std::size_t>(j)];
   };
-  for (std::ptrdiff_t j : run.stored.keep(std::ssize(all), mark, same)) {
-    for (std::size_t i = 0; i < numbers; ++i) run.of[i].push_back(all[static_cast<std::size_t>(j)][i]);
+  for (std::ptrdiff_t j : run.stored.assign(std::ssize(all), hash, same)) {
+    for (std::size_t i = 0; i < numbers; ++i) run.coefficients[i].push_back(all[static_cast<std::size_t>(j)][i]);
   }
   return run;
 }
@@ -41,15 +41,15 @@ template <bool axial>
 void ElementRows::add_run(const Run& run, int first, int past, const Planes& x, const Planes& r) {
   const int nodes = past - first;
   const double *const v = x[run.v], *const theta = x[run.theta], *const u = axial ? x[run.u] : nullptr;
-  // Of each element on its left end; on its right one the moment.
+  // For each element: force, moment and axial force on its left end, and the moment on its right end.
   std::array<double, tile + 1> force, left_moment, right_moment, along;
   for (int begin = 0; begin <= nodes;) {
     const solve::Stored& stored = run.stored.at(first + begin);
     const int end = static_cast<int>(std::min<std::ptrdiff_t>(nodes + 1, stored.row_end(first + begin) - first));
     const std::ptrdiff_t place = stored.place(first + begin) - begin;
-    const auto numbers_from = [&](std::size_t i) { return run.of[i].data() + place; };
-    const double *h = numbers_from(0), *A = numbers_from(1), *B = numbers_from(2), *C = numbers_from(3),
-                 *D = numbers_from(4), *S = numbers_from(5);
+    const auto coefficients_from = [&](std::size_t i) { return run.coefficients[i].data() + place; };
+    const double *h = coefficients_from(0), *A = coefficients_from(1), *B = coefficients_from(2),
+                 *C = coefficients_from(3), *D = coefficients_from(4), *S = coefficients_from(5);
     for (int j = begin; j < end; ++j) {
       const double turn = theta[j + 1] - theta[j];
       const double rise = v[j + 1] - v[j] - h[j] * theta[j];

@@ -1,5 +1,5 @@
-// Which motions of a beam nothing resists, found from what holds it. A part between its ends and separate joints is a
-// chain of rigid pieces between hinges; its motion is given by the deflections of the pieces' ends.
+// Finds the motions of a beam that nothing resists. A part between its ends and separate joints is a chain of rigid
+// pieces between hinges; the deflections of the pieces' ends describe its motion.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double singular = 1e-10;  // of the largest pivot: conditions that do not differ
+constexpr double rank_tolerance = 1e-10;  // of the largest pivot: conditions are linearly dependent
 
-/// A run of pieces that is one body or chain of bodies.
+/// Neighbouring pieces that are one body or a chain of bodies.
 struct Part {
   int first_end = 0, last_end = 0;  // span ends
   std::vector<double> x;            // stations of its ends and hinges
@@ -34,22 +34,22 @@ std::vector<Part> parts_of(const BeamModel& model) {
   return parts;
 }
 
-/// Whose springs count: those in the matrices, or all that may push.
+/// The foundations that are included: those in the matrices, or all that may push.
 enum class Springs { linear, all };
 
-bool counts(const FoundationLaw& law, Springs which) { return which == Springs::all || !law.nonlinear(); }
+bool is_included(const FoundationLaw& law, Springs springs) { return springs == Springs::all || !law.nonlinear(); }
 
-/// Whether a point of the foundation is a spring of this part.
-bool holds(const PointFoundation& p, const Part& part, const BeamModel& model, Springs which) {
+/// Whether a point of the foundation is an included spring of this part.
+bool is_spring_of(const PointFoundation& p, const Part& part, const BeamModel& model, Springs springs) {
   const bool after_left = p.x > part.left() || (p.x == part.left() && (!p.from_left || p.x == model.start));
   const bool before_right = p.x < part.right() || (p.x == part.right() && (p.from_left || p.x == model.end()));
-  return counts(p.law, which) && (p.k > 0.0 || p.law.cubic > 0.0) && after_left && before_right;
+  return is_included(p.law, springs) && (p.k > 0.0 || p.law.cubic > 0.0) && after_left && before_right;
 }
 
-/// The stretches of the part, between its hinges and the bed's own breaks, along which the bed has stiffness.
-std::vector<std::pair<double, double>> bedded(const Bed& bed, const Part& part, Springs which) {
+/// The ranges of the part, between its hinges and the breaks of the bed, along which the bed has stiffness.
+std::vector<std::pair<double, double>> bed_ranges(const Bed& bed, const Part& part, Springs springs) {
   std::vector<std::pair<double, double>> stretches;
-  if (!counts(bed.law, which)) return stretches;
+  if (!is_included(bed.law, springs)) return stretches;
   for (std::size_t i = 1; i < part.x.size(); ++i) {
     auto ends = bed.k.breaks(part.x[i - 1], part.x[i]);
     ends.push_back(part.x[i]);
@@ -63,26 +63,26 @@ std::vector<std::pair<double, double>> bedded(const Bed& bed, const Part& part, 
   return stretches;
 }
 
-/// Conditions that are to vanish, as rows over the deflections at the part's stations x.
+/// Linear forms of the deflections at the part's stations x, as rows, that must be zero.
 class Conditions {
  public:
   explicit Conditions(const Part& part) : part_(part), unknowns_(static_cast<Eigen::Index>(part.x.size())) {}
 
-  void no_deflection(double x) {
+  void add_zero_deflection(double x) {
     const Eigen::Index i = piece_of(x, false);
     const double xi = (x - part_.x[i]) / (part_.x[i + 1] - part_.x[i]);
     add(i, 1.0 - xi, xi);
   }
-  void no_slope(double x, bool from_left) { add(piece_of(x, from_left), -1.0, 1.0); }
+  void add_zero_slope(double x, bool from_left) { add(piece_of(x, from_left), -1.0, 1.0); }
 
-  /// The motions that satisfy all of them, one a column. Of a free body: vertical and about its middle.
+  /// The motions that satisfy all conditions, one per column. Those of a free body are vertical and about its middle.
   Eigen::MatrixXd motions() const {
     if (rows_.empty() && unknowns_ == 2) return Eigen::Matrix2d{{1.0, -1.0}, {1.0, 1.0}};
     if (rows_.empty()) return Eigen::MatrixXd::Identity(unknowns_, unknowns_);
     Eigen::MatrixXd A(static_cast<Eigen::Index>(rows_.size()), unknowns_);
     for (std::size_t i = 0; i < rows_.size(); ++i) A.row(static_cast<Eigen::Index>(i)) = rows_[i];
     Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
-    lu.setThreshold(singular);
+    lu.setThreshold(rank_tolerance);
     return lu.rank() == unknowns_ ? Eigen::MatrixXd(unknowns_, 0) : Eigen::MatrixXd(lu.kernel());
   }
 
@@ -104,40 +104,40 @@ class Conditions {
 };
 
 Conditions bending_conditions(const BeamModel& model, const Part& part, const std::vector<double>& span_ends,
-                              Springs which) {
+                              Springs springs) {
   Conditions conditions(part);
   for (int end = part.first_end; end <= part.last_end; ++end) {
     const double x = span_ends[static_cast<std::size_t>(end)];
-    if (fixes_vertical(model.supports[end])) conditions.no_deflection(x);
+    if (fixes_vertical(model.supports[end])) conditions.add_zero_deflection(x);
     if (!fixes_rotation(model.supports[end])) continue;
-    conditions.no_slope(x, false);
-    conditions.no_slope(x, true);
+    conditions.add_zero_slope(x, false);
+    conditions.add_zero_slope(x, true);
   }
   for_points(model.foundation, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
     for (const PointFoundation& p : points) {
-      if (!holds(p, part, model, which)) continue;
-      if (kind.direction == Direction::vertical) conditions.no_deflection(p.x);
-      if (kind.direction == Direction::rotational) conditions.no_slope(p.x, p.from_left);
+      if (!is_spring_of(p, part, model, springs)) continue;
+      if (kind.direction == Direction::vertical) conditions.add_zero_deflection(p.x);
+      if (kind.direction == Direction::rotational) conditions.add_zero_slope(p.x, p.from_left);
     }
   });
   for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
     if (kind.direction == Direction::longitudinal) return;
-    for (const auto& [left, right] : bedded(bed, part, which)) {
-      if (kind.direction == Direction::vertical) conditions.no_deflection(0.5 * (left + right));
-      conditions.no_slope(0.5 * (left + right), false);
+    for (const auto& [left, right] : bed_ranges(bed, part, springs)) {
+      if (kind.direction == Direction::vertical) conditions.add_zero_deflection(0.5 * (left + right));
+      conditions.add_zero_slope(0.5 * (left + right), false);
     }
   });
   return conditions;
 }
 
-bool supported_axially(const BeamModel& model, const Part& part, Springs which) {
+bool supported_axially(const BeamModel& model, const Part& part, Springs springs) {
   bool held = false;
   for_points(model.foundation, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
     if (kind.direction != Direction::longitudinal) return;
-    for (const PointFoundation& p : points) held = held || holds(p, part, model, which);
+    for (const PointFoundation& p : points) held = held || is_spring_of(p, part, model, springs);
   });
   for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
-    if (kind.direction == Direction::longitudinal) held = held || !bedded(bed, part, which).empty();
+    if (kind.direction == Direction::longitudinal) held = held || !bed_ranges(bed, part, springs).empty();
   });
   for (int end = part.first_end; end <= part.last_end; ++end) held = held || fixes_axial(model.supports[end]);
   return held;
@@ -159,14 +159,14 @@ std::vector<double> ends_of(const BeamModel& model) {
   return ends;
 }
 
-/// The motions of one part, which are not none.
-std::string in_words(const std::vector<RigidMotion>& of_part) {
+/// The description of the motions of one part; at least one motion is needed.
+std::string describe(const std::vector<RigidMotion>& of_part) {
   const RigidMotion& m = of_part.front();
   if (m.axial) return "can move along x";
   if (m.x.size() > 2) return "can move with its hinges as a mechanism";
   if (of_part.size() > 1 && !of_part[1].axial) return "can move vertically and rotate";
   const double a = m.deflection[0], b = m.deflection[1];
-  if (std::abs(a - b) <= singular) return "can move vertically";
+  if (std::abs(a - b) <= rank_tolerance) return "can move vertically";
   char text[64];
   std::snprintf(text, sizeof text, "can rotate about x = %.6g m", m.x[0] + (m.x[1] - m.x[0]) * a / (a - b));
   return text;
@@ -178,17 +178,17 @@ std::size_t segment_of(const RigidMotion& m, double station, bool from_left) {
   return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - m.x.begin() - 1, 0, std::ssize(m.x) - 2));
 }
 
-std::vector<RigidMotion> motions_of(const BeamModel& model, Springs which) {
+std::vector<RigidMotion> motions_of(const BeamModel& model, Springs springs) {
   std::vector<RigidMotion> motions;
   if (model.track) return motions;
   const auto span_ends = ends_of(model);
   const auto parts = parts_of(model);
   for (const Part& part : parts) {
-    for (RigidMotion& m : bending_motions(part, bending_conditions(model, part, span_ends, which)))
+    for (RigidMotion& m : bending_motions(part, bending_conditions(model, part, span_ends, springs)))
       motions.push_back(std::move(m));
-    // Of several parts, one that nothing at all holds along x is given a bearing.
-    const bool borne = parts.size() > 1 && !supported_axially(model, part, Springs::all);
-    if (model.axial && !borne && !supported_axially(model, part, which))
+    // With several parts, one that nothing holds along x has a bearing.
+    const bool has_bearing = parts.size() > 1 && !supported_axially(model, part, Springs::all);
+    if (model.axial && !has_bearing && !supported_axially(model, part, springs))
       motions.push_back({part.left(), part.right(), true, {part.left(), part.right()}, {1.0, 1.0}});
   }
   return motions;
@@ -234,7 +234,7 @@ std::string floating_motion(const BeamModel& model) {
     if (part.last_end > part.first_end + 1)
       name = "spans " + std::to_string(part.first_end + 1) + " to " + std::to_string(part.last_end) + " ";
   }
-  return name + in_words(of_part);
+  return name + describe(of_part);
 }
 
 }  // namespace traverse::beam

@@ -1,5 +1,5 @@
-// Properties of a foundation: whether it is nonlinear, which kinds and directions it has, and how fast bending decays
-// on a bed, such as (k/(4 EI))^(1/4) on a vertical one.
+// Properties of a foundation: whether it is nonlinear, which kinds and directions it has, and the decay rate of bending
+// on a bed.
 #include "traverse/beam/foundation.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::size_t foundation_kind(std::string_view name) {
   return static_cast<std::size_t>(kind - foundation_kinds.begin());
 }
 
-double fading_of_bending(Direction direction, double k, double EI) {
+double bending_decay_rate(Direction direction, double k, double EI) {
   if (direction == Direction::vertical) return std::pow(k / (4.0 * EI), 0.25);
   return direction == Direction::rotational ? std::sqrt(k / EI) : 0.0;
 }

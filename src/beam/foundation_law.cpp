@@ -7,19 +7,19 @@
 
 namespace traverse::beam {
 namespace {
-constexpr double engagement = 1e-9;  // m or rad: over which a damper comes on
+constexpr double engagement = 1e-9;  // m or rad, over which the damper force increases from zero
 }
 
 FoundationForce foundation_force(const FoundationLaw& law, double k, double c, double d, double w) {
-  const bool leaves = law.one_sided || law.gap > 0.0;
+  const bool can_separate = law.one_sided || law.gap > 0.0;
   const double s = std::abs(d) - law.gap;
-  if (leaves && (!(s > 0.0) || (law.one_sided && d > 0.0))) return {};
+  if (can_separate && (!(s > 0.0) || (law.one_sided && d > 0.0))) return {};
   const double side = d > 0.0 ? 1.0 : -1.0, rate = side * w;
-  const double share = leaves ? std::min(1.0, s / engagement) : 1.0;
+  const double share = can_separate ? std::min(1.0, s / engagement) : 1.0;
   const double spring = k * s + law.cubic * s * s * s, damper = share * c * rate;
   FoundationForce f;
   f.energy = (0.5 * k + 0.25 * law.cubic * s * s) * s * s;
-  if (leaves && !(spring + damper > 0.0)) {
+  if (can_separate && !(spring + damper > 0.0)) {
     f.dissipation = -spring * rate;
     return f;
   }
@@ -30,8 +30,8 @@ FoundationForce foundation_force(const FoundationLaw& law, double k, double c, d
   return f;
 }
 
-FoundationForce sliding_force(double k, double limit, double then, double d) {
-  const double trial = std::clamp(then, -limit, limit) - k * d;
+FoundationForce sliding_force(double k, double limit, double previous, double d) {
+  const double trial = std::clamp(previous, -limit, limit) - k * d;
   FoundationForce f;
   f.force = std::clamp(trial, -limit, limit);
   f.by_displacement = f.force == trial ? k : 0.0;

@@ -1,4 +1,4 @@
-// Gauss integration of piecewise linear quantities over a piece of a beam.
+// Gauss integration of piecewise linear quantities over a part of a beam.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace traverse::beam {
 
-/// The one value of `d` between a and b, if it is constant there.
+/// The value of `d` between a and b if it is constant there.
 inline std::optional<double> constant_value(const Distribution& d, double a, double b) {
   if (d.uniform()) return d.at(a, b);
   const double value = d.at(a, b);
@@ -19,8 +19,8 @@ inline std::optional<double> constant_value(const Distribution& d, double a, dou
   return value;
 }
 
-/// Calls sum(x, weight*d(x)) for a rule on [from, to], split at the breaks of `d`, four points a piece: exact for
-/// d(x) times a polynomial of degree 6.
+/// Calls sum(x, weight*d(x)) for a Gauss rule on [from, to], divided at the breaks of `d`, with four points between
+/// breaks. It is exact for d(x) times a polynomial of degree 6.
 template <class Sum>
 void integrate(const Distribution& d, double from, double to, Sum sum) {
   constexpr std::array<double, 4> points{-0.86113631159405257522, -0.33998104358485626480, 0.33998104358485626480,

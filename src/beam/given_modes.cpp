@@ -1,5 +1,5 @@
 // Slopes of mode shapes by a cubic spline whose end slopes are those of a polynomial through the outermost stations,
-// and the beam model that represents a bridge by its modes.
+// and the beam model of a bridge by its modes.
 #include "traverse/beam/given_modes.hpp"
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 namespace traverse::beam {
 namespace {
 
-constexpr std::size_t end_stations = 4;  // that the slope at an end follows from
-constexpr double not_bending = 1e40;     // N m2: a force inside an element moves nothing but the modes
+constexpr std::size_t end_stations = 4;  // number of stations that determine the slope at an end
+constexpr double rigid_EI = 1e40;        // N m2: prevents local deflections under forces inside an element
 
-/// The slope at stations[at] of the polynomial through `count` stations from the first on (Lagrange).
+/// The slope at stations[at] of the polynomial through the first `count` stations (Lagrange).
 double polynomial_slope(const double* x, const double* values, std::size_t count, std::size_t at) {
   double slope = 0.0;
   for (std::size_t j = 0; j < count; ++j) {
-    double weight = 0.0;  // the derivative of Lagrange's polynomial j at the station
+    double weight = 0.0;  // derivative of Lagrange's polynomial j at the station
     for (std::size_t m = 0; m < count; ++m) {
       if (m == j) continue;
       double product = 1.0 / (x[j] - x[m]);
@@ -33,11 +33,12 @@ double polynomial_slope(const double* x, const double* values, std::size_t count
 }  // namespace
 
 std::vector<double> spline_slopes(const std::vector<double>& x, const std::vector<double>& values) {
-  const std::size_t n = x.size(), near = std::min(n, end_stations);
+  const std::size_t n = x.size(), end_count = std::min(n, end_stations);
   std::vector<double> slope(n, 0.0), diagonal(n, 1.0), above(n, 0.0);
-  slope.front() = polynomial_slope(x.data(), values.data(), near, 0);
-  slope.back() = polynomial_slope(x.data() + (n - near), values.data() + (n - near), near, near - 1);
-  // Equal curvatures on both sides of every inner station, by elimination from left to right.
+  slope.front() = polynomial_slope(x.data(), values.data(), end_count, 0);
+  slope.back() =
+      polynomial_slope(x.data() + (n - end_count), values.data() + (n - end_count), end_count, end_count - 1);
+  // Equal curvatures on both sides of every inner station; elimination from left to right.
   for (std::size_t i = 1; i + 1 < n; ++i) {
     const double left = x[i] - x[i - 1], right = x[i + 1] - x[i];
     const double rise =
@@ -55,7 +56,7 @@ BeamModel bridge_of(GivenModes modes) {
   BeamModel model;
   model.spans = {modes.x.back()};
   model.elements = {1};
-  model.EI = not_bending;
+  model.EI = rigid_EI;
   model.mass = 1.0;
   model.supports = {Support::free, Support::free};
   model.axial = false;

@@ -1,5 +1,5 @@
-// End forces of the elements from left to right, in double or extended precision: the left ones from the stiffness, the
-// right ones from equilibrium of the element.
+// End forces of the elements from left to right, in double or extended precision: those on the left end from the
+// stiffness, those on the right end from equilibrium of the element.
 #include "beam/internal_forces.hpp"
 
 #include <iterator>
@@ -34,14 +34,14 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
     }
     length = element.length;
     s.theta1 = line.mesh.hinged(element.left) ? line.place[3] : line.place[2];
-    s.u1 = line.mesh.parted(element.left) ? line.place[4] : line.place[0];
-    run.elements.resize(index(column - run.first + 1));  // leaves a gap between separate spans
+    s.u1 = line.mesh.has_expansion_device(element.left) ? line.place[4] : line.place[0];
+    run.elements.resize(index(column - run.first + 1));  // skips the columns between separate spans
     run.elements.back() = s;
   }
   return run;
 }
 
-// From left to right; what an element does to its right node is carried there.
+// Processes the elements from left to right and keeps the forces of an element on its right node for the next step.
 template <class Real, bool axial>
 void InternalForces::add_run(const Run& run, double sign, const double* x, const double* left, const double* right,
                              double* r) const {

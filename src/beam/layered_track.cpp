@@ -10,18 +10,18 @@
 namespace traverse::beam {
 namespace {
 
-/// A station moved by up to 1e-10 of its element, so that sleepers that stand alike are alike to the last bit: matrices
-/// and factors that repeat are kept once.
+/// The station rounded to 2^-32 of its element, so that sleepers at equal positions are equal to the last bit; matrices
+/// and factors that repeat are stored once.
 Station on_grid(Station station) {
   constexpr double grid = 4294967296.0;
   station.xi = std::round(station.xi * grid) / grid;
   return station;
 }
 
-/// k (a - b)^2/2 between two unknowns: [k, -k; -k, k].
+/// The matrix of k (a - b)^2/2 between two unknowns: [k, -k; -k, k].
 std::array<double, 4> between(double k) { return {k, -k, -k, k}; }
 
-/// The track's own term of a spring and a damper: into the stiffness by k, into the damping by c.
+/// Adds a spring and a damper: to the stiffness with k, to the damping with c.
 template <class Add>
 void add_layer(const Spring& spring, Rows& stiffness, Rows& damping, Add add) {
   add(spring.k, stiffness);
@@ -33,20 +33,22 @@ void add_on_bridge(const Sleeper& s, const Line& bridge, const Layout& layout, c
   const auto [v1, theta1, v2, theta2] = bridge.transverse(s.at.element);
   const Element& element = bridge.mesh.element(s.at.element);
   const auto psi = hermite(s.at.xi, element.length, element.shear).value;
-  const Ride ride = ride_of(s, track, layout);
-  mass.add(bridge.transverse(s.at.element), outer(ride.mass, psi));
+  const SleeperConnection connection = connection_of(s, track, layout);
+  mass.add(bridge.transverse(s.at.element), outer(connection.mass, psi));
   const std::array<double, 5> direction{1.0, -psi[0], -psi[1], -psi[2], -psi[3]};
-  const std::array<int, 5> unknowns{ride.unknown, v1, theta1, v2, theta2};
-  add_layer(ride.spring, stiffness, damping, [&](double k, Rows& rows) { rows.add(unknowns, outer(k, direction)); });
-  if (ride.along < 0) return;
-  // The beam's surface at height e above its axis moves by u - e theta along x.
+  const std::array<int, 5> unknowns{connection.unknown, v1, theta1, v2, theta2};
+  add_layer(connection.spring, stiffness, damping,
+            [&](double k, Rows& rows) { rows.add(unknowns, outer(k, direction)); });
+  if (connection.along < 0) return;
+  // The beam's surface at the height e above its axis moves by u - e theta along x.
   const auto [u1, u2] = bridge.axial(s.at.element);
   const auto phi = linear(s.at.xi);
   const auto turn = rotation(s.at.xi, element.length, element.shear);
   const double e = bridge.model.surface_height;
   const std::array<double, 7> along{1.0, -phi[0], -phi[1], e * turn[0], e * turn[1], e * turn[2], e * turn[3]};
-  const std::array<int, 7> moved{ride.along, u1, u2, v1, theta1, v2, theta2};
-  add_layer(ride.spring_along, stiffness, damping, [&](double k, Rows& rows) { rows.add(moved, outer(k, along)); });
+  const std::array<int, 7> unknowns_along{connection.along, u1, u2, v1, theta1, v2, theta2};
+  add_layer(connection.spring_along, stiffness, damping,
+            [&](double k, Rows& rows) { rows.add(unknowns_along, outer(k, along)); });
 }
 
 }  // namespace
@@ -56,15 +58,15 @@ std::vector<Sleeper> sleepers_of(const Line& bridge, int first, int past) {
   const RailMesh rail = rail_mesh(bridge.model);
   const double rounding = 1e-9 * rail.element;
   std::vector<Sleeper> sleepers;
-  const int each = track.elements_per_bay;
-  for (int node = (std::max(first, 0) + each - 1) / each * each; node < std::min(past, rail.elements + 1);
-       node += each) {
+  const int per_bay = track.elements_per_bay;
+  for (int node = (std::max(first, 0) + per_bay - 1) / per_bay * per_bay; node < std::min(past, rail.elements + 1);
+       node += per_bay) {
     Sleeper s;
     s.x = rail.x(node);
     s.rail_node = node;
     s.on_bridge = s.x >= bridge.mesh.start() - rounding && s.x <= bridge.mesh.end() + rounding;
     s.side = s.on_bridge ? 0 : s.x < bridge.mesh.start() ? -1 : 1;
-    // The right-hand one of two separate spans, as the numbering has it, whatever the rounding of x.
+    // At two separate spans the right-hand one, as in the numbering, independent of the rounding of x.
     if (s.on_bridge) s.at = on_grid(bridge.mesh.locate(s.x + rounding));
     s.values = track.at(s.x);
     s.missing = !track.has_sleeper(s.x);
@@ -75,13 +77,13 @@ std::vector<Sleeper> sleepers_of(const Line& bridge, int first, int past) {
   return sleepers;
 }
 
-Ride ride_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout) {
+SleeperConnection connection_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout) {
   const int column = s.rail_node * layout.block;
   const int along = layout.place[rail_u] < 0 ? -1 : column + layout.place[rail_u];
-  const Spring below_along = s.linear_longitudinal();
-  if (s.ballast_moves) return {s.ballast_unknown(layout), s.values.subballast, 0.0, along, below_along};
-  if (track.ballast) return {s.unknown(layout), s.linear_ballast(), s.values.ballast_mass, along, below_along};
-  return {column + layout.place[rail_v], s.values.pad, s.values.sleeper_mass, along, below_along};
+  const Spring longitudinal = s.linear_longitudinal();
+  if (s.ballast_moves) return {s.ballast_unknown(layout), s.values.subballast, 0.0, along, longitudinal};
+  if (track.ballast) return {s.unknown(layout), s.linear_ballast(), s.values.ballast_mass, along, longitudinal};
+  return {column + layout.place[rail_v], s.values.pad, s.values.sleeper_mass, along, longitudinal};
 }
 
 std::vector<std::pair<int, double>> masses_of(const Sleeper& s, const Layout& layout) {
@@ -107,15 +109,15 @@ void add_track(const Line& bridge, const Layout& layout, const Slice& slice, Row
                   [&](double k, Rows& rows) { rows.add(std::array{unknown}, std::array{k}); });
       });
     }
-    const auto merge = [&](const Spring& spring, int above, int below) {
+    const auto connect = [&](const Spring& spring, int above, int below) {
       add_layer(spring, stiffness, damping, [&](double k, Rows& rows) {
         rows.add(std::array{above, below}, between(k));
       });
     };
-    if (s.ballast_moves && s.sleeper_moves) merge(s.linear_ballast(), s.unknown(layout), s.ballast_unknown(layout));
-    for (const auto& [unknown, its_mass] : masses_of(s, layout)) mass.add(std::array{unknown}, std::array{its_mass});
-    // Without a sleeper of its own the pad stands on the next layer.
-    if (s.sleeper_moves) merge(s.values.pad, s.rail_node * layout.block + layout.place[rail_v], s.unknown(layout));
+    if (s.ballast_moves && s.sleeper_moves) connect(s.linear_ballast(), s.unknown(layout), s.ballast_unknown(layout));
+    for (const auto& [unknown, node_mass] : masses_of(s, layout)) mass.add(std::array{unknown}, std::array{node_mass});
+    // Without a separate sleeper mass the pad acts on the next layer.
+    if (s.sleeper_moves) connect(s.values.pad, s.rail_node * layout.block + layout.place[rail_v], s.unknown(layout));
   }
 }
 

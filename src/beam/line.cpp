@@ -37,11 +37,11 @@ Line::Line(BeamModel its_model, const Layout& layout, bool rail, int its_first_c
       first_column(its_first_column),
       block(layout.block),
       per_node(model.axial ? 3 : 2) {
-  const auto& at = layout.place;
+  const auto& places = layout.place;
   if (rail) {
-    place = {at[rail_u], at[rail_v], at[rail_theta], at[rail_theta_right], at[rail_u_right]};
+    place = {places[rail_u], places[rail_v], places[rail_theta], places[rail_theta_right], places[rail_u_right]};
   } else {
-    place = {at[Kind::u], at[Kind::v], at[Kind::theta], at[Kind::theta_right], -1};
+    place = {places[Kind::u], places[Kind::v], places[Kind::theta], places[Kind::theta_right], -1};
   }
 }
 
@@ -70,7 +70,7 @@ std::array<int, 4> Line::transverse(int element) const {
 
 std::array<int, 2> Line::axial(int element) const {
   const int left = mesh.element(element).left;
-  return {unknown(left, mesh.parted(left) ? 4 : 0), unknown(left + 1, 0)};
+  return {unknown(left, mesh.has_expansion_device(left) ? 4 : 0), unknown(left + 1, 0)};
 }
 
 std::array<int, 6> Line::unknowns(int element) const {

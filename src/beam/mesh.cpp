@@ -11,23 +11,23 @@
 namespace traverse::beam {
 namespace {
 
-/// From x on, of length h.
+/// The element of length h whose left node is at x.
 Element element_of(const BeamModel& model, int left, int span, double x, double h) {
   const double middle = x + 0.5 * h, EI = model.EI.at(middle, x);
   return {left, span, x, h, EI, model.GA ? 12.0 * EI / (model.GA->at(middle, x) * h * h) : 0.0};
 }
 
-/// Whether the ground beside the beam's first (or last) end stays at its height.
+/// Whether the beam's first (or last) end remains at the height of the ground beside it.
 bool level_with_ground(const BeamModel& model, bool last) {
   if (model.given) {
-    const auto rests = [last](const std::vector<double>& shape) {
+    const auto is_zero_at_end = [last](const std::vector<double>& shape) {
       return (last ? shape.back() : shape.front()) == 0.0;
     };
-    return std::all_of(model.given->shape.begin(), model.given->shape.end(), rests);
+    return std::all_of(model.given->shape.begin(), model.given->shape.end(), is_zero_at_end);
   }
-  const auto& of = model.settlement;
-  const double settled = of.empty() ? 0.0 : last ? of.back() : of.front();
-  return fixes_vertical(last ? model.supports.back() : model.supports.front()) && settled == 0.0;
+  const auto& settlements = model.settlement;
+  const double settlement = settlements.empty() ? 0.0 : last ? settlements.back() : settlements.front();
+  return fixes_vertical(last ? model.supports.back() : model.supports.front()) && settlement == 0.0;
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ Station Mesh::locate(double x, bool from_left) const {
     --e;
     return {e, 1.0};
   }
-  if (x == end()) return {e, 1.0};  // whatever the rounding of the last element's length
+  if (x == end()) return {e, 1.0};  // independent of the rounding of the last element's length
   return {e, std::clamp((x - elements_[e].x) / elements_[e].length, 0.0, 1.0)};
 }
 

@@ -1,5 +1,5 @@
-// Checks of a beam model's spans, properties, joints, cracks, supports and foundation, which supports hold which
-// displacement (section 3.1 of the paper), and the linearised model.
+// Checks of a beam model's spans, properties, joints, cracks, supports and foundation, the displacements that supports
+// fix (section 3.1 of the paper), and the linearised model.
 #include "traverse/beam/model.hpp"
 
 #include <fmt/format.h>
@@ -16,8 +16,8 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double least_distance = 1e-3;  // m, of nodes, as that of span ends
-constexpr double most_shear = 1e11;      // 12 EI/(GA h^2): rounding takes a hundred-thousandth then
+constexpr double min_distance = 1e-3;  // m, between nodes and between span ends
+constexpr double max_shear = 1e11;     // 12 EI/(GA h^2), with a relative rounding error of 1e-5
 
 std::string number(double value) {
   char text[32];
@@ -25,8 +25,8 @@ std::string number(double value) {
   return text;
 }
 
-void require(bool holds, const std::string& option, const std::string& value, const std::string& allowed) {
-  if (!holds) throw InputError(option + " is " + value + "; " + allowed);
+void require(bool condition, const std::string& option, const std::string& value, const std::string& allowed) {
+  if (!condition) throw InputError(option + " is " + value + "; " + allowed);
 }
 
 void require_positive(const Distribution& d, const std::string& option, const std::string& unit) {
@@ -50,7 +50,7 @@ void check_spans(const BeamModel& model) {
   for (int n : model.elements) {
     require(n >= 1, "beam_elements_per_span", std::to_string(n), "every span needs at least 1 element");
   }
-  // Unknowns are counted in 32 bits, here and in PETSc.
+  // Traverse and PETSc count unknowns in 32 bits.
   const long long unknowns = 3 * (std::accumulate(model.elements.begin(), model.elements.end(), 0LL) +
                                   static_cast<long long>(model.spans.size()));
   require(unknowns < (1LL << 31), "beam_elements_per_span", std::to_string(unknowns) + " unknowns in all",
@@ -65,7 +65,7 @@ void check_law(const FoundationLaw& law, const std::string& option, const Founda
   require_not_negative(law.cubic, option + "_cubic", std::string(units.cubic));
 }
 
-/// What slides is a spring and nothing else.
+/// Checks that a point that slides is a spring without other properties.
 void check_sliding(const PointFoundation& p, const std::string& option) {
   require_not_negative(p.law.slides_at, option + "_limit", "N");
   if (p.law.slides_at == 0.0) return;
@@ -97,13 +97,14 @@ void check_foundation(const Foundation& foundation, double length) {
   });
 }
 
-/// Bending of an element counts 1 + 12 EI/(GA h^2) times: where that is too much, rounding hides shear.
+/// Checks GA. The bending of an element has the factor 1 + 12 EI/(GA h^2); if this is too large, rounding errors
+/// dominate.
 void check_shear(const BeamModel& model) {
   require_positive(*model.GA, "beam_GA", "N");
   if (model.track || model.elements.size() != model.spans.size()) return;
   for (std::size_t i = 0; i < model.spans.size(); ++i) {
     const double h = model.spans[i] / std::max(1, model.elements[i]);
-    const double least = 12.0 * model.EI.maximum() / (most_shear * h * h);
+    const double least = 12.0 * model.EI.maximum() / (max_shear * h * h);
     require(model.GA->minimum() >= least, "beam_GA", number(model.GA->minimum()),
             fmt::format("beside beam_EI, in elements of {:.3g} m, rounding hides bending below {:.2g} N", h, least));
   }
@@ -114,22 +115,22 @@ void check_joints(const BeamModel& model) {
   require(model.joints.size() <= 1 || model.joints.size() == inner, "beam_continuity",
           std::to_string(model.joints.size()) + " joints",
           "one for all or one at every inner span end is needed: " + std::to_string(inner));
-  double before = model.start;
+  double previous = model.start;
   for (double x : model.hinges) {
-    require(std::isfinite(x) && x > before && x < model.end(), "beam_hinges", number(x),
+    require(std::isfinite(x) && x > previous && x < model.end(), "beam_hinges", number(x),
             "hinges lie within the beam, from left to right");
-    before = x;
+    previous = x;
   }
 }
 
 void check_cracks(const BeamModel& model) {
-  double before = model.start;
+  double previous = model.start;
   for (const Crack& crack : model.cracks) {
-    require(std::isfinite(crack.x) && crack.x > before && crack.x < model.end(), "beam_cracks_x", number(crack.x),
+    require(std::isfinite(crack.x) && crack.x > previous && crack.x < model.end(), "beam_cracks_x", number(crack.x),
             "cracks lie within the beam, from left to right, each at a station of its own");
     require(std::isfinite(crack.k) && crack.k > 0.0, "beam_cracks_k", number(crack.k),
             "it must be positive (N m/rad); without stiffness it is a hinge (beam_hinges)");
-    before = crack.x;
+    previous = crack.x;
     require(std::find(model.hinges.begin(), model.hinges.end(), crack.x) == model.hinges.end(), "beam_cracks_x",
             number(crack.x), "there is a hinge there (beam_hinges)");
     double end = model.start;
@@ -147,7 +148,7 @@ void check_cracks(const BeamModel& model) {
             "a crack of a width lies within the beam");
 }
 
-/// Nodes stand wherever the beam is divided. Rounding takes what lies between those that are too close.
+/// Checks the distances of the nodes that divide the beam. Short elements between close nodes cause rounding errors.
 void check_divisions(const BeamModel& model) {
   if (model.track || (model.cracks.empty() && model.cuts.empty() && model.hinges.empty())) return;
   std::vector<double> x = model.hinges;
@@ -161,11 +162,11 @@ void check_divisions(const BeamModel& model) {
                              : model.cuts.empty()                       ? "beam_cracks_x"
                                                                         : "beam_cracks_width";
   for (std::size_t i = 1; i < x.size(); ++i)
-    if (x[i] - x[i - 1] > 0.0 && x[i] - x[i - 1] < least_distance)
+    if (x[i] - x[i - 1] > 0.0 && x[i] - x[i - 1] < min_distance)
       throw InputError(
           fmt::format("{}: what divides the beam (ends of spans and of cracks, hinges) at x = {:.9g} and "
                       "{:.9g} m is {:.3g} m apart; allowed: 0, or at least {:g} m",
-                      option, x[i - 1], x[i], x[i] - x[i - 1], least_distance));
+                      option, x[i - 1], x[i], x[i] - x[i - 1], min_distance));
 }
 
 void check_strains(const BeamModel& model) {
@@ -211,7 +212,7 @@ BeamModel linearised(const BeamModel& model) {
       bed.law = {};
     }
   });
-  if (linear.track) linear.track->gaps_stay_open = linear.track->holds_fast = true;
+  if (linear.track) linear.track->gaps_stay_open = linear.track->sliding_disabled = true;
   return linear;
 }
 

@@ -25,9 +25,9 @@ void add_points(std::size_t kind, const Line& bridge, int first, int past, std::
 }
 
 void add_bed(std::size_t kind, const Line& bridge, int e, std::vector<NonlinearPoint>& points) {
-  const std::optional<Bed>& there = bridge.model.foundation.*foundation_kinds[kind].bed;
-  if (!there || !there->law.nonlinear()) return;
-  const Bed& bed = *there;
+  const std::optional<Bed>& optional_bed = bridge.model.foundation.*foundation_kinds[kind].bed;
+  if (!optional_bed || !optional_bed->law.nonlinear()) return;
+  const Bed& bed = *optional_bed;
   const Element& element = bridge.mesh.element(e);
   for (const auto& [left, right] : bed_pieces(bed, element)) {
     const double middle = 0.5 * (left + right);
@@ -81,7 +81,7 @@ std::vector<NonlinearPoint> hanging_sleepers(const Line& bridge, const Layout& l
   for (const Sleeper& s : sleepers_of(bridge, 0, past)) {
     if (!s.hangs()) continue;
     NonlinearPoint point;
-    point.kind = below_a_sleeper;
+    point.kind = hanging_sleeper_kind;
     point.index = index++;
     point.x = s.x;
     point.at = s.at;
@@ -104,7 +104,7 @@ std::vector<NonlinearPoint> sliding_sleepers(const Line& bridge, const Layout& l
   for (const Sleeper& s : sleepers_of(bridge, 0, past)) {
     if (!s.slides()) continue;
     NonlinearPoint point;
-    point.kind = along_a_sleeper;
+    point.kind = sliding_sleeper_kind;
     point.direction = Direction::longitudinal;
     point.index = index++;
     point.x = s.x;

@@ -1,4 +1,4 @@
-// How a beam is divided: between span ends, hinges and steps of EI and mass, and under a layered track.
+// Division of a beam at span ends, hinges and steps of EI and mass, and below a layered track.
 #include <algorithm>
 #include <cmath>
 
@@ -8,37 +8,38 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double rounding = 1e-9;  // of an element's length: closer stations are one
+constexpr double rounding = 1e-9;  // of an element's length: closer stations are equal
 
-constexpr double least_piece = 0.2;  // of an element's length: steps closer to what divides the beam do not
+constexpr double min_piece = 0.2;  // of an element's length: steps closer to another division are ignored
 
-/// Stations within the stretch at which EI or the mass steps and which nodes can meet: few, and not too close to
-/// others.
+/// The steps of EI or mass between `left` and `right` at which the beam is divided; none if there are too many for the
+/// elements.
 std::vector<double> steps_between(const BeamModel& model, double left, double right, double element) {
-  std::vector<double> steps = model.EI.steps(left, right), kept;
-  const std::vector<double> of_mass = model.mass.steps(left, right);
-  steps.insert(steps.end(), of_mass.begin(), of_mass.end());
+  std::vector<double> steps = model.EI.steps(left, right), selected;
+  const std::vector<double> mass_steps = model.mass.steps(left, right);
+  steps.insert(steps.end(), mass_steps.begin(), mass_steps.end());
   std::sort(steps.begin(), steps.end());
   for (const double x : steps)
-    if (std::min(x - (kept.empty() ? left : kept.back()), right - x) >= least_piece * element) kept.push_back(x);
-  return 2.0 * static_cast<double>(kept.size()) * element <= right - left ? kept : std::vector<double>();
+    if (std::min(x - (selected.empty() ? left : selected.back()), right - x) >= min_piece * element)
+      selected.push_back(x);
+  return 2.0 * static_cast<double>(selected.size()) * element <= right - left ? selected : std::vector<double>();
 }
 
-/// Divides the last piece where EI or the mass steps: bending has a kink there, which no element can follow.
+/// Divides the last piece at steps of EI or mass, where the curvature jumps.
 void divide_at_steps(const BeamModel& model, std::vector<Piece>& pieces) {
   const Piece whole = pieces.back();
   const double element = model.spans[whole.span] / model.elements[whole.span];
   for (const double x : steps_between(model, whole.left, whole.right, element)) {
-    Piece& rest = pieces.back();
-    rest.right = x;
-    rest.next = Joint::continuous;
-    rest.ends_span = false;
+    Piece& left_piece = pieces.back();
+    left_piece.right = x;
+    left_piece.next = Joint::continuous;
+    left_piece.ends_span = false;
     pieces.push_back(whole);
     pieces.back().left = x;
   }
 }
 
-/// Where a beam is divided besides its span ends, and what joins it there.
+/// A division of the beam that is not a span end, with the joint there.
 struct Division {
   double x = 0.0;
   Joint joint = Joint::hinge;
@@ -83,17 +84,18 @@ std::vector<Piece> divided(const BeamModel& model) {
   return pieces;
 }
 
-/// The bridge under a layered track has one node for each of the rail's, so that both are numbered together: as many
-/// elements as there are rail nodes from the piece's left end on, less one where no node is shared with the next piece.
-/// Every sleeper then stands on an element beside its own rail node.
-void follow_rail(const RailMesh& rail, std::vector<Piece>& pieces) {
+/// Sets the elements of the bridge below a layered track. The bridge has one node for each node of the rail, so that
+/// both share one numbering: the number of elements is the number of rail nodes from the piece's left end to its right
+/// end, minus one if the piece shares no node with the next one. Every sleeper is then on an element next to its own
+/// rail node.
+void match_rail_nodes(const RailMesh& rail, std::vector<Piece>& pieces) {
   for (Piece& piece : pieces) {
     const int nodes = rail.first_from(piece.right) - rail.first_from(piece.left);
     piece.elements = nodes - (piece.next == Joint::separate ? 1 : 0);
   }
 }
 
-/// One element between two stations of given modes.
+/// One element between neighbouring stations of given modes.
 std::vector<Piece> pieces_between(const std::vector<double>& x) {
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i + 1 < x.size(); ++i) pieces.push_back({0, x[i], x[i + 1], 1, Joint::continuous, false});
@@ -102,9 +104,9 @@ std::vector<Piece> pieces_between(const std::vector<double>& x) {
   return pieces;
 }
 
-/// The mass that a sleeper brings onto the bridge, its ballast's or where there is none its own: the mean of those on
-/// the bridge.
-double riding_mass(const BeamModel& model, const LayeredTrack& track) {
+/// The mass of a sleeper that moves with the bridge: that of its ballast, or without ballast that of the sleeper. It is
+/// the mean of all sleepers on the bridge.
+double mass_on_bridge(const BeamModel& model, const LayeredTrack& track) {
   const auto mass = [&](double x) {
     const TrackValues values = track.at(x);
     return track.ballast ? values.ballast_mass : values.sleeper_mass;
@@ -136,7 +138,7 @@ BeamModel bridge_alone(const BeamModel& model) {
   BeamModel bridge = model;
   if (!model.track) return bridge;
   const LayeredTrack& track = *model.track;
-  bridge.mass = model.mass.plus(riding_mass(model, track) / track.spacing);
+  bridge.mass = model.mass.plus(mass_on_bridge(model, track) / track.spacing);
   bridge.track.reset();
   return bridge;
 }
@@ -166,10 +168,10 @@ std::vector<Piece> pieces_of(const BeamModel& model) {
   if (model.given) return pieces_between(model.given->x);
   std::vector<Piece> pieces = divided(model);
   if (model.track) {
-    follow_rail(rail_mesh(model), pieces);
+    match_rail_nodes(rail_mesh(model), pieces);
     return pieces;
   }
-  // A span's elements are shared among its pieces by length, at least one each.
+  // A span's elements are distributed over its pieces in proportion to their length, at least one each.
   for (Piece& piece : pieces) {
     const double share = (piece.right - piece.left) / model.spans[piece.span];
     piece.elements = std::max(1, base::whole(std::round(model.elements[piece.span] * share)));

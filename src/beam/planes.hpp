@@ -1,4 +1,4 @@
-// Numbers of a few consecutive nodes, an array for each unknown of a column, for products with many nodes at a time.
+// Values of a few consecutive nodes, one array for each unknown of a column, for products with many nodes at a time.
 #pragma once
 
 #include <array>
@@ -7,13 +7,14 @@
 
 namespace traverse::beam {
 
-/// The arrays, by the unknown's place in a column.
+/// The arrays, indexed by the unknown's place in a column.
 using Planes = std::array<double*, kinds>;
 
-/// Most nodes of one call with planes.
+/// Largest number of nodes of one call with planes.
 inline constexpr int tile = 128;
 
-/// Nodes that products take at a time; as many numbers behind those of a call may be read, whatever they are.
-inline constexpr int abreast = 32;
+/// Number of nodes per step of a product. As many values behind those of a call may be read; their values are
+/// arbitrary.
+inline constexpr int nodes_per_step = 32;
 
 }  // namespace traverse::beam

@@ -7,7 +7,7 @@
 namespace traverse::beam {
 namespace {
 
-/// A matrix of u1, u2 where four unknowns have a place.
+/// A matrix of u1, u2 as a matrix of four unknowns.
 Transverse among_four(const Axial& m) { return {m[0], m[1], 0.0, 0.0, m[2], m[3]}; }
 
 }  // namespace

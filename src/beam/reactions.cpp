@@ -1,5 +1,5 @@
-// The rows of held unknowns, eq. 18 with its damping, foundation and load: R_c = M_ca a + C_ca w + K_ca v - P_c.
-// Each rank multiplies the columns of the unknowns it owns, so that neighbours on another rank are not needed.
+// The rows of held unknowns, eq. 18 with its damping, foundation and load: R_c = M_ca a + C_ca w + K_ca v - P_c. Each
+// rank multiplies the columns of its own unknowns and needs no values of other ranks.
 #include <algorithm>
 
 #include "beam/beam.hpp"
@@ -9,7 +9,7 @@ namespace traverse::beam {
 
 void Beam::record_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
                             const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping) {
-  // By symmetry the entry of the held row in a free column is that of the free row in the held column.
+  // By symmetry, the entry of the held row in a free column equals that of the free row in the held column.
   const auto record_column = [&](std::size_t slot, int unknown, int held) {
     if (!slice.owns(unknown) || slice.held(unknown)) return;
     const ReactionTerm term{slot,
@@ -23,11 +23,11 @@ void Beam::record_reactions(const Slice& slice, const Rows& beams, const Rows& m
     if (term.mass != 0.0 || term.stiffness != 0.0 || term.foundation_damping != 0.0) reaction_terms_.push_back(term);
   };
   const int b = block();
-  const auto note = [&](int held, std::size_t slot) {
+  const auto record = [&](int held, std::size_t slot) {
     if (held < 0 || !slice.reaches(held) || !slice.held(held)) return;
     if (slice.owns(held)) {
       held_loads_.push_back({slot, index(local(held))});
-      if (!settled_.empty())
+      if (!settlements_.empty())
         held_loads_.back().by_settlement = beams.times(held, [&](int j) { return settlement_of(j); });
     }
     for (int i = (held / b - 1) * b; i < (held / b + 2) * b; ++i) record_column(slot, i, held);
@@ -35,12 +35,12 @@ void Beam::record_reactions(const Slice& slice, const Rows& beams, const Rows& m
   for (int end = 0; end <= mesh().spans(); ++end) {
     const auto [left, right] = mesh().nodes_at(end);
     for (int node = left; node <= right; ++node) {
-      for (int which = 0; which < (mesh().hinged(node) ? 4 : 3); ++which) {
-        note(bridge_.unknown(node, which), index(3 * end + std::min(which, 2)));
+      for (int component = 0; component < (mesh().hinged(node) ? 4 : 3); ++component) {
+        record(bridge_.unknown(node, component), index(3 * end + std::min(component, 2)));
       }
     }
   }
-  for (const int node : ends_held_of_rail()) note(rail_->unknown(node, 0), index(3 * (mesh().spans() + 1)));
+  for (const int node : held_rail_ends()) record(rail_->unknown(node, 0), index(3 * (mesh().spans() + 1)));
 }
 
 void Beam::add_reaction_form(int span_end, int component, double factor, double* forces) const {
@@ -51,7 +51,7 @@ void Beam::add_reaction_form(int span_end, int component, double factor, double*
 
 void Beam::reactions(const double* v, const double* w, const double* a, const double* P,
                      std::vector<std::array<double, 3>>& out) const {
-  out.resize(mesh().span_ends().size() + (ends_held_of_rail().empty() ? 0 : 1));
+  out.resize(mesh().span_ends().size() + (held_rail_ends().empty() ? 0 : 1));
   double* sums = out.front().data();
   const std::size_t count = 3 * out.size();
   std::fill(sums, sums + count, 0.0);

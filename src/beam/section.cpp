@@ -49,10 +49,10 @@ void SectionForms::add_vertical_spring(double c, double xi) {
 }
 
 void SectionForms::add_rotational_spring(double c, double xi) {
-  const auto turn = rotation(xi, element_.length, element_.shear);
-  add_end_forces(outer(c, turn));
+  const auto theta = rotation(xi, element_.length, element_.shear);
+  add_end_forces(outer(c, theta));
   if (!is_left(xi, xi_)) return;
-  for (std::size_t j = 0; j < 4; ++j) moment_[j] += c * turn[j];
+  for (std::size_t j = 0; j < 4; ++j) moment_[j] += c * theta[j];
 }
 
 void SectionForms::add_longitudinal_spring(double c, double xi) {
@@ -65,8 +65,8 @@ void SectionForms::add_longitudinal_spring(double c, double xi) {
 void SectionForms::add_rotational_density(const Distribution& density) {
   const double h = element_.length;
   integrate(density, element_.x, element_.x + xi_ * h, [&](double x, double weight) {
-    const auto turn = rotation((x - element_.x) / h, h, element_.shear);
-    for (std::size_t j = 0; j < 4; ++j) moment_[j] += weight * turn[j];
+    const auto theta = rotation((x - element_.x) / h, h, element_.shear);
+    for (std::size_t j = 0; j < 4; ++j) moment_[j] += weight * theta[j];
   });
 }
 
@@ -95,29 +95,29 @@ void SectionForms::add_spring(Direction direction, double c, double xi) {
   }
 }
 
-double sheared_between_held_ends(double xi, double load, double shear, bool turn, bool moment) {
-  // From the left end on: nothing up to the load; w'' = M and w' = theta - V shear/12 behind it.
+double clamped_timoshenko_response(double xi, double load, double shear, bool rotated, bool moment) {
+  // From the left end on: zero up to the load; behind it w'' = M and w' = theta - V shear/12.
   struct Shape {
-    double value, turn;
+    double value, theta;
   };
-  const auto behind = [&](double d) -> Shape {
+  const auto response_behind = [&](double d) -> Shape {
     if (d <= 0.0) return {0.0, 0.0};
     return moment ? Shape{-0.5 * d * d, -d} : Shape{d * (d * d / 6.0 - shear / 12.0), 0.5 * d * d};
   };
-  const Shape here = behind(xi - load), end = behind(1.0 - load);
-  const auto form = turn ? rotation(xi, 1.0, shear) : hermite(xi, 1.0, shear).value;
-  return (turn ? here.turn : here.value) - form[2] * end.value - form[3] * end.turn;
+  const Shape here = response_behind(xi - load), end = response_behind(1.0 - load);
+  const auto form = rotated ? rotation(xi, 1.0, shear) : hermite(xi, 1.0, shear).value;
+  return (rotated ? here.theta : here.value) - form[2] * end.value - form[3] * end.theta;
 }
 
 double fixed_end_by_force(double xi, double load, double h, double EI, double shear) {
-  if (shear != 0.0) return h * h * h / EI * sheared_between_held_ends(xi, load, shear, false, false);
+  if (shear != 0.0) return h * h * h / EI * clamped_timoshenko_response(xi, load, shear, false, false);
   if (xi > load) return fixed_end_by_force(1.0 - xi, 1.0 - load, h, EI);
   const double b = 1.0 - load;
   return h * h * h / (6.0 * EI) * b * b * xi * xi * (3.0 * load - (1.0 + 2.0 * load) * xi);
 }
 
 double fixed_end_by_moment(double xi, double load, double h, double EI, double shear) {
-  if (shear != 0.0) return h * h / EI * sheared_between_held_ends(xi, load, shear, false, true);
+  if (shear != 0.0) return h * h / EI * clamped_timoshenko_response(xi, load, shear, false, true);
   if (xi > load) return -fixed_end_by_moment(1.0 - xi, 1.0 - load, h, EI);
   return h * h / (2.0 * EI) * xi * xi * (1.0 - load) * (1.0 - 3.0 * load + 2.0 * load * xi);
 }

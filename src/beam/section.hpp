@@ -7,24 +7,24 @@ namespace traverse::beam {
 
 /// Forms for one matrix of the element (K_e, C_e or M_e): coefficients of (v1, theta1, v2, theta2) and (u1, u2).
 ///
-/// The element's matrix gives the forces at its left end; what acts on the beam between there and the section, x from
-/// the left end, is added. With the end forces f = (K v)_1, m = (K v)_2, forces q and moments c at stations s:
+/// The element's matrix determines the forces at its left end; the loads between the left end and the section at x are
+/// added. With the end forces f = (K v)_1, m = (K v)_2, forces q and moments c at stations s:
 ///   shear(x) = f + sum q,   moment(x) = -m + f x + sum q (x - s) - sum c.
-/// What stands exactly on the section is left of it, except at the right end of the element.
+/// A load exactly at the section is left of it, except at the right end of the element.
 class SectionForms {
  public:
   SectionForms(const Element& element, double xi) : element_(element), xi_(xi) {}
 
-  /// The forces at the left end, by a matrix of the element.
+  /// Adds the forces at the left end, from a matrix of the element.
   void add_end_forces(const Transverse& matrix);
   void add_end_forces(const Axial& matrix);
-  /// Inertia or a bed: the force on the beam is -density(x) psi v, or -density(x) phi u; without end forces.
+  /// Adds inertia or a bed without end forces: the force on the beam is -density(x) psi v, or -density(x) phi u.
   void add_transverse_density(const Distribution& density);
   void add_axial_density(const Distribution& density);
-  /// Rotary inertia or a bed that holds the rotation: the moment on the beam is -density(x) theta.
+  /// Adds rotary inertia or a rotational bed without end forces: the moment on the beam is -density(x) theta.
   void add_rotational_density(const Distribution& density);
-  /// A foundation in a direction, with its end forces. A bed: a force -density(x) psi v per length, a moment
-  /// -density(x) theta v, or a force -density(x) phi u; a spring at xi: the same concentrated, with c.
+  /// Adds a foundation in a direction, with its end forces. A bed acts with a force -density(x) psi v or -density(x)
+  /// phi u, or with a moment -density(x) theta v, per length; a spring acts in the same way at xi, with c.
   void add_bed(Direction direction, const Distribution& density);
   void add_spring(Direction direction, double c, double xi);
 
@@ -43,15 +43,15 @@ class SectionForms {
   std::array<double, 2> axial_force_{};
 };
 
-/// Whether what stands at xi is left of a section.
+/// Whether a load at xi is left of a section.
 inline bool is_left(double xi, double section) { return xi < section || (xi == section && section < 1.0); }
 
 /// Deflection at xi of an element clamped at both ends under a unit force at `load`, m/N. shear: 12 EI/(GA h^2).
 double fixed_end_by_force(double xi, double load, double h, double EI, double shear = 0.0);
 /// The same under a unit moment, counter-clockwise, m/(N m).
 double fixed_end_by_moment(double xi, double load, double h, double EI, double shear = 0.0);
-/// Of a clamped element with h = 1 and EI = 1 that shears: the deflection at xi, or the rotation (`turn`), under a unit
-/// force at `load`, or a unit moment.
-double sheared_between_held_ends(double xi, double load, double shear, bool turn, bool moment);
+/// The deflection, or the rotation, at xi of a clamped Timoshenko element with h = 1 and EI = 1 under a unit force, or
+/// a unit moment, at `load`.
+double clamped_timoshenko_response(double xi, double load, double shear, bool rotated, bool moment);
 
 }  // namespace traverse::beam

@@ -1,21 +1,21 @@
-// Hermite cubics with their derivatives; where the beam shears, the element's constant shear strain is added to the
-// rotations at both ends (Friedman and Kosmatka 1993).
+// Hermite cubics with their derivatives; with shear the element's constant shear strain is added to the rotations at
+// both ends (Friedman and Kosmatka 1993).
 #include "beam/shape.hpp"
 
 namespace traverse::beam {
 namespace {
 
-/// To a form the gamma that the slopes at both ends hold besides the rotations.
+/// Adds gamma to a form, because the slopes at both ends are the rotations plus gamma.
 void add_strain(std::array<double, 4>& form, const std::array<double, 4>& gamma) {
-  const double both = form[1] + form[3];
-  for (std::size_t i = 0; i < 4; ++i) form[i] += both * gamma[i];
+  const double slope_sum = form[1] + form[3];
+  for (std::size_t i = 0; i < 4; ++i) form[i] += slope_sum * gamma[i];
 }
 
 }  // namespace
 
 std::array<double, 4> shear_strain(double h, double shear) {
-  const double part = shear / (1.0 + shear);
-  return {-part / h, -0.5 * part, part / h, -0.5 * part};
+  const double ratio = shear / (1.0 + shear);
+  return {-ratio / h, -0.5 * ratio, ratio / h, -0.5 * ratio};
 }
 
 Hermite hermite(double xi, double h, double shear) {

@@ -1,4 +1,4 @@
-// Shape functions of the beam element, the paper's eqs. 4 and 5, and of the one that shears (Timoshenko).
+// Shape functions of the beam element, eqs. 4 and 5 of the paper, and of the Timoshenko element.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@ struct Hermite {
   std::array<double, 4> curvature;  // d2 psi/dx2, 1/m2
   std::array<double, 4> third;      // d3 psi/dx3, 1/m3
 };
-/// shear: 12 EI/(GA h^2). The element without loads inside then has v' = theta + gamma with one gamma along it, and so
-/// v stays cubic: exact for constant EI and GA, without locking (Friedman and Kosmatka 1993). 0: Bernoulli-Euler.
+/// shear: 12 EI/(GA h^2). Without loads inside the element v' = theta + gamma with a constant gamma, and v remains
+/// cubic: exact for constant EI and GA, without locking (Friedman and Kosmatka 1993). 0: Bernoulli-Euler.
 Hermite hermite(double xi, double h, double shear = 0.0);
 
 /// The shear strain gamma = v' - theta of an element as a form of (v1, theta1, v2, theta2).
 std::array<double, 4> shear_strain(double h, double shear);
 
-/// Rotation theta of the sections as a form of (v1, theta1, v2, theta2): the slope less the shear strain.
+/// Rotation theta of the sections as a form of (v1, theta1, v2, theta2): the slope minus the shear strain.
 std::array<double, 4> rotation(double xi, double h, double shear);
 
 /// Axial shape functions phi_1, phi_2.

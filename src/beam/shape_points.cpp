@@ -1,4 +1,4 @@
-// Divides the elements evenly, into at least 24 intervals a span and about 200 on a bridge of few spans, and inserts
+// Divides the elements evenly, into at least 24 intervals per span and about 200 on a bridge of few spans, and inserts
 // the requested stations.
 #include "beam/shape_points.hpp"
 
@@ -7,10 +7,10 @@
 namespace traverse::beam {
 namespace {
 
-constexpr int least_a_span = 24, least_in_all = 200;
-constexpr double at_node = 1e-9;  // of an element: a station so close to a node is the node
+constexpr int min_per_span = 24, min_total = 200;
+constexpr double node_tolerance = 1e-9;  // of an element: a station this close to a node is the node
 
-/// Of each span.
+/// The number of elements of each span.
 std::vector<int> elements_of_spans(const Mesh& mesh) {
   std::vector<int> count(static_cast<std::size_t>(mesh.spans()), 0);
   for (int e = 0; e < mesh.elements(); ++e) ++count[static_cast<std::size_t>(mesh.element(e).span)];
@@ -19,22 +19,22 @@ std::vector<int> elements_of_spans(const Mesh& mesh) {
 
 }  // namespace
 
-ShapePoints::ShapePoints(const Mesh& mesh, std::vector<double> also)
-    : ShapePoints(mesh, std::move(also), std::max(least_a_span, least_in_all / mesh.spans())) {}
+ShapePoints::ShapePoints(const Mesh& mesh, std::vector<double> additional)
+    : ShapePoints(mesh, std::move(additional), std::max(min_per_span, min_total / mesh.spans())) {}
 
-ShapePoints::ShapePoints(const Mesh& mesh, std::vector<double> also, int points_a_span) {
-  std::sort(also.begin(), also.end());
-  auto next = also.begin();
+ShapePoints::ShapePoints(const Mesh& mesh, std::vector<double> additional, int points_per_span) {
+  std::sort(additional.begin(), additional.end());
+  auto next = additional.begin();
   const std::vector<int> elements = elements_of_spans(mesh);
   for (int e = 0; e < mesh.elements(); ++e) {
     const Element& element = mesh.element(e);
     const int in_span = elements[static_cast<std::size_t>(element.span)];
-    const int pieces = (points_a_span + in_span - 1) / in_span;
+    const int pieces = (points_per_span + in_span - 1) / in_span;
     std::vector<double> inside;  // xi
     for (int i = 1; i < pieces; ++i) inside.push_back(static_cast<double>(i) / pieces);
-    for (; next != also.end() && *next < element.x + element.length; ++next) {
+    for (; next != additional.end() && *next < element.x + element.length; ++next) {
       const double xi = (*next - element.x) / element.length;
-      if (xi > at_node && xi < 1.0 - at_node) inside.push_back(xi);
+      if (xi > node_tolerance && xi < 1.0 - node_tolerance) inside.push_back(xi);
     }
     std::sort(inside.begin(), inside.end());
     inside.erase(std::unique(inside.begin(), inside.end()), inside.end());

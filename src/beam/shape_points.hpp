@@ -1,5 +1,5 @@
-// Points along the bridge at which its shapes are stored: close enough together that straight lines from one to the
-// next look like the curves that the elements have.
+// Points along the bridge at which its shapes are stored. They are so close that straight lines between them represent
+// the curves of the elements.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +15,17 @@ class ShapePoints {
   struct Point {
     double x = 0.0;  // m
     int node = -1;   // -1: inside an element
-    Station at;      // of a node: an element that ends there
+    Station at;      // of a node: an element that ends at it
   };
 
-  /// The nodes, points inside elements where a span has few of them, and `also`: stations on the bridge. Ascending.
-  explicit ShapePoints(const Mesh& mesh, std::vector<double> also = {});
+  /// The nodes, points inside elements of spans with few elements, and the stations `additional`. Ascending.
+  explicit ShapePoints(const Mesh& mesh, std::vector<double> additional = {});
   static ShapePoints at_nodes(const Mesh& mesh) { return {mesh, {}, 1}; }
 
   const std::vector<Point>& points() const { return points_; }
   std::vector<double> x() const;
 
-  /// Slopes of the elements' own curve in bending, 1/m times the values' unit; at a hinge that on its left.
+  /// Slopes in bending of the element's curve, 1/m times the unit of the values; at a hinge the slope on its left.
   template <class Value>
   std::vector<double> slopes(const Line& line, Value value) const {
     std::vector<double> out;
@@ -40,8 +40,8 @@ class ShapePoints {
     return out;
   }
 
-  /// The elements' own curve through nodal values, cubic in bending and linear along x. value(unknown): of a global
-  /// unknown of the line.
+  /// The element's curve through nodal values, cubic in bending and linear along x. value(unknown) is the value of a
+  /// global unknown of the line.
   template <class Number, class Value>
   std::vector<Number> curve(const Line& line, bool axial, Value value) const {
     std::vector<Number> out;
@@ -67,7 +67,7 @@ class ShapePoints {
   }
 
  private:
-  ShapePoints(const Mesh& mesh, std::vector<double> also, int points_a_span);
+  ShapePoints(const Mesh& mesh, std::vector<double> additional, int points_per_span);
 
   std::vector<Point> points_;
 };

@@ -31,7 +31,7 @@ base::Handle<Mat> Rows::matrix(MPI_Comm comm, const Rows& pattern) const {
   const int b = slice_->block;
   std::vector<PetscInt> starts{0}, columns;
   std::vector<double> values;
-  columns.reserve(1);  // PETSc takes no null pointer
+  columns.reserve(1);  // PETSc accepts no null pointer
   values.reserve(1);
   for (int row = slice_->first * b; row < (slice_->first + slice_->local) * b; ++row) {
     const int from = (row / b - 1) * b;
@@ -49,7 +49,7 @@ base::Handle<Mat> Rows::matrix(MPI_Comm comm, const Rows& pattern) const {
   base::check(MatCreate(comm, matrix.out()));
   base::check(MatSetSizes(matrix, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
   base::check(MatSetType(matrix, MATAIJ));
-  // Each of the two has an effect on its own kind of matrix only.
+  // Each of the two calls has an effect on its own kind of matrix only.
   base::check(MatSeqAIJSetPreallocationCSR(matrix, starts.data(), columns.data(), values.data()));
   base::check(MatMPIAIJSetPreallocationCSR(matrix, starts.data(), columns.data(), values.data()));
   base::check(MatSetOption(matrix, MAT_SYMMETRIC, PETSC_TRUE));

@@ -1,4 +1,4 @@
-// One rank's columns of a structure, its rows of the matrices, and how they become PETSc matrices.
+// The columns of a structure on one rank, its rows of the matrices, and their conversion to PETSc matrices.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 
 namespace traverse::beam {
 
-/// Indices of the standard library are unsigned.
+/// Converts to the unsigned index type of the standard library.
 constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-/// Which columns a rank owns, and which unknowns stay zero there and one column beyond: those that a support holds,
-/// and those that nothing in a column belongs to (no sleeper there, no bridge, no hinge).
+/// The columns of a rank, and the held or unused unknowns in them and in one further column on each side. An unknown is
+/// unused if its column contains nothing that it belongs to (no sleeper, no bridge, no hinge).
 struct Slice {
   Slice(int block_size, int first_column, int local_columns);
 
   bool owns(int unknown) const { return unknown >= first * block && unknown < (first + local) * block; }
   bool reaches(int unknown) const { return unknown >= (first - 1) * block && unknown < (first + local + 1) * block; }
-  /// Of an unknown that the slice reaches.
+  /// The unknown must be in a column that `reaches` includes.
   bool held(int unknown) const { return held_[index(unknown - (first - 1) * block)] != 0; }
   void hold(int unknown) { set(unknown, 1); }
   void release(int unknown) { set(unknown, 0); }
@@ -32,7 +32,7 @@ struct Slice {
   void set(int unknown, char held) {
     if (unknown >= 0 && reaches(unknown)) held_[index(unknown - (first - 1) * block)] = held;
   }
-  std::vector<char> held_;  // at first: all
+  std::vector<char> held_;  // initially all
 };
 
 /// Rows of a symmetric block tridiagonal matrix for the columns of a slice, held unknowns included.
@@ -41,7 +41,7 @@ class Rows {
   explicit Rows(const Slice& slice)
       : slice_(&slice), values_(3 * index(slice.local) * index(slice.block) * index(slice.block)) {}
 
-  /// The part of an N x N matrix on the given global unknowns (-1: left out) that belongs to this slice. Entries
+  /// Adds the part of an N x N matrix on the given global unknowns (-1: ignored) that belongs to this slice. Entries
   /// between columns that are not neighbours must be zero.
   template <std::size_t N>
   void add(const std::array<int, N>& unknowns, const std::array<double, N * N>& matrix) {
@@ -53,9 +53,9 @@ class Rows {
     }
   }
   void add(double factor, const Rows& other);
-  /// Entry of an owned row; column: of the same or a neighbouring column.
+  /// Entry of an owned row and an unknown in the same or a neighbouring column.
   double at(int row, int column) const { return values_[place(row, column)]; }
-  /// The product of an owned row with a vector given by value(unknown), held unknowns included.
+  /// The product of an owned row with a vector given by value(unknown), including held unknowns.
   template <class Value>
   double times(int row, Value value) const {
     double sum = 0.0;
@@ -67,9 +67,9 @@ class Rows {
     return sum;
   }
 
-  /// Collective: without the rows and columns that are held. Non-zeros where `pattern` has some.
+  /// Collective. The matrix with empty rows and columns of held unknowns, and with the non-zeros of `pattern`.
   base::Handle<Mat> matrix(MPI_Comm comm, const Rows& pattern) const;
-  /// Adds the sizes of another's entries: a pattern for several.
+  /// Adds the magnitudes of another matrix's entries, for a common pattern.
   void add_pattern(const Rows& other);
 
  private:

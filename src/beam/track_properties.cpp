@@ -1,4 +1,4 @@
-// The table of a layered track's properties, and their values at a sleeper.
+// The table of a layered track's properties, and the evaluation of the properties at a sleeper.
 #include <algorithm>
 
 #include "traverse/beam/layered_track.hpp"
@@ -54,7 +54,7 @@ TrackValues LayeredTrack::at(double x) const {
     const Distribution* value = property.along(*this);
     if (value == nullptr) continue;
     for (const TrackStretch& stretch : stretches)
-      if (stretch.values[i] && stretch.holds(x, rounding)) value = &*stretch.values[i];
+      if (stretch.values[i] && stretch.contains(x, rounding)) value = &*stretch.values[i];
     property.of(values) = value->at(x + rounding, right);
   }
   if (!has_sleeper(x)) {
@@ -65,18 +65,18 @@ TrackValues LayeredTrack::at(double x) const {
     values.ballast = {};
     values.gap = 0.0;
   }
-  if (holds_fast) values.slides_at = 0.0;
+  if (sliding_disabled) values.slides_at = 0.0;
   return values;
 }
 
 bool LayeredTrack::has_sleeper(double x) const {
-  bool there = true;
+  bool present = true;
   for (const TrackStretch& stretch : stretches)
-    if (stretch.holds(x, station_rounding * spacing)) there = there && stretch.sleepers;
-  return there;
+    if (stretch.contains(x, station_rounding * spacing)) present = present && stretch.sleepers;
+  return present;
 }
 
-bool LayeredTrack::somewhere(std::string_view name) const {
+bool LayeredTrack::any_positive(std::string_view name) const {
   const auto row = static_cast<std::size_t>(
       std::find_if(track_properties.begin(), track_properties.end(), [&](const auto& p) { return p.name == name; }) -
       track_properties.begin());
@@ -86,8 +86,8 @@ bool LayeredTrack::somewhere(std::string_view name) const {
                      [row](const TrackStretch& s) { return s.values[row] && s.values[row]->maximum() > 0.0; });
 }
 
-bool LayeredTrack::hangs() const { return !gaps_stay_open && somewhere("gap"); }
-bool LayeredTrack::slides() const { return !holds_fast && somewhere("longitudinal_limit"); }
+bool LayeredTrack::hangs() const { return !gaps_stay_open && any_positive("gap"); }
+bool LayeredTrack::slides() const { return !sliding_disabled && any_positive("longitudinal_limit"); }
 
 bool LayeredTrack::uniform() const {
   return stretches.empty() &&

@@ -15,14 +15,14 @@
 namespace traverse::app {
 namespace {
 
-constexpr int narrowest = 40, widest = 160;
+constexpr int min_width = 40, max_width = 160;
 
-/// Of the user's locale, which the program itself does not take over: its numbers have points.
-bool speaks_utf8() {
-  locale_t users = newlocale(LC_CTYPE_MASK, "", nullptr);
-  if (users == nullptr) return false;
-  const bool utf8 = std::string_view(nl_langinfo_l(CODESET, users)) == "UTF-8";
-  freelocale(users);
+/// Whether the user's locale is UTF-8. The program itself keeps the C locale, whose numbers have decimal points.
+bool is_utf8() {
+  locale_t user_locale = newlocale(LC_CTYPE_MASK, "", nullptr);
+  if (user_locale == nullptr) return false;
+  const bool utf8 = std::string_view(nl_langinfo_l(CODESET, user_locale)) == "UTF-8";
+  freelocale(user_locale);
   return utf8;
 }
 
@@ -33,17 +33,17 @@ bool is_dumb() {
 
 }  // namespace
 
-Looks looks_of_output() {
-  Looks sampling_interval;
-  // Ranks of Open MPI's mpirun write to a terminal of its own, wherever it passes that on to.
+OutputStyle output_style() {
+  OutputStyle style;
+  // Open MPI's mpirun runs ranks in a pseudo terminal, whatever its own output is.
   const bool under_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
-  if (isatty(STDOUT_FILENO) != 1 || under_mpirun) return sampling_interval;
-  sampling_interval.utf8 = speaks_utf8();
-  sampling_interval.colour = std::getenv("NO_COLOR") == nullptr && !is_dumb();
+  if (isatty(STDOUT_FILENO) != 1 || under_mpirun) return style;
+  style.utf8 = is_utf8();
+  style.colour = std::getenv("NO_COLOR") == nullptr && !is_dumb();
   winsize size{};
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-    sampling_interval.width = std::clamp(static_cast<int>(size.ws_col) - 1, narrowest, widest);
-  return sampling_interval;
+    style.width = std::clamp(static_cast<int>(size.ws_col) - 1, min_width, max_width);
+  return style;
 }
 
 Canvas::Canvas(int columns, int rows, bool utf8)
@@ -54,8 +54,8 @@ void Canvas::put(int column, int row, const Symbol& symbol) {
   const std::string shown = utf8_ ? std::string(symbol.utf8) : std::string(1, symbol.ascii);
   cells_[static_cast<std::size_t>(row * columns_ + column)] = shown;
   if (symbol.meaning.empty()) return;
-  const std::string said = fmt::format("{} {}", shown, symbol.meaning);
-  if (std::find(legend_.begin(), legend_.end(), said) == legend_.end()) legend_.push_back(said);
+  const std::string entry = fmt::format("{} {}", shown, symbol.meaning);
+  if (std::find(legend_.begin(), legend_.end(), entry) == legend_.end()) legend_.push_back(entry);
 }
 
 void Canvas::text(int column, int row, std::string_view ascii) {

@@ -1,4 +1,4 @@
-// Pictures and headings made of characters, as far as the output can show them.
+// Pictures and headings of characters, according to the capabilities of the output.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace traverse::app {
 
-/// What standard output shows.
-struct Looks {
+/// Capabilities of the standard output.
+struct OutputStyle {
   bool utf8 = false;    // a terminal whose locale is UTF-8
-  bool colour = false;  // a terminal that is not told otherwise (NO_COLOR, TERM=dumb)
-  int width = 78;       // columns; elsewhere than on a terminal always so many
+  bool colour = false;  // a terminal with colours (not NO_COLOR, TERM=dumb)
+  int width = 78;       // columns; constant if the output is not a terminal
 };
-Looks looks_of_output();
+OutputStyle output_style();
 
-/// One character, in ASCII and beyond, and what it stands for.
+/// One character, in ASCII and in UTF-8, with its meaning.
 struct Symbol {
   char ascii;
   std::string_view utf8;
@@ -28,13 +28,13 @@ class Canvas {
 
   int columns() const { return columns_; }
   int rows() const { return static_cast<int>(cells_.size()) / columns_; }
-  /// Beyond the edges nothing is put.
+  /// Ignores positions outside the grid.
   void put(int column, int row, const Symbol& symbol);
   void text(int column, int row, std::string_view ascii);
   bool empty(int column, int row) const { return cell(column, row) == " "; }
-  /// Without the blanks at their ends.
+  /// The rows without trailing blanks.
   std::vector<std::string> lines() const;
-  /// "o wheel, ^ pinned": of what was put and has a meaning, in the order in which it first was.
+  /// "o wheel, ^ pinned": the symbols that have a meaning, in the order of their first use.
   std::string legend() const;
 
  private:

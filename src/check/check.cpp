@@ -21,37 +21,37 @@ namespace traverse::app {
 namespace {
 
 constexpr int label_width = 22;
-constexpr std::size_t most_rows = 12;  // of a table
-constexpr double rounding = 1e-9;      // of a force
-constexpr double least_told = 1e-2;    // s
+constexpr std::size_t max_rows = 12;   // largest number of rows of a table
+constexpr double rounding = 1e-9;      // relative to a force
+constexpr double min_duration = 1e-2;  // s, shortest printed duration
 
-/// Sections of lines, each line a label and its text.
+/// Sections of lines; each line has a label and a text.
 class Page {
  public:
-  explicit Page(const Looks& sampling_interval) : looks_(sampling_interval) {}
+  explicit Page(const OutputStyle& style) : style_(style) {}
   void heading(const std::string& text) const {
-    fmt::print("{}\n", looks_.colour ? "\033[1m" + text + "\033[0m" : text);
+    fmt::print("{}\n", style_.colour ? "\033[1m" + text + "\033[0m" : text);
   }
   void line(const std::string& label, const std::string& text) const {
     fmt::print("  {:<{}}{}\n", label, label_width, text);
   }
   void warning(const std::string& text) const {
-    fmt::print("  {}\n", looks_.colour ? "\033[33m" + text + "\033[0m" : text);
+    fmt::print("  {}\n", style_.colour ? "\033[33m" + text + "\033[0m" : text);
   }
 
  private:
-  Looks looks_;
+  OutputStyle style_;
 };
 
 double mass_of(const beam::BeamModel& beam) {
-  double mass = 0.0, left = beam.start;
+  double mass = 0.0, start = beam.start;
   constexpr int parts = 200;
   for (const double span : beam.spans) {
     for (int i = 0; i < parts; ++i) {
-      const double x = left + (i + 0.5) * span / parts;
+      const double x = start + (i + 0.5) * span / parts;
       mass += beam.mass.at(x, x) * span / parts;
     }
-    left += span;
+    start += span;
   }
   return mass;
 }
@@ -69,8 +69,8 @@ std::string range_text(const beam::Distribution& d, const char* unit) {
                      : fmt::format("{:.4g} to {:.4g} {}", d.minimum(), d.maximum(), unit);
 }
 
-/// What a beam has besides EI and mass, and what bends it without a load.
-void print_as_found(const Page& page, const beam::BeamModel& beam) {
+/// Prints the further properties of a beam, and its imposed deformations.
+void print_properties(const Page& page, const beam::BeamModel& beam) {
   if (beam.GA) page.line("GA, shear", range_text(*beam.GA, "N"));
   if (beam.rotary_inertia.maximum() > 0.0) page.line("rotary inertia", range_text(beam.rotary_inertia, "kg m"));
   for (const beam::Crack& crack : beam.cracks)
@@ -86,24 +86,23 @@ void print_as_found(const Page& page, const beam::BeamModel& beam) {
                                        beam.temperature->gradient, beam.temperature->curvature()));
 }
 
-void print_bridge(const Page& page, const Look& look) {
-  const beam::BeamModel& beam = *look.scene.beam;
+void print_bridge(const Page& page, const FirstRun& run) {
+  const beam::BeamModel& beam = *run.scene.beam;
   page.heading("bridge");
   page.line("length", fmt::format("{:g} m, {}", beam.length(), count_text(beam.spans.size(), "span", "spans")));
   if (!beam.given) {
     const double mass = mass_of(beam);
     page.line("mass", fmt::format("{}, {:.4g} kg/m in the mean", mass_text(mass), mass / beam.length()));
     page.line("EI", range_text(beam.EI, "N m2"));
-    print_as_found(page, beam);
+    print_properties(page, beam);
   }
   std::string frequencies;
-  for (const double one : look.frequencies)
-    frequencies += fmt::format("{}{:.4g}", frequencies.empty() ? "" : ", ", one);
+  for (const double one : run.frequencies) frequencies += fmt::format("{}{:.4g}", frequencies.empty() ? "" : ", ", one);
   page.line("first frequencies", frequencies.empty() ? "none" : frequencies + " Hz");
 }
 
-void print_vehicles(const Page& page, const Look& look, const std::vector<Axle>& axles) {
-  const Scene& scene = look.scene;
+void print_vehicles(const Page& page, const FirstRun& run, const std::vector<Axle>& axles) {
+  const Scene& scene = run.scene;
   if (scene.train.vehicles.empty()) return;
   page.heading("vehicles and their static wheel loads");
   double all = 0.0;
@@ -120,14 +119,15 @@ void print_vehicles(const Page& page, const Look& look, const std::vector<Axle>&
     for (auto axle = first; axle != axles.end(); ++axle)
       if (axle->type == static_cast<int>(type) && axle->vehicle == first->vehicle)
         wheels += fmt::format("{}{} {:.4g}", wheels.empty() ? "" : ", ", axle->name, 1e-3 * axle->force);
-    const auto some = std::find(scene.train.vehicles.begin(), scene.train.vehicles.end(), static_cast<int>(type));
-    const auto which = static_cast<std::size_t>(some - scene.train.vehicles.begin());
-    const bool back = train::law_of(scene.train, which).direction() < 0.0;
+    const auto vehicle_of_type =
+        std::find(scene.train.vehicles.begin(), scene.train.vehicles.end(), static_cast<int>(type));
+    const auto index = static_cast<std::size_t>(vehicle_of_type - scene.train.vehicles.begin());
+    const bool back = train::law_of(scene.train, index).direction() < 0.0;
     page.line(
         (count == 1 ? vehicle.name : fmt::format("{} x {}", count, vehicle.name)) + (back ? ", to the left" : ""),
         fmt::format("{}{}{}", mass_text(mass), count > 1 ? " each" : "", wheels.empty() ? "" : "; kN: " + wheels));
   }
-  page.line("all", fmt::format("{}, degrees of freedom {}", mass_text(all), look.passage->system().freedom()));
+  page.line("all", fmt::format("{}, degrees of freedom {}", mass_text(all), run.passage->system().freedom()));
 }
 
 void print_load(const Page& page, const std::string& name, const MovingLoad& load) {
@@ -139,51 +139,52 @@ void print_load(const Page& page, const std::string& name, const MovingLoad& loa
                         1e-3 * *least, *most > *least ? fmt::format(" to {:.4g}", 1e-3 * *most) : "", *first - *last));
 }
 
-void print_loads(const Page& page, const Look& look) {
-  const bool trains = look.whole.sweep && !look.whole.sweep->trains.empty();
-  if (look.scene.load.forces.empty() && !trains) return;
+void print_loads(const Page& page, const FirstRun& run) {
+  const bool trains = run.whole.sweep && !run.whole.sweep->trains.empty();
+  if (run.scene.load.forces.empty() && !trains) return;
   page.heading("moving forces");
-  if (!trains) return print_load(page, "forces", look.scene.load);
-  for (std::size_t i = 0; i < look.whole.sweep->trains.size(); ++i)
-    print_load(page, fmt::format("HSLM-A{}", look.whole.sweep->trains[i]), look.whole.sweep->loads[i]);
+  if (!trains) return print_load(page, "forces", run.scene.load);
+  for (std::size_t i = 0; i < run.whole.sweep->trains.size(); ++i)
+    print_load(page, fmt::format("HSLM-A{}", run.whole.sweep->trains[i]), run.whole.sweep->loads[i]);
 }
 
-void print_rest(const Page& page, const Rest& rest) {
+void print_response(const Page& page, const StaticResponse& response) {
   page.heading("support reactions, kN upward: dead load; passing loads, least and greatest over all positions");
-  if (!rest.why_not.empty()) return page.line("", rest.why_not);
-  for (std::size_t i = 0; i < std::min(most_rows, rest.supports.size()); ++i) {
-    const Borne& one = rest.supports[i];
+  if (!response.why_not.empty()) return page.line("", response.why_not);
+  for (std::size_t i = 0; i < std::min(max_rows, response.supports.size()); ++i) {
+    const SupportForce& one = response.supports[i];
     const double least = -one.least > rounding * one.greatest ? one.least : 0.0;
     page.line(fmt::format("{} at {:g} m", one.spring ? "spring" : "support", one.x),
-              fmt::format("{:>10.4g}{:>14.4g}{:>12.4g}", 1e-3 * one.own, 1e-3 * least, 1e-3 * one.greatest));
+              fmt::format("{:>10.4g}{:>14.4g}{:>12.4g}", 1e-3 * one.dead_load, 1e-3 * least, 1e-3 * one.greatest));
   }
-  if (rest.supports.size() > most_rows) page.line("", fmt::format("and {} more", rest.supports.size() - most_rows));
-  if (rest.deflection > 0.0)
-    page.line("deflection", fmt::format("{:.4g} mm at x = {:g} m, 1/{:.0f} of the span, under what passes",
-                                        1e3 * rest.deflection, rest.at, rest.span / rest.deflection));
+  if (response.supports.size() > max_rows)
+    page.line("", fmt::format("and {} more", response.supports.size() - max_rows));
+  if (response.deflection > 0.0)
+    page.line("deflection", fmt::format("{:.4g} mm at x = {:g} m, 1/{:.0f} of the span, under the passing loads",
+                                        1e3 * response.deflection, response.at, response.span / response.deflection));
 }
 
-void print_runs(const Page& page, const Scene& given, const Look& look) {
+void print_runs(const Page& page, const Scene& given, const FirstRun& run) {
   page.heading("analysis");
-  std::string what(std::find_if(std::begin(options::analyses), std::end(options::analyses), [&](const auto& row) {
-                     return row.analysis == given.analysis;
-                   })->words);
-  page.line("analysis", what);
+  std::string analysis(std::find_if(std::begin(options::analyses), std::end(options::analyses), [&](const auto& row) {
+                         return row.analysis == given.analysis;
+                       })->words);
+  page.line("analysis", analysis);
   if (given.study) {
     std::string axes;
     for (const Study::Axis& axis : given.study->axes)
       axes += fmt::format("{}{} of {}", axes.empty() ? "" : " times ", axis.length, axis.name);
-    page.line("study", fmt::format("{} runs: {}; the values below are those of the first", look.runs, axes));
+    page.line("study", fmt::format("{} runs: {}; the values below are those of the first", run.runs, axes));
   } else if (given.sweep) {
-    page.line("sweep", fmt::format("{} runs{}; the values below are those of the first", look.runs,
+    page.line("sweep", fmt::format("{} runs{}; the values below are those of the first", run.runs,
                                    given.sweep->speeds.empty()
                                        ? ""
                                        : fmt::format(", {} from {:g} to {:g} m/s",
                                                      count_text(given.sweep->speeds.size(), "speed", "speeds"),
                                                      given.sweep->speeds.front(), given.sweep->speeds.back())));
   }
-  for (const std::string& line : look.choice) page.line("mesh and step", line);
-  if (!given.limits.empty()) page.line("limits", fmt::format("{} that it is checked against", given.limits.size()));
+  for (const std::string& line : run.choice) page.line("mesh and step", line);
+  if (!given.limits.empty()) page.line("limits", fmt::format("{} are checked", given.limits.size()));
 }
 
 void print_notes(const Page& page, const std::vector<std::string>& notes) {
@@ -191,44 +192,44 @@ void print_notes(const Page& page, const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print("  {}\n", note);
 }
 
-void print_cost(const Page& page, const Scene& given, const Look& look) {
-  const Cost cost = cost_of(look);
+void print_cost(const Page& page, const Scene& given, const FirstRun& run) {
+  const Cost cost = cost_of(run);
   page.heading("cost, estimated by counting: most times are within a factor of 3, some are off by up to 10");
   if (cost.unknowns > 0.0) page.line("unknowns", fmt::format("{:g}", cost.unknowns));
   if (cost.steps > 0.0)
-    page.line(look.runs > 1 ? "steps of one run" : "steps",
+    page.line(run.runs > 1 ? "steps of one run" : "steps",
               fmt::format("{:.0f}{}", std::ceil(cost.steps),
-                          look.tried && look.longest_step > look.first_step
-                              ? fmt::format("; down to {:.0f} where longer ones do",
-                                            std::ceil(cost.steps * look.first_step / look.longest_step))
+                          run.has_trial_runs && run.longest_step > run.first_step
+                              ? fmt::format("; down to {:.0f} if longer steps are sufficient",
+                                            std::ceil(cost.steps * run.first_step / run.longest_step))
                               : ""));
-  if (cost.trials > 0.0) page.line("trial runs", "about " + results::duration_text(cost.trials));
+  if (cost.trial_seconds > 0.0) page.line("trial runs", "about " + results::duration_text(cost.trial_seconds));
   if (cost.seconds > 0.0)
     page.line("time",
-              fmt::format("about {} on one core{}{}", results::duration_text(std::max(cost.seconds, least_told)),
-                          look.runs > 1 ? ", divided by as many as share the runs" : "",
-                          cost.quicker.empty() ? "" : "; " + cost.quicker));
+              fmt::format("about {} on one core{}{}", results::duration_text(std::max(cost.seconds, min_duration)),
+                          run.runs > 1 ? ", divided by the number of ranks that share the runs" : "",
+                          cost.faster_way.empty() ? "" : "; " + cost.faster_way));
   page.line("memory", "about " + bytes_text(cost.memory) + " a rank");
   if (given.output.file.empty()) return page.line("results", "none are stored");
   const std::string size = cost.stored > 0.0 ? ", about " + bytes_text(cost.stored) : "";
   page.line("results",
             given.output.file + size +
-                (std::filesystem::exists(given.output.file) ? "; the file is there and would be replaced" : ""));
+                (std::filesystem::exists(given.output.file) ? "; the file exists and will be replaced" : ""));
 }
 
-void print_page(const Scene& given, const Look& look, const std::vector<std::string>& unusual,
-                const std::vector<Axle>& axles, const Rest& rest) {
-  const Looks sampling_interval = looks_of_output();
-  const Page page(sampling_interval);
-  page.heading(fmt::format("{}: nothing is computed in time (-check)", given.name));
-  for (const std::string& line : drawing_of(look.scene, sampling_interval)) fmt::print("{}\n", line);
-  if (look.scene.beam) print_bridge(page, look);
-  if (look.passage) print_vehicles(page, look, axles);
-  print_loads(page, look);
-  if (look.scene.beam && !axles.empty()) print_rest(page, rest);
-  print_notes(page, look.notes);
-  print_runs(page, given, look);
-  print_cost(page, given, look);
+void print_page(const Scene& given, const FirstRun& run, const std::vector<std::string>& unusual,
+                const std::vector<Axle>& axles, const StaticResponse& response) {
+  const OutputStyle style = output_style();
+  const Page page(style);
+  page.heading(fmt::format("{}: no time steps are computed (-check)", given.name));
+  for (const std::string& line : drawing_of(run.scene, style)) fmt::print("{}\n", line);
+  if (run.scene.beam) print_bridge(page, run);
+  if (run.passage) print_vehicles(page, run, axles);
+  print_loads(page, run);
+  if (run.scene.beam && !axles.empty()) print_response(page, response);
+  print_notes(page, run.notes);
+  print_runs(page, given, run);
+  print_cost(page, given, run);
   page.heading("unusual input");
   if (unusual.empty()) page.line("nothing", "");
   for (const std::string& line : unusual) page.warning(line);
@@ -239,14 +240,14 @@ void print_page(const Scene& given, const Look& look, const std::vector<std::str
 int run_check(MPI_Comm comm, const Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  const Look look(given);  // the same on every rank, each by itself
-  const std::vector<Axle> axles = axles_of(look);
-  Rest rest;
-  if (look.scene.beam) rest = rest_of(look);
-  const std::vector<std::string> unusual = unusual_in(look, axles, rest);
+  const FirstRun run(given);  // not collective; the same on every rank
+  const std::vector<Axle> axles = axles_of(run);
+  StaticResponse response;
+  if (run.scene.beam) response = static_response(run);
+  const std::vector<std::string> unusual = unusual_in(run, axles, response);
   if (rank != 0) return 0;
   if (!given.quiet) {
-    print_page(given, look, unusual, axles, rest);
+    print_page(given, run, unusual, axles, response);
   } else {
     for (const std::string& line : unusual) fmt::print("{}\n", line);
   }

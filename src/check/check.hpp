@@ -1,4 +1,4 @@
-// -check: what a scene is, what it would take and unusual input in it, without a run.
+// The option -check: the model of a scene, its estimated cost and unusual input, without time steps.
 #pragma once
 
 #include <mpi.h>
@@ -7,8 +7,8 @@
 
 namespace traverse::app {
 
-/// Collective. Prints on the first rank; with -output_quiet only unusual input. Throws what the run itself would
-/// throw before its first step. Returns the exit status, 0.
+/// Collective. Prints on the first rank; with -output_quiet only unusual input. Throws the errors of the run before its
+/// first step. Returns the exit status, 0.
 int run_check(MPI_Comm comm, const Scene& given);
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// What a scene will take, estimated by counting and by what was measured on other runs.
+// Estimates the cost of a scene by counting and by measured times of other runs.
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 namespace traverse::app {
 
 struct Cost {
-  double unknowns = 0.0;  // of the structure and the vehicles
-  double steps = 0.0;     // of a run, as its trial runs begin
-  double seconds = 0.0;   // of all runs, on one processor
-  double trials = 0.0;    // s, of the trial runs before
-  double memory = 0.0;    // bytes
-  double stored = 0.0;    // bytes of the results file
-  std::string quicker;    // what may make it much quicker, in words; empty: nothing
+  double unknowns = 0.0;       // unknowns of the structure and the vehicles
+  double steps = 0.0;          // steps of a run, with the first step of its trial runs
+  double seconds = 0.0;        // s, for all runs, on one processor
+  double trial_seconds = 0.0;  // s, for the trial runs
+  double memory = 0.0;         // bytes
+  double stored = 0.0;         // bytes of the results file
+  std::string faster_way;      // a much faster way, in words; empty: none
 };
 
-Cost cost_of(const Look& look);
+Cost cost_of(const FirstRun& run);
 
 /// "12 MB".
 std::string bytes_text(double bytes);

@@ -11,51 +11,51 @@
 namespace traverse::app {
 namespace {
 
-constexpr int tallest = 18;            // rows of a mechanism
-constexpr double height_of_row = 2.0;  // over the width of a column
-constexpr int gap_of_numbers = 2;      // columns between the numbers of the ruler
+constexpr int max_drawing_rows = 18;   // rows of a mechanism
+constexpr double height_of_row = 2.0;  // ratio to the width of a column
+constexpr int number_gap = 2;          // columns between the numbers of the ruler
 
 constexpr Symbol body{'#', "█", "body"}, wheel{'o', "●", "wheel"}, force{'v', "↓", "force"}, joint{'+', "◆", "joint"},
-    coil{'z', "≈", "spring"}, link{'.', "·", ""}, ground{'_', "▁", "ground"}, front{'[', "▐", ""}, rear{']', "▌", ""},
-    car{'=', "█", "vehicle"}, deck{'=', "━", "beam"}, rail{'-', "─", "rail"}, sleeper{':', "┴", "sleepers"},
-    hinge{'+', "◦", "hinge"}, apart{'|', "┃", "spans end"}, bed{'~', "≋", "bed"};
+    spring_symbol{'z', "≈", "spring"}, link{'.', "·", ""}, ground{'_', "▁", "ground"}, front{'[', "▐", ""},
+    rear{']', "▌", ""}, car{'=', "█", "vehicle"}, deck{'=', "━", "beam"}, rail{'-', "─", "rail"},
+    sleeper{':', "┴", "sleepers"}, hinge{'+', "◦", "hinge"}, span_end{'|', "┃", "spans end"}, bed{'~', "≋", "bed"};
 constexpr Symbol supports[] = {{' ', " ", ""},        {'O', "○", "roller"}, {'^', "▲", "pinned"},
                                {'#', "█", "clamped"}, {'H', "╫", "guided"}, {' ', " ", ""}};
 
 struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  void hold(double x) {
+  void include(double x) {
     low = std::min(low, x);
     high = std::max(high, x);
   }
   double size() const { return high - low; }
 };
 
-/// Of a vehicle of the train: its bodies and wheels along x.
+/// The extent of a vehicle's bodies along x.
 Extent extent_of(const Scene& scene, std::size_t i) {
   Extent extent;
   const double origin = scene.train.positions[i];
   for (const multibody::Body& one : scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])].mechanism.bodies)
-    extent.hold(origin + one.position.x());
+    extent.include(origin + one.position.x());
   return extent;
 }
 
 class SideView {
  public:
-  SideView(const Scene& scene, const Looks& sampling_interval)
-      : scene_(scene), beam_(*scene.beam), canvas_(sampling_interval.width - 2, rows, sampling_interval.utf8) {
-    extent_.hold(beam_.start);
-    extent_.hold(beam_.end());
+  SideView(const Scene& scene, const OutputStyle& style)
+      : scene_(scene), beam_(*scene.beam), canvas_(style.width - 2, rows, style.utf8) {
+    extent_.include(beam_.start);
+    extent_.include(beam_.end());
     if (beam_.track) {
-      extent_.hold(beam_.start - beam_.track->approach);
-      extent_.hold(beam_.end() + beam_.track->approach);
+      extent_.include(beam_.start - beam_.track->approach);
+      extent_.include(beam_.end() + beam_.track->approach);
     }
     for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
       const Extent one = extent_of(scene, i);
-      extent_.hold(one.low);
-      extent_.hold(one.high);
+      extent_.include(one.low);
+      extent_.include(one.high);
     }
-    for (const double x : scene.load.positions) extent_.hold(x);
+    for (const double x : scene.load.positions) extent_.include(x);
   }
 
   std::vector<std::string> draw() {
@@ -102,10 +102,10 @@ class SideView {
     double x = beam_.start;
     for (std::size_t i = 0; i < beam_.supports.size(); ++i) {
       const bool inner = i > 0 && i + 1 < beam_.supports.size();
-      const beam::Joint how = inner ? beam_.joint(static_cast<int>(i)) : beam::Joint::continuous;
-      // Of joints closer than a character the line stays a line.
-      if (how != beam::Joint::continuous && spans_are_seen())
-        canvas_.put(column(x), decks, how == beam::Joint::hinge ? hinge : apart);
+      const beam::Joint joint_type = inner ? beam_.joint(static_cast<int>(i)) : beam::Joint::continuous;
+      // joints closer than a character are not drawn
+      if (joint_type != beam::Joint::continuous && spans_are_visible())
+        canvas_.put(column(x), decks, joint_type == beam::Joint::hinge ? hinge : span_end);
       const Symbol& support = supports[static_cast<std::size_t>(beam_.supports[i])];
       if (support.ascii != ' ') canvas_.put(column(x), bearings, support);
       if (i < beam_.spans.size()) x += beam_.spans[i];
@@ -115,12 +115,12 @@ class SideView {
   }
   void draw_foundation() {
     for_points(beam_.foundation, [&](const beam::FoundationKind&, const auto& points) {
-      for (const beam::PointFoundation& point : points) canvas_.put(column(point.x), springs, coil);
+      for (const beam::PointFoundation& point : points) canvas_.put(column(point.x), springs, spring_symbol);
     });
     for_beds(beam_.foundation,
              [&](const beam::FoundationKind&, const beam::Bed&) { fill(beds, beam_.start, beam_.end(), bed); });
   }
-  /// Stations of span ends, as far as their numbers have room.
+  /// Stations of span ends, where the line has space for their numbers.
   void draw_ruler() {
     double x = beam_.start;
     int free = 0;
@@ -129,15 +129,15 @@ class SideView {
     for (const double span : beam_.spans) {
       const std::string number = fmt::format("{:g}", x);
       const int size = static_cast<int>(number.size());
-      if (column(x) >= free && column(x) + size + gap_of_numbers <= end) {
+      if (column(x) >= free && column(x) + size + number_gap <= end) {
         canvas_.text(column(x), ruler, number);
-        free = column(x) + size + gap_of_numbers;
+        free = column(x) + size + number_gap;
       }
       x += span;
     }
     canvas_.text(std::max(end, 0), ruler, last);
   }
-  bool spans_are_seen() const {
+  bool spans_are_visible() const {
     return column(beam_.start + *std::min_element(beam_.spans.begin(), beam_.spans.end())) > column(beam_.start) + 1;
   }
 
@@ -150,50 +150,49 @@ class SideView {
 /// Bodies with their joints and springs in their plane.
 class Plane {
  public:
-  Plane(const Scene& scene, const Looks& sampling_interval)
-      : scene_(scene), columns_(sampling_interval.width - 2), utf8_(sampling_interval.utf8) {
+  Plane(const Scene& scene, const OutputStyle& style) : scene_(scene), columns_(style.width - 2), utf8_(style.utf8) {
     each([&](const Vehicle& vehicle, double origin) {
-      const auto hold = [&](const Eigen::Vector2d& point) {
-        x_.hold(origin + point.x());
-        y_.hold(point.y());
+      const auto include = [&](const Eigen::Vector2d& point) {
+        x_.include(origin + point.x());
+        y_.include(point.y());
       };
-      for (const multibody::Body& one : vehicle.mechanism.bodies) hold(one.position.head<2>());
+      for (const multibody::Body& one : vehicle.mechanism.bodies) include(one.position.head<2>());
       for (const multibody::Joint& one : vehicle.mechanism.joints) {
-        hold(one.type->needs.ends ? one.from : one.point);
-        if (one.type->needs.ends) hold(one.to);
+        include(one.type->needs.ends ? one.from : one.point);
+        if (one.type->needs.ends) include(one.to);
       }
       for (const multibody::Spring& one : vehicle.mechanism.springs) {
-        hold(one.from);
-        hold(one.to);
+        include(one.from);
+        include(one.to);
       }
-      if (!vehicle.wheels.empty()) y_.hold(0.0);
+      if (!vehicle.wheels.empty()) y_.include(0.0);
     });
-    unit_ = std::max(x_.size() / (columns_ - 1), y_.size() / (tallest - 1) / height_of_row);
-    if (!(unit_ > 0.0)) unit_ = 1.0;
+    column_width_ = std::max(x_.size() / (columns_ - 1), y_.size() / (max_drawing_rows - 1) / height_of_row);
+    if (!(column_width_ > 0.0)) column_width_ = 1.0;
   }
 
   std::vector<std::string> draw() {
-    const int wide = static_cast<int>(std::lround(x_.size() / unit_)) + 1;
-    const int tall = static_cast<int>(std::lround(y_.size() / unit_ / height_of_row)) + 1;
-    Canvas canvas(std::min(wide, columns_), std::min(tall, tallest), utf8_);
+    const int wide = static_cast<int>(std::lround(x_.size() / column_width_)) + 1;
+    const int tall = static_cast<int>(std::lround(y_.size() / column_width_ / height_of_row)) + 1;
+    Canvas canvas(std::min(wide, columns_), std::min(tall, max_drawing_rows), utf8_);
     each([&](const Vehicle& vehicle, double origin) { draw(vehicle, origin, canvas); });
     std::vector<std::string> lines = canvas.lines();
     for (std::string& line : lines) line.insert(0, "  ");
     lines.push_back("  " + canvas.legend());
     lines.push_back(fmt::format("  to scale, a character is {:.3g} m wide and {:.3g} m high, x from {:g} to {:g} m",
-                                unit_, unit_ * height_of_row, x_.low, x_.high));
+                                column_width_, column_width_ * height_of_row, x_.low, x_.high));
     return lines;
   }
 
  private:
-  template <class Use>
-  void each(Use use) const {
+  template <class Visit>
+  void each(Visit visit) const {
     for (std::size_t i = 0; i < scene_.train.vehicles.size(); ++i)
-      use(scene_.vehicles[static_cast<std::size_t>(scene_.train.vehicles[i])], scene_.train.positions[i]);
+      visit(scene_.vehicles[static_cast<std::size_t>(scene_.train.vehicles[i])], scene_.train.positions[i]);
   }
   std::pair<int, int> place(double origin, const Eigen::Vector2d& point) const {
-    return {static_cast<int>(std::lround((origin + point.x() - x_.low) / unit_)),
-            static_cast<int>(std::lround((y_.high - point.y()) / unit_ / height_of_row))};
+    return {static_cast<int>(std::lround((origin + point.x() - x_.low) / column_width_)),
+            static_cast<int>(std::lround((y_.high - point.y()) / column_width_ / height_of_row))};
   }
   void line(double origin, const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Symbol& symbol,
             Canvas& canvas) const {
@@ -210,9 +209,9 @@ class Plane {
       const auto [column, row] = place(origin, point);
       canvas.put(column, row, symbol);
     };
-    const auto tie = [&](int of, const Eigen::Vector2d& point) {
-      if (of != multibody::ground)
-        line(origin, m.bodies[static_cast<std::size_t>(of)].position.head<2>(), point, link, canvas);
+    const auto draw_link = [&](int body_index, const Eigen::Vector2d& point) {
+      if (body_index != multibody::ground)
+        line(origin, m.bodies[static_cast<std::size_t>(body_index)].position.head<2>(), point, link, canvas);
     };
     if (!vehicle.wheels.empty())
       for (int column = 0; column < canvas.columns(); ++column) {
@@ -221,11 +220,11 @@ class Plane {
       }
     for (const multibody::Joint& one : m.joints) {
       const bool ends = one.type->needs.ends;
-      tie(one.bodies[0], ends ? one.from : one.point);
-      tie(one.bodies[1], ends ? one.to : one.point);
+      draw_link(one.bodies[0], ends ? one.from : one.point);
+      draw_link(one.bodies[1], ends ? one.to : one.point);
       if (ends) line(origin, one.from, one.to, link, canvas);
     }
-    for (const multibody::Spring& one : m.springs) line(origin, one.from, one.to, coil, canvas);
+    for (const multibody::Spring& one : m.springs) line(origin, one.from, one.to, spring_symbol, canvas);
     for (const multibody::Joint& one : m.joints) put(one.type->needs.ends ? one.from : one.point, joint);
     for (const multibody::Body& one : m.bodies) put(one.position.head<2>(), body);
     for (const Wheel& one : vehicle.wheels) put(m.bodies[static_cast<std::size_t>(one.body)].position.head<2>(), wheel);
@@ -235,13 +234,13 @@ class Plane {
   int columns_;
   bool utf8_;
   Extent x_, y_;
-  double unit_ = 1.0;  // m, of a column
+  double column_width_ = 1.0;  // m, width of a column
 };
 
 }  // namespace
 
-std::vector<std::string> drawing_of(const Scene& scene, const Looks& sampling_interval) {
-  return scene.beam ? SideView(scene, sampling_interval).draw() : Plane(scene, sampling_interval).draw();
+std::vector<std::string> drawing_of(const Scene& scene, const OutputStyle& style) {
+  return scene.beam ? SideView(scene, style).draw() : Plane(scene, style).draw();
 }
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// A scene drawn to scale in characters: the bridge from the side with its train, or a mechanism by itself.
+// A drawing of a scene to scale in characters: the bridge with its train from the side, or a mechanism.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace traverse::app {
 
-/// Lines of at most looks.width columns; the last two are the legend and the scale.
-std::vector<std::string> drawing_of(const Scene& scene, const Looks& sampling_interval);
+/// Lines of at most style.width columns; the last two are the legend and the scale.
+std::vector<std::string> drawing_of(const Scene& scene, const OutputStyle& style);
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
-// Assembles beam, modes and passage of the first run of a scene or study, with the mesh and step that trial runs would
-// begin with, and computes the first natural frequencies.
+// Assembles beam, modes and passage of the first run of a scene or study, with the first mesh and step of the trial
+// runs, and computes the first natural frequencies.
 #include "look.hpp"
 
 #include <fmt/format.h>
@@ -20,13 +20,13 @@
 namespace traverse::app {
 namespace {
 
-constexpr double some_step = 1e-6;  // s, to look at a scene before it has a step
-constexpr std::size_t told_frequencies = 3;
+constexpr double placeholder_step = 1e-6;  // s: placeholder before a step is chosen
+constexpr std::size_t frequency_count = 3;
 
 Scene first_scene(const Scene& given) {
   if (!given.study) return given;
   const StudyScenes scenes(given);
-  for (const std::size_t base : scenes.extreme_bases()) (void)scenes.base(base);  // all input is checked
+  for (const std::size_t base : scenes.extreme_bases()) (void)scenes.base(base);  // checks all input
   return scenes.base(0);
 }
 
@@ -46,15 +46,16 @@ std::size_t runs_of(const Scene& given) {
 
 }  // namespace
 
-Look::Look(const Scene& given) : whole(first_scene(given)), scene(one_run(whole)), runs(runs_of(given)) {
-  tried = chooses(scene) && own_measure() == nullptr;
-  if (tried) set_first_mesh(scene);
+FirstRun::FirstRun(const Scene& given) : whole(first_scene(given)), scene(one_run(whole)), runs(runs_of(given)) {
+  has_trial_runs = chooses(scene) && adaptive_step_option() == nullptr;
+  if (has_trial_runs) set_first_mesh(scene);
   shared = std::make_unique<SharedBeam>(PETSC_COMM_SELF, scene, notes);
-  const bool moves = scene.analysis != Analysis::modes;
-  if (shared->beam) shared->damp(scene, tried || scene.model.modes > 0 || (moves && !scene.model.step), notes);
-  if (moves) shared->prepare(scene, notes);
-  if (moves) choose_mesh_and_step();
-  if (moves) {
+  const bool has_motion = scene.analysis != Analysis::modes;
+  if (shared->beam)
+    shared->damp(scene, has_trial_runs || scene.model.modes > 0 || (has_motion && !scene.model.step), notes);
+  if (has_motion) shared->prepare(scene, notes);
+  if (has_motion) choose_mesh_and_step();
+  if (has_motion) {
     passage = std::make_unique<Passage>(scene, *shared, notes);
     passage->start(notes);
   }
@@ -63,58 +64,59 @@ Look::Look(const Scene& given) : whole(first_scene(given)), scene(one_run(whole)
   if (shared->beam) find_frequencies();
 }
 
-void Look::choose_mesh_and_step() {
+void FirstRun::choose_mesh_and_step() {
   if (scene.analysis != Analysis::transient) return;
-  if (chooses_step_alone(scene) && own_measure() == nullptr) {
-    scene.model.step = longest_step_alone(scene);
-    choice.push_back(
-        fmt::format("steps of {:.3g} s to begin with; runs of the whole scene halve them until positions and "
-                    "forces are right to accuracy {:g}",
-                    *scene.model.step, scene.accuracy));
+  if (chooses_multibody_step(scene) && adaptive_step_option() == nullptr) {
+    scene.model.step = first_multibody_step(scene);
+    choice.push_back(fmt::format(
+        "initial steps of {:.3g} s; runs of the whole scene halve them until the errors of positions and forces "
+        "are within accuracy {:g}",
+        *scene.model.step, scene.accuracy));
     return;
   }
-  if (!tried) {
+  if (!has_trial_runs) {
     if (scene.model.step) choice.push_back(fmt::format("steps of {:g} s, as given", *scene.model.step));
-    if (const options::Entry* option = own_measure(); option != nullptr && chooses(scene))
+    if (const options::Entry* option = adaptive_step_option(); option != nullptr && chooses(scene))
       choice.push_back(fmt::format("no trial runs for accuracy {:g}: {}", scene.accuracy, option->given()));
     return;
   }
   Scene timed = scene;
-  if (!timed.model.step) timed.model.step = some_step;
+  if (!timed.model.step) timed.model.step = placeholder_step;
   std::vector<std::string> ignored;
   const double end = Passage(timed, *shared, ignored).plan().end_time;
-  horizon = initial_window(scene, end);
-  const FirstSteps steps = first_steps(scene, shared->omega ? shared->omega->first : 0.0, horizon);
+  trial_window = initial_window(scene, end);
+  const FirstSteps steps = first_steps(scene, shared->omega ? shared->omega->first : 0.0, trial_window);
   const std::string mesh = scene.by_given_modes() ? "given modes"
                                                   : fmt::format("{} elements a {}", mesh_of(scene),
                                                                 scene.beam->track ? "sleeper bay" : "span");
   choice.push_back(fmt::format("{}; {}",
                                scene.by_given_modes() ? mesh
-                               : scene.mesh_open      ? mesh + " to begin with"
+                               : scene.mesh_open      ? mesh + ", refined by trial runs"
                                                       : mesh + ", as given",
                                scene.model.step
                                    ? fmt::format("steps of {:g} s, as given", *scene.model.step)
-                                   : fmt::format("steps of {:.3g} s to begin with: {}", steps.first, steps.why)));
+                                   : fmt::format("initial steps of {:.3g} s: {}", steps.first, steps.why)));
   choice.push_back(
-      fmt::format("trial runs of the first {:.3g} s refine or coarsen them until the peaks are right to accuracy {:g}",
-                  horizon, scene.accuracy));
+      fmt::format("trial runs of the first {:.3g} s refine or coarsen them until the errors of the peaks are within "
+                  "accuracy {:g}",
+                  trial_window, scene.accuracy));
   first_step = scene.model.step.value_or(steps.first);
   longest_step = scene.model.step.value_or(steps.longest);
   scene.model.step = first_step;
 }
 
-void Look::find_frequencies() {
+void FirstRun::find_frequencies() {
   const beam::Beam& beam = *shared->beam;
   if (beam.model().given) {
     for (const double one : beam.model().given->omega)
-      if (frequencies.size() < told_frequencies) frequencies.push_back(one / (2.0 * std::numbers::pi));
+      if (frequencies.size() < frequency_count) frequencies.push_back(one / (2.0 * std::numbers::pi));
     return;
   }
-  const bool plain = beam.rail() == nullptr && !beam.model().nonlinear();
+  const bool linear = beam.rail() == nullptr && !beam.model().nonlinear();
   const std::vector<double> omega =
-      plain ? modes::distinct_frequencies(beam, told_frequencies)
-            : modes::distinct_frequencies(beam::Beam(PETSC_COMM_SELF, linearised(bridge_alone(beam.model()))),
-                                          told_frequencies);
+      linear ? modes::distinct_frequencies(beam, frequency_count)
+             : modes::distinct_frequencies(beam::Beam(PETSC_COMM_SELF, linearised(bridge_alone(beam.model()))),
+                                           frequency_count);
   for (const double one : omega) frequencies.push_back(one / (2.0 * std::numbers::pi));
 }
 

@@ -1,4 +1,4 @@
-// A scene set up as its run would be, up to the first step.
+// The first run of a scene, set up to its first step.
 #pragma once
 
 #include <memory>
@@ -10,27 +10,27 @@
 
 namespace traverse::app {
 
-struct Look {
-  /// On this rank alone. Throws what the run itself would throw before its first step.
-  explicit Look(const Scene& given);
-  Look(const Look&) = delete;
-  Look& operator=(const Look&) = delete;
+struct FirstRun {
+  /// Not collective. Throws the errors of the run before its first step.
+  explicit FirstRun(const Scene& given);
+  FirstRun(const FirstRun&) = delete;
+  FirstRun& operator=(const FirstRun&) = delete;
 
-  Scene whole;                      // as given; of a study its first scene, with all speeds in its sweep
-  Scene scene;                      // one run of it: the first one
-  std::vector<std::string> notes;   // model
-  std::vector<std::string> choice;  // of mesh and step
-  bool tried = false;               // trial runs choose these, from the mesh in `scene` and this step on
-  double first_step = 0.0, longest_step = 0.0, horizon = 0.0;  // s; of a trial run
+  Scene whole;                      // as given; for a study its first scene, with all speeds in its sweep
+  Scene scene;                      // its first run
+  std::vector<std::string> notes;   // notes on the model
+  std::vector<std::string> choice;  // choice of mesh and step
+  bool has_trial_runs = false;      // trial runs choose mesh and step, starting from those of `scene`
+  double first_step = 0.0, longest_step = 0.0, trial_window = 0.0;  // s; the last one: of a trial run
   std::unique_ptr<SharedBeam> shared;
-  std::unique_ptr<Passage> passage;  // at its start; null: the scene asks for no motion and no rest
+  std::unique_ptr<Passage> passage;  // at its start; null for an analysis of modes
   std::vector<double> frequencies;   // Hz, the first distinct ones of the bridge
-  std::size_t runs = 1;              // of a sweep or a study
+  std::size_t runs = 1;              // number of runs of a sweep or a study
 
   const beam::Beam* bridge() const { return shared->bridge(); }
-  /// Of wheels at rest, then of moving forces.
+  /// Static wheel loads, then moving forces.
   const std::vector<coupling::StaticLoad>& weights() const { return passage->system().weights().all(); }
-  /// s; 0 where there is no motion.
+  /// s; 0 without motion.
   double end_time() const { return passage ? passage->plan().end_time : 0.0; }
 
  private:

@@ -15,35 +15,35 @@
 namespace traverse::app {
 namespace {
 
-constexpr double few_forces = 1000.0;
-constexpr double beside = 1e-9;       // m: of a joint, on its left side
-constexpr int points_of_a_piece = 4;  // for the integral of the bridge's own weight
+constexpr double max_forces = 1000.0;
+constexpr double joint_offset = 1e-9;  // m: distance of a station from a joint, on its left side
+constexpr int points_per_piece = 4;    // for the integral of the bridge's own weight
 
-/// The trains that pass, each as it weighs at rest.
-std::vector<norm::LoadModel> trains_of(const Look& look) {
+/// The passing trains with their static wheel loads.
+std::vector<norm::LoadModel> passing_trains(const FirstRun& run) {
   std::vector<norm::LoadModel> trains;
-  if (look.whole.sweep && !look.whole.sweep->loads.empty()) {
-    for (const MovingLoad& load : look.whole.sweep->loads)
+  if (run.whole.sweep && !run.whole.sweep->loads.empty()) {
+    for (const MovingLoad& load : run.whole.sweep->loads)
       trains.push_back(norm::train_of("train", load.forces, load.positions));
-  } else if (!look.weights().empty()) {
-    trains.push_back(train_at_rest("train", look.weights()));
+  } else if (!run.weights().empty()) {
+    trains.push_back(static_train("train", run.weights()));
   }
   return trains;
 }
 
 double greatest_of(const norm::InfluenceLine& line, const std::vector<norm::LoadModel>& trains) {
-  double most = 0.0;
-  for (const norm::LoadModel& train : trains) most = std::max(most, norm::greatest(line, train).value);
-  return most;
+  double largest = 0.0;
+  for (const norm::LoadModel& train : trains) largest = std::max(largest, norm::greatest(line, train).value);
+  return largest;
 }
 
-/// Of a line over the bridge's own weight, N times its unit.
-double of_own_weight(const norm::InfluenceLine& line, const beam::BeamModel& beam, double gravity) {
+/// The integral of a line over the bridge's own weight, N times its unit.
+double dead_load_effect(const norm::InfluenceLine& line, const beam::BeamModel& beam, double gravity) {
   const std::vector<double>& x = line.breaks();
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < x.size(); ++i) {
-    const double width = (x[i + 1] - x[i]) / points_of_a_piece;
-    for (int k = 0; k < points_of_a_piece; ++k) {
+    const double width = (x[i + 1] - x[i]) / points_per_piece;
+    for (int k = 0; k < points_per_piece; ++k) {
       const double at = x[i] + (k + 0.5) * width;
       sum += width * line.value(at) * beam.mass.at(at, at) * gravity;
     }
@@ -51,46 +51,47 @@ double of_own_weight(const norm::InfluenceLine& line, const beam::BeamModel& bea
   return sum;
 }
 
-void find_deflection(norm::StaticBridge& bridge, const std::vector<norm::LoadModel>& trains, Rest& rest) {
-  double left = bridge.model().start;
+void compute_deflection(norm::StaticBridge& bridge, const std::vector<norm::LoadModel>& trains,
+                        StaticResponse& response) {
+  double start = bridge.model().start;
   for (const double span : bridge.model().spans) {
-    const double middle = left + 0.5 * span;
+    const double middle = start + 0.5 * span;
     const double deflection = greatest_of(bridge.lines_at(middle)[0].times(-1.0), trains);
-    if (deflection * rest.span > rest.deflection * span || rest.span == 0.0) {
-      rest.deflection = deflection;
-      rest.at = middle;
-      rest.span = span;
+    if (deflection * response.span > response.deflection * span || response.span == 0.0) {
+      response.deflection = deflection;
+      response.at = middle;
+      response.span = span;
     }
-    left += span;
+    start += span;
   }
 }
 
-/// How far one side of a step sinks under the trains, or rises.
-double sinks_by(norm::StaticBridge& bridge, double x, const std::vector<norm::LoadModel>& trains) {
+/// The largest static displacement of one side of a step under the trains, in magnitude.
+double largest_displacement(norm::StaticBridge& bridge, double x, const std::vector<norm::LoadModel>& trains) {
   const norm::InfluenceLine line = bridge.lines_at(x)[0];
   return std::max(greatest_of(line, trains), greatest_of(line.times(-1.0), trains));
 }
 
-void find_steps(norm::StaticBridge& bridge, const beam::BeamModel& beam, const std::vector<norm::LoadModel>& trains,
-                Rest& rest) {
+void compute_steps(norm::StaticBridge& bridge, const beam::BeamModel& beam, const std::vector<norm::LoadModel>& trains,
+                   StaticResponse& response) {
   const beam::Mesh mesh(beam);
   for (const double x : mesh.steps()) {
     const bool left = x == mesh.start(), right = x == mesh.end();
-    double height =
-        std::max(left ? 0.0 : sinks_by(bridge, x - beside, trains), right ? 0.0 : sinks_by(bridge, x, trains));
+    double height = std::max(left ? 0.0 : largest_displacement(bridge, x - joint_offset, trains),
+                             right ? 0.0 : largest_displacement(bridge, x, trains));
     if (!beam.settlement.empty() && (left || right))
       height = std::max(height, std::abs(left ? beam.settlement.front() : beam.settlement.back()));
-    rest.steps.push_back({x, height});
+    response.steps.push_back({x, height});
   }
 }
 
 }  // namespace
 
-std::vector<Axle> axles_of(const Look& look) {
+std::vector<Axle> axles_of(const FirstRun& run) {
   std::vector<Axle> axles;
-  if (!look.passage) return axles;
-  const train::Fleet& fleet = look.passage->system().fleet();
-  const std::vector<coupling::StaticLoad>& weights = look.weights();
+  if (!run.passage) return axles;
+  const train::Fleet& fleet = run.passage->system().fleet();
+  const std::vector<coupling::StaticLoad>& weights = run.weights();
   for (std::size_t i = 0; i < weights.size(); ++i) {
     Axle axle;
     axle.x = weights[i].x;
@@ -98,7 +99,7 @@ std::vector<Axle> axles_of(const Look& look) {
     if (i < fleet.wheels.size()) {
       if (fleet.wheels[i].is_further) continue;
       axle.vehicle = static_cast<std::size_t>(fleet.member(static_cast<int>(i)));
-      axle.type = look.scene.train.vehicles[axle.vehicle];
+      axle.type = run.scene.train.vehicles[axle.vehicle];
       axle.name = fleet.wheel(fleet.wheels[i]).name;
     } else {
       axle.name = fmt::format("force {}", i - fleet.wheels.size());
@@ -108,33 +109,36 @@ std::vector<Axle> axles_of(const Look& look) {
   return axles;
 }
 
-Rest rest_of(const Look& look) {
-  Rest rest;
-  const beam::BeamModel& beam = *look.scene.beam;
-  if (!look.passage)
-    rest.why_not = "nothing is asked of it";
+StaticResponse static_response(const FirstRun& run) {
+  StaticResponse response;
+  const beam::BeamModel& beam = *run.scene.beam;
+  if (!run.passage)
+    response.why_not = "the analysis has no loads";
   else if (beam.given)
-    rest.why_not = "given modes say nothing of supports";
+    response.why_not = "given modes contain no supports";
   else if (beam.nonlinear())
-    rest.why_not = "the foundation is not linear: it bears what the run finds";
+    response.why_not = "the foundation is nonlinear; the run computes its forces";
   else if (beam.spans.size() > norm::StaticBridge::most_spans)
-    rest.why_not = fmt::format("of bridges of more than {} spans they are not listed", norm::StaticBridge::most_spans);
-  else if (static_cast<double>(look.weights().size()) > few_forces)
-    rest.why_not = fmt::format("of trains of more than {:g} wheels they are not listed", few_forces);
-  else if (look.scene.train.courses.size() + look.scene.load.courses.size() > 1)
-    rest.why_not = "several trains or loads pass, at distances that change";
-  if (!rest.why_not.empty()) return rest;
+    response.why_not = fmt::format("not computed for bridges of more than {} spans", norm::StaticBridge::most_spans);
+  else if (static_cast<double>(run.weights().size()) > max_forces)
+    response.why_not = fmt::format("not computed for trains of more than {:g} wheels", max_forces);
+  else if (!only_axle_loads(run.scene.load))
+    response.why_not = "computed for constant concentrated forces only";
+  else if (run.scene.train.courses.size() + run.scene.load.courses.size() > 1)
+    response.why_not = "not computed for several trains or loads, whose distances change";
+  if (!response.why_not.empty()) return response;
   const results::Stage stage("influence lines");
   norm::StaticBridge bridge(beam);
-  const std::vector<norm::LoadModel> trains = trains_of(look);
+  const std::vector<norm::LoadModel> trains = passing_trains(run);
   for (const norm::StaticBridge::Bearing& bearing : bridge.bearings()) {
     const norm::InfluenceLine line = bridge.reaction(bearing);
-    rest.supports.push_back({bearing.x, bearing.span_end < 0, of_own_weight(line, bridge.model(), look.scene.gravity),
-                             -greatest_of(line.times(-1.0), trains), greatest_of(line, trains)});
+    response.supports.push_back({bearing.x, bearing.span_end < 0,
+                                 dead_load_effect(line, bridge.model(), run.scene.gravity),
+                                 -greatest_of(line.times(-1.0), trains), greatest_of(line, trains)});
   }
-  find_deflection(bridge, trains, rest);
-  if (!beam.track) find_steps(bridge, beam, trains, rest);
-  return rest;
+  compute_deflection(bridge, trains, response);
+  if (!beam.track) compute_steps(bridge, beam, trains, response);
+  return response;
 }
 
 }  // namespace traverse::app

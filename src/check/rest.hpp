@@ -1,4 +1,4 @@
-// What stands on the wheels and what the supports bear, at rest.
+// Static wheel loads, support reactions and deflections.
 #pragma once
 
 #include <string>
@@ -8,36 +8,36 @@
 
 namespace traverse::app {
 
-/// A wheel or a force that passes.
+/// A wheel or a moving force.
 struct Axle {
   std::string name;         // "coach, front_wheel" or "force 3"
   double x = 0.0;           // m, at t = 0
   double force = 0.0;       // N
-  int type = -1;            // of its vehicle; -1: a force, or a unit of several vehicles
+  int type = -1;            // type of its vehicle; -1: a force, or a unit of several vehicles
   std::size_t vehicle = 0;  // its number in the train
 };
-std::vector<Axle> axles_of(const Look& look);
+std::vector<Axle> axles_of(const FirstRun& run);
 
-/// What a support or a vertical spring bears, N, upward on the bridge.
-struct Borne {
+/// The force of a support or a vertical spring on the bridge, N, upward.
+struct SupportForce {
   double x = 0.0;  // m
   bool spring = false;
-  double own = 0.0;                    // of the bridge's own weight
-  double least = 0.0, greatest = 0.0;  // of the train or forces, wherever they stand
+  double dead_load = 0.0;              // by the bridge's own weight
+  double least = 0.0, greatest = 0.0;  // by the train or forces, over all their positions
 };
 
-/// A step of the running surface: the greatest that settlements and the loads make, wherever these stand.
+/// A step of the running surface: the largest by settlements and loads, over all positions of the loads.
 struct SurfaceStep {
   double x = 0.0, height = 0.0;  // m
 };
 
-struct Rest {
-  std::vector<Borne> supports;
+struct StaticResponse {
+  std::vector<SupportForce> supports;
   std::vector<SurfaceStep> steps;
-  double deflection = 0.0, at = 0.0;  // m, the greatest in the middle of a span under the train; where
-  double span = 0.0;                  // m, of that
-  std::string why_not;                // where there is none of this, in words
+  double deflection = 0.0, at = 0.0;  // m, the largest at mid-span under the train, and its position
+  double span = 0.0;                  // m, length of this span
+  std::string why_not;                // the reason if nothing was computed, in words
 };
-Rest rest_of(const Look& look);
+StaticResponse static_response(const FirstRun& run);
 
 }  // namespace traverse::app

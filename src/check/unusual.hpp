@@ -1,5 +1,5 @@
-// What a scene may hold without an error and is hardly meant: figures that look like those of another unit, trains that
-// never meet the bridge. The scene's reader finds more of these (scene/scene_sense.cpp).
+// Finds input that is valid but probably not intended: values that are usual in another unit, trains that do not reach
+// the bridge. The scene's reader finds further cases (scene/scene_sense.cpp).
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace traverse::app {
 
-/// One line each.
-std::vector<std::string> unusual_in(const Look& look, const std::vector<Axle>& axles, const Rest& rest);
+/// One line for each finding.
+std::vector<std::string> unusual_in(const FirstRun& run, const std::vector<Axle>& axles,
+                                    const StaticResponse& response);
 
 }  // namespace traverse::app

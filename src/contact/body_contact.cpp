@@ -15,11 +15,11 @@ namespace {
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// From the other surface's centre (or nearest point of the line) to the arc's centre.
+/// The vector to the arc's centre from the other centre or from the nearest point of the line.
 struct Gap {
-  Vector2d from;       // that centre or point
-  Vector2d d;          // towards the arc's centre
-  double signed_side;  // of the line, times the distance from it; 1 for arcs
+  Vector2d from;       // the other centre or the nearest point
+  Vector2d d;          // vector to the arc's centre
+  double signed_side;  // side of the line times the distance from it; 1 for arcs
   bool between_ends;
 };
 
@@ -69,8 +69,8 @@ bool touch(const PairGeometry& pair, const Frame& first, const Frame& second, Pa
   const Gap g = gap(pair, first, second);
   if (g.between_ends && g.signed_side * pair.side < 0.0) return false;
   const double distance = g.d.norm();
-  const double sign = pair.radius_sum < 0.0 ? -1.0 : 1.0;  // hollow: apart when the centres are near
-  // concentric arcs, and centres on a line, are far from touching or have no direction to touch in
+  const double sign = pair.radius_sum < 0.0 ? -1.0 : 1.0;  // hollow: no contact if the centres are close
+  // A coincidence of centres, or of a centre and the line, has no direction; it is far from contact.
   const Vector2d m = distance > 0.0 ? Vector2d(sign / distance * g.d) : Vector2d(0.0, sign);
   const double alpha = pair.radius_sum - sign * distance;
   const Vector2d centre = g.from + g.d;

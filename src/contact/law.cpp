@@ -1,5 +1,5 @@
 // Normal force and friction with their derivatives (equations 45, 48 and 49), the penetration of a contact in series
-// with a spring by Newton's method, and hysteresis damping for a given restitution by bisection.
+// with a spring by Newton's method, and the hysteresis damping for a given restitution by bisection.
 #include "traverse/contact/law.hpp"
 
 #include <algorithm>
@@ -9,9 +9,12 @@
 namespace traverse::contact {
 namespace {
 
-constexpr int most_iterations = 50;
-constexpr double settled = 1e-16;
-constexpr double slowest_approach = 1e-3;  // m/s: gentler touches are damped as this one
+constexpr int max_iterations = 50;
+constexpr double tolerance = 1e-16;
+constexpr int most_doublings = 60, most_halvings = 100;
+constexpr double min_approach_speed = 1e-3;  // m/s: lower limit of the approach speed in the damping
+
+bool is_linear(const Law& law) { return law.kind == LawKind::linear || law.kind == LawKind::two_sided; }
 
 /// k*alpha^n and its derivative at alpha > 0.
 struct Elastic {
@@ -19,32 +22,60 @@ struct Elastic {
   double slope = 0.0;  // N/m
 };
 
-Elastic elastic_alone(const Law& law, double alpha) {
-  if (law.kind == LawKind::linear) return {law.stiffness * alpha, law.stiffness};
+Elastic surface_force(const Law& law, double alpha) {
+  if (law.kind == LawKind::other) return {law.elastic->force(alpha), law.elastic->stiffness(alpha)};
+  if (is_linear(law)) return {law.stiffness * alpha, law.stiffness};
   const double root = std::sqrt(alpha);
   return {law.stiffness * alpha * root, 1.5 * law.stiffness * root};
 }
 
-/// The same at a penetration that the seat takes part in.
-Elastic elastic(const Law& law, double penetration) {
-  if (law.seat == 0.0) return elastic_alone(law, penetration);
-  const auto [force, slope] = elastic_alone(law, own_penetration(law, penetration));
-  return {force, slope / (1.0 + law.seat * slope)};
+/// The penetration at which an increasing function of it has a value, by bisection, m.
+template <class Increasing>
+double penetration_of(double value, const Increasing& function) {
+  double high = 1e-9;
+  for (int i = 0; i < most_doublings && function(high) < value; ++i) high *= 2.0;
+  double low = 0.0;
+  for (int i = 0; i < most_halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (function(middle) < value ? low : high) = middle;
+  }
+  return high;
 }
 
-/// Eq. 45, or hysteresis damping: the force and its derivatives before it is held at zero.
-Force tendency(const Law& law, const Kinematics& k, double approach_speed) {
+/// The duration of an impact by the integral of 1/alpha' over the compression, with alpha = alpha_max sin(theta), s.
+double duration_of_impact(const ElasticLaw& law, double mass, double speed) {
+  const double energy = 0.5 * mass * speed * speed;
+  const double largest = penetration_of(energy, [&](double alpha) { return law.energy(alpha); });
+  constexpr int parts = 200;
+  double sum = 0.0;
+  for (int i = 0; i < parts; ++i) {
+    const double theta = 0.5 * std::numbers::pi * (i + 0.5) / parts;
+    const double left = std::max(1.0 - law.energy(largest * std::sin(theta)) / energy, 1e-12);
+    sum += largest * std::cos(theta) / (speed * std::sqrt(left));
+  }
+  return std::numbers::pi * sum / parts;
+}
+
+/// The same at a total penetration, of which the local compliance has a part.
+Elastic elastic(const Law& law, double penetration) {
+  if (law.local_compliance == 0.0) return surface_force(law, penetration);
+  const auto [force, slope] = surface_force(law, surface_penetration(law, penetration));
+  return {force, slope / (1.0 + law.local_compliance * slope)};
+}
+
+/// Eq. 45, or hysteresis damping: the force and its derivatives without the lower limit of zero.
+Force unlimited_force(const Law& law, const Kinematics& k, double approach_speed) {
   const auto [force, slope] = elastic(law, k.penetration);
   Force f;
   f.normal = force;
   f.normal_by_penetration = slope;
   if (!law.hysteresis) {
-    const double share = std::clamp(k.penetration / damper_ramp, 0.0, 1.0);
+    const double share = law.kind == LawKind::two_sided ? 1.0 : std::clamp(k.penetration / damper_ramp, 0.0, 1.0);
     f.normal += share * law.damping * k.penetration_rate;
     f.normal_by_rate = share * law.damping;
     if (share < 1.0) f.normal_by_penetration += law.damping * k.penetration_rate / damper_ramp;
   } else if (approach_speed > 0.0) {
-    const double hysteresis = *law.hysteresis / std::max(approach_speed, slowest_approach);
+    const double hysteresis = *law.hysteresis / std::max(approach_speed, min_approach_speed);
     const double factor = 1.0 + hysteresis * k.penetration_rate;
     f.normal = force * factor;
     f.normal_by_penetration = slope * factor;
@@ -56,9 +87,10 @@ Force tendency(const Law& law, const Kinematics& k, double approach_speed) {
 }  // namespace
 
 Force force(const Law& law, const Kinematics& kinematics, double approach_speed) {
+  if (law.kind == LawKind::two_sided) return unlimited_force(law, kinematics, 0.0);
   if (!(kinematics.penetration > 0.0)) return {};
-  Force f = tendency(law, kinematics, approach_speed);
-  if (!(f.normal > 0.0)) return {};  // no sticking
+  Force f = unlimited_force(law, kinematics, approach_speed);
+  if (!(f.normal > 0.0)) return {};  // no adhesion
   if (law.friction == 0.0) return f;
   const double t = std::tanh(kinematics.sliding_speed / law.transition_speed);  // eq. 49
   const double mu = law.friction * t;
@@ -69,12 +101,13 @@ Force force(const Law& law, const Kinematics& kinematics, double approach_speed)
   return f;
 }
 
-double normal_tendency(const Law& law, const Kinematics& kinematics, double approach_speed) {
-  return tendency(law, kinematics, approach_speed).normal;
+double unlimited_normal_force(const Law& law, const Kinematics& kinematics, double approach_speed) {
+  return unlimited_force(law, kinematics, approach_speed).normal;
 }
 
 double impact_duration(const Law& law, double mass, double speed) {
-  if (law.kind == LawKind::linear) return std::numbers::pi * std::sqrt(mass / law.stiffness);
+  if (law.kind == LawKind::other) return duration_of_impact(*law.elastic, mass, speed);
+  if (is_linear(law)) return std::numbers::pi * std::sqrt(mass / law.stiffness);
   return 2.9432750 * std::pow(1.25 * mass * speed * speed / law.stiffness, 0.4) / speed;
 }
 
@@ -88,32 +121,40 @@ Force operator-(const Force& f) {
           -f.tangential_by_sliding};
 }
 
-// Newton for r with r^2 + seat*k*r^3 = penetration, a convex line: from the right it comes down without passing it.
-double own_penetration(const Law& law, double penetration) {
-  if (law.seat == 0.0 || !(penetration > 0.0)) return penetration;
-  const double yielding = law.seat * law.stiffness;
-  if (law.kind == LawKind::linear) return penetration / (1.0 + yielding);
+// Newton's method for r in r^2 + s*k*r^3 = penetration, s the local compliance. The function is convex, so that the
+// iteration from the right converges monotonically.
+double surface_penetration(const Law& law, double penetration) {
+  if (law.local_compliance == 0.0 || (law.kind != LawKind::two_sided && !(penetration > 0.0))) return penetration;
+  const double compliance_factor = law.local_compliance * law.stiffness;
+  if (law.kind == LawKind::other)
+    return std::min(penetration, penetration_of(penetration, [&](double alpha) {
+                      return alpha + law.local_compliance * law.elastic->force(alpha);
+                    }));
+  if (is_linear(law)) return penetration / (1.0 + compliance_factor);
   double root = std::sqrt(penetration);
-  for (int i = 0; i < most_iterations; ++i) {
-    const double excess = root * root * (1.0 + yielding * root) - penetration;
-    const double step = excess / (root * (2.0 + 3.0 * yielding * root));
+  for (int i = 0; i < max_iterations; ++i) {
+    const double excess = root * root * (1.0 + compliance_factor * root) - penetration;
+    const double step = excess / (root * (2.0 + 3.0 * compliance_factor * root));
     root -= step;
-    if (step <= settled * root) break;
+    if (step <= tolerance * root) break;
   }
   return root * root;
 }
 
 double potential(const Law& law, double penetration) {
-  if (!(penetration > 0.0)) return 0.0;
-  const double alpha = own_penetration(law, penetration);
-  const double force = elastic_alone(law, alpha).force;
-  return (law.kind == LawKind::linear ? 0.5 : 0.4) * force * alpha + 0.5 * law.seat * force * force;
+  if (law.kind != LawKind::two_sided && !(penetration > 0.0)) return 0.0;
+  const double alpha = surface_penetration(law, penetration);
+  const double force = surface_force(law, alpha).force;
+  if (law.kind == LawKind::other) return law.elastic->energy(alpha) + 0.5 * law.local_compliance * force * force;
+  return (is_linear(law) ? 0.5 : 0.4) * force * alpha + 0.5 * law.local_compliance * force * force;
 }
 
-double penetration_at_rest(const Law& law, double normal) {
+double static_penetration(const Law& law, double normal) {
   if (!(normal > 0.0)) return 0.0;
+  if (law.kind == LawKind::other)
+    return penetration_of(normal, [&](double alpha) { return law.elastic->force(alpha); });
   const double ratio = normal / law.stiffness;
-  if (law.kind == LawKind::linear) return ratio;
+  if (is_linear(law)) return ratio;
   const double root = std::cbrt(ratio);
   return root * root;
 }
@@ -129,7 +170,7 @@ double lankarani_nikravesh_hysteresis(double e) { return 0.75 * (1.0 - e * e); }
 
 double exact_hysteresis(double e) {
   if (e >= 1.0) return 0.0;
-  // ln((1 + d)/(1 - e d)) - (1 + e) d is below 0 at first and rises without bound towards d = 1/e
+  // ln((1 + d)/(1 - e d)) - (1 + e) d is negative for small d and increases without limit towards d = 1/e.
   double low = 0.0, high = 1.0 / e;
   for (int i = 0; i < 200; ++i) {
     const double d = 0.5 * (low + high);

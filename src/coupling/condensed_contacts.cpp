@@ -1,5 +1,5 @@
-// Newton's method for the condensed contact forces with a banded LU factorisation of P + A D, D the tangent of the
-// contact laws; the bandwidth follows from the couplings that are not negligible.
+// Newton's method for the condensed contact forces with a banded LU factorisation of P + A D, where D is the tangent of
+// the contact laws. The bandwidth follows from the couplings that are not negligible.
 #include "coupling/condensed_contacts.hpp"
 
 #include <algorithm>
@@ -9,11 +9,11 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double settled = 1e-12;    // of the weight: deviation of the law that is left
-constexpr double rough = 1e-6;       // of the weight: deviation above which the tangent is renewed
-constexpr double negligible = 1e-9;  // response at another row over that at their own ones: left to the next evaluation
+constexpr double converged_deviation = 1e-12;  // of the weight: remaining deviation from the law
+constexpr double renewal_deviation = 1e-6;     // of the weight: deviation above which the tangent is computed again
+constexpr double negligible = 1e-9;            // coupling of two rows over their own responses, which A neglects
 
-// What the linearised law gives at the geometry's kinematics, less the force at the kinematics held.
+// The force of the linearised law at the evaluated kinematics, minus the force at the kinematics stored in the contact.
 double force_correction(const train::Contact& c, bool normal) {
   const double a = c.touch.kinematics.penetration - c.kinematics.penetration;
   const double r = c.touch.kinematics.penetration_rate - c.kinematics.penetration_rate;
@@ -41,22 +41,22 @@ Eigen::RowVector2d row_tangent(const train::ContactRow& row, double shift) {
 void CondensedContacts::list(train::Fleet& fleet) {
   rows_.clear();
   first_.clear();
-  yield_.resize(fleet.vehicles.size());
+  compliances_.resize(fleet.vehicles.size());
   for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
     const train::MovingVehicle& vehicle = fleet.vehicles[k];
     first_.push_back(size());
-    yield_[k].list.begin();
+    compliances_[k].list.begin();
     for (const int i : vehicle.touching) {
       if (!fleet.may_touch(i)) continue;
-      yield_[k].list.add(i);
+      compliances_[k].list.add(i);
       train::Contact& c = fleet.contact(i);
       rows_.push_back({&c, vehicle.scale, static_cast<int>(k), true, c.slot()});
       if (c.law.friction > 0.0) rows_.push_back({&c, vehicle.scale, static_cast<int>(k), false, c.slot()});
     }
-    if (!yield_[k].list.end()) yield_[k].known = false;
+    if (!compliances_[k].list.end()) compliances_[k].known = false;
   }
   first_.push_back(size());
-  for (Eigen::VectorXd* v : {&held_, &delta_, &change_, &deviation_, &right_, &beam_}) v->resize(size());
+  for (Eigen::VectorXd* v : {&reference_, &delta_, &change_, &deviation_, &right_, &beam_}) v->resize(size());
   D_.resize(size(), 2);
 }
 
@@ -69,7 +69,7 @@ bool CondensedContacts::moved() {
   return any;
 }
 
-// W, between all rows on elements that respond to each other.
+// Computes W between all rows on elements that respond to each other.
 template <int m>
 void CondensedContacts::respond(const structure::ElementCompliance& compliance) {
   using Vector = Eigen::Matrix<double, m, 1>;
@@ -102,50 +102,50 @@ void CondensedContacts::respond(const structure::ElementCompliance& compliance) 
 void CondensedContacts::couple(const structure::ElementCompliance* compliance, int per_node) {
   responses_.clear();
   if (compliance != nullptr) per_node == 2 ? respond<4>(*compliance) : respond<6>(*compliance);
-  const bool plain =
-      std::all_of(yield_.begin(), yield_.end(), [](const train::ContactCompliance& y) { return y.P.size() == 0; });
-  find_band(!plain);
-  fill();
+  const bool no_tangents = std::all_of(compliances_.begin(), compliances_.end(),
+                                       [](const train::ContactCompliance& y) { return y.P.size() == 0; });
+  find_band(!no_tangents);
+  fill_A();
   factored_ = false;
 }
 
-// What couples rows more than negligibly sets the width of the band; other responses are forgotten.
+// Sets the bandwidth from the couplings that are not negligible, and removes the responses outside it.
 void CondensedContacts::find_band(bool whole) {
   band_ = std::max(0, size() - 1);
   if (whole) return;
   band_ = 0;
   right_.setZero();
-  for (std::size_t k = 0; k < yield_.size(); ++k)
-    right_.segment(first_[k], rows(static_cast<int>(k))) = yield_[k].H.diagonal();
+  for (std::size_t k = 0; k < compliances_.size(); ++k)
+    right_.segment(first_[k], rows(static_cast<int>(k))) = compliances_[k].H.diagonal();
   for (const Response& r : responses_)
     if (r.a == r.b) right_[r.a] += r.value;
-  const auto matters = [this](int a, int b, double value) {
+  const auto relevant = [this](int a, int b, double value) {
     return a == b || value * value > negligible * negligible * std::abs(right_[a] * right_[b]);
   };
-  for (std::size_t k = 0; k < yield_.size(); ++k)
+  for (std::size_t k = 0; k < compliances_.size(); ++k)
     for (int j = 0; j < rows(static_cast<int>(k)); ++j)
       for (int i = 0; i < rows(static_cast<int>(k)); ++i)
-        if (std::abs(i - j) > band_ && matters(first_[k] + i, first_[k] + j, yield_[k].H(i, j)))
+        if (std::abs(i - j) > band_ && relevant(first_[k] + i, first_[k] + j, compliances_[k].H(i, j)))
           band_ = std::abs(i - j);
   for (const Response& r : responses_)
-    if (std::abs(r.a - r.b) > band_ && matters(r.a, r.b, r.value)) band_ = std::abs(r.a - r.b);
-  // a tangential row's column adds to that of its normal one beside it
+    if (std::abs(r.a - r.b) > band_ && relevant(r.a, r.b, r.value)) band_ = std::abs(r.a - r.b);
+  // The tangent of a tangential row adds its column of A to the column of the normal row before it.
   if (std::any_of(rows_.begin(), rows_.end(), [](const train::ContactRow& row) { return !row.normal; }))
     band_ = std::min(band_ + 1, size() - 1);
   std::erase_if(responses_, [this](const Response& r) { return std::abs(r.a - r.b) > band_; });
 }
 
-void CondensedContacts::fill() {
+void CondensedContacts::fill_A() {
   A_.setZero(2 * band_ + 1, size());
-  for (std::size_t k = 0; k < yield_.size(); ++k) {
+  for (std::size_t k = 0; k < compliances_.size(); ++k) {
     const int from = first_[k], count = rows(static_cast<int>(k));
     for (int j = 0; j < count; ++j)
       for (int i = std::max(0, j - band_); i <= std::min(count - 1, j + band_); ++i)
-        A(from + i, from + j) = yield_[k].H(i, j);
+        A(from + i, from + j) = compliances_[k].H(i, j);
   }
   for (const Response& r : responses_) {
     const int k = rows_[r.a].vehicle;
-    const Eigen::MatrixXd& P = yield_[k].P;
+    const Eigen::MatrixXd& P = compliances_[k].P;
     if (P.size() == 0) {
       A(r.a, r.b) += r.value;
     } else {
@@ -154,7 +154,7 @@ void CondensedContacts::fill() {
   }
 }
 
-// P + A D at the forces held in the contacts.
+// Factorises P + A D at the forces stored in the contacts.
 void CondensedContacts::factor(double shift) {
   for (int i = 0; i < size(); ++i) D_.row(i) = row_tangent(rows_[i], shift);
   lu_.set_zero(size(), band_);
@@ -162,7 +162,7 @@ void CondensedContacts::factor(double shift) {
     for (int i = top(j); i <= bottom(j); ++i) lu_.entry(i, j) = A(i, j) * D_(j, 1);
     if (j + 1 < size() && !rows_[j + 1].normal)
       for (int i = std::max(top(j), top(j + 1)); i <= bottom(j); ++i) lu_.entry(i, j) += A(i, j + 1) * D_(j + 1, 0);
-    const train::ContactCompliance& y = yield_[rows_[j].vehicle];
+    const train::ContactCompliance& y = compliances_[rows_[j].vehicle];
     if (y.P.size() == 0) {
       lu_.entry(j, j) += 1.0;
     } else {
@@ -181,26 +181,26 @@ void CondensedContacts::subtract_A_times(const Eigen::VectorXd& x, Eigen::Vector
   }
 }
 
-// The contacts' kinematics and forces at delta, and how far these deviate from those that the tangent has given.
-double CondensedContacts::move_contacts(double shift) {
-  double greatest = 0.0;
+// Sets the contacts' kinematics and forces at delta. Returns the largest deviation from the forces of the tangent.
+double CondensedContacts::update_contacts(double shift) {
+  double largest = 0.0;
   for (int i = 0; i < size(); ++i) {
     train::Contact& c = *rows_[i].contact;
     if (rows_[i].normal) {
       c.kinematics.penetration = c.touch.kinematics.penetration + delta_[i];
       c.kinematics.penetration_rate = c.touch.kinematics.penetration_rate + shift * delta_[i];
-      const bool rubs = i + 1 < size() && !rows_[i + 1].normal;
-      c.kinematics.sliding_speed = c.touch.kinematics.sliding_speed + (rubs ? shift * delta_[i + 1] : 0.0);
+      const bool has_friction = i + 1 < size() && !rows_[i + 1].normal;
+      c.kinematics.sliding_speed = c.touch.kinematics.sliding_speed + (has_friction ? shift * delta_[i + 1] : 0.0);
       c.force = contact::force(c.law, c.kinematics, c.approach_speed);
       if (c.sign < 0.0) c.force = -c.force;
     }
-    deviation_[i] = force_of(rows_[i]) - held_[i] - change_[i];
-    greatest = std::max(greatest, std::abs(deviation_[i]) / rows_[i].scale);
+    deviation_[i] = force_of(rows_[i]) - reference_[i] - change_[i];
+    largest = std::max(largest, std::abs(deviation_[i]) / rows_[i].scale);
   }
-  return greatest;
+  return largest;
 }
 
-void CondensedContacts::deflect(const Eigen::VectorXd& forces) {
+void CondensedContacts::set_beam_displacement(const Eigen::VectorXd& forces) {
   beam_.setZero();
   for (const Response& r : responses_) beam_[r.a] -= r.value * forces[r.b];
 }
@@ -208,13 +208,13 @@ void CondensedContacts::deflect(const Eigen::VectorXd& forces) {
 double CondensedContacts::solve(double shift, bool loaded, int most_iterations) {
   if (!factored_) factor(shift);
   for (int i = 0; i < size(); ++i) {
-    held_[i] = force_of(rows_[i]);
+    reference_[i] = force_of(rows_[i]);
     change_[i] = force_correction(*rows_[i].contact, rows_[i].normal);
   }
   beam_.setZero();
-  if (!loaded) deflect(held_);
-  for (std::size_t k = 0; k < yield_.size(); ++k) {
-    const train::ContactCompliance& y = yield_[k];
+  if (!loaded) set_beam_displacement(reference_);
+  for (std::size_t k = 0; k < compliances_.size(); ++k) {
+    const train::ContactCompliance& y = compliances_[k];
     const auto beam = beam_.segment(first_[k], rows(static_cast<int>(k)));
     auto right = right_.segment(first_[k], rows(static_cast<int>(k)));
     right = y.c;
@@ -225,7 +225,7 @@ double CondensedContacts::solve(double shift, bool loaded, int most_iterations) 
   }
   subtract_A_times(change_, right_);
   delta_.setZero();
-  double left = 0.0;
+  double remaining = 0.0;
   for (int i = 1;; ++i) {
     lu_.solve_in_place(right_.data());
     delta_ += right_;
@@ -233,16 +233,16 @@ double CondensedContacts::solve(double shift, bool loaded, int most_iterations) 
       change_[j] += D_(j, 1) * right_[j];
       if (!rows_[j].normal) change_[j] += D_(j, 0) * right_[j - 1];
     }
-    left = move_contacts(shift);
-    if (i == most_iterations || left <= settled || !std::isfinite(left)) break;
-    if (left > rough) factor(shift);
+    remaining = update_contacts(shift);
+    if (i == most_iterations || remaining <= converged_deviation || !std::isfinite(remaining)) break;
+    if (remaining > renewal_deviation) factor(shift);
     right_.setZero();
     subtract_A_times(deviation_, right_);
     change_ += deviation_;
   }
-  if (!loaded) held_ += change_;
-  deflect(loaded ? change_ : held_);
-  return left;
+  if (!loaded) reference_ += change_;
+  set_beam_displacement(loaded ? change_ : reference_);
+  return remaining;
 }
 
 }  // namespace traverse::coupling

@@ -1,4 +1,4 @@
-// The search for the end of a step in which a contact is lost or gained: just behind a loss, just before a gain.
+// Locates the end of a step in which a contact opens or closes: just after an opening, just before a closing.
 #pragma once
 
 #include <optional>
@@ -9,29 +9,29 @@ namespace traverse::coupling {
 
 class ContactEventLocator {
  public:
-  /// `change` happens between `from`, the last accepted instant, and `to`, where the vehicles of the system are now.
+  /// `change` occurs between `from`, the last accepted instant, and `to`, the time that the vehicles are set to.
   ContactEventLocator(const System& system, const train::Change& change, double from, double to, double tolerance);
 
   bool found() const { return found_; }
-  /// Where the step should end next.
+  /// The next end of the step to compute.
   double trial();
-  /// The step was taken to `at`, where the vehicles are now, with this change in it.
-  void tried(double at, const std::optional<train::Change>& change);
-  /// When found, or given up: where the step has to end.
+  /// Evaluates a step to `at`, which the vehicles are set to, with the change of contact that it contains.
+  void update(double at, const std::optional<train::Change>& change);
+  /// The time at which the step has to end, even if the search has failed.
   double end() const;
 
  private:
-  const contact::Kinematics& now() const;
+  const contact::Kinematics& current_kinematics() const;
   double nearest() const;
   void end_at(double end);
 
   const System& system_;
   train::Change change_;
-  double from_, full_;                 // the whole step, its end
-  double low_, high_;                  // no change before, a change before
-  contact::Kinematics below_, above_;  // of its contact there
+  double from_, full_end_;                                // start and end of the whole step
+  double low_, high_;                                     // no change before low_, a change before high_
+  contact::Kinematics low_kinematics_, high_kinematics_;  // of the contact at these times
   double tolerance_;
-  double wanted_;  // of both, s
+  double time_tolerance_;  // s, of this contact
   bool found_ = false;
   double trial_ = 0.0;
   double end_;

@@ -1,5 +1,5 @@
 // Limits the step length by the estimated duration of each impact, sets the tolerance for the time of a change of
-// contact, and accounts for the elastic energy that is lost where a damped contact opens while it is still compressed.
+// contact, and computes the elastic energy that is lost if a damped contact opens while it is compressed.
 #include "coupling/contact_events.hpp"
 
 #include <algorithm>
@@ -8,21 +8,23 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double few_impacts = 25.0, most_refined = 4.0;
+constexpr double unrefined_impacts = 25.0, most_refined = 4.0;
 
-// What the impacts of an elastic contact leave of its energy adds up, of each about with the third power of its step:
-// the more there were, the finer they are, so that four hundred leave no more than fifty of the first would.
-double refined(const train::Separations& separations, int contact, const contact::Law& law) {
+// The factor by which the steps of an impact are refined. The energy errors of all impacts of an elastic contact add
+// up; each error is about proportional to the third power of the step. The factor grows with the number of impacts, so
+// that four hundred impacts have no larger error than fifty unrefined ones.
+double refinement(const train::Separations& separations, int contact, const contact::Law& law) {
   if (law.hysteresis.value_or(0.0) != 0.0 || law.damping != 0.0) return 1.0;
   const auto& list = separations.list();
-  const auto before = std::count_if(  // with the one that ends now
-      list.begin(), list.end(), [&](const auto& one) { return one.contact == contact; });
-  return std::min(std::sqrt(1.0 + static_cast<double>(before - 1) / few_impacts), most_refined);
+  const auto before = std::count_if(  // including the impact that ends now
+      list.begin(), list.end(), [&](const auto& separation) { return separation.contact == contact; });
+  return std::min(std::sqrt(1.0 + static_cast<double>(before - 1) / unrefined_impacts), most_refined);
 }
 
 }  // namespace
 
-// Where a damper has let go of a surface not yet back, and where that has come back: the energy that goes, J.
+// The elastic energy of contacts that open while they are compressed, minus that of such contacts that close again or
+// are no longer compressed, J.
 double ContactEvents::record_released() {
   double lost = 0.0;
   for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
@@ -55,7 +57,7 @@ void ContactEvents::record_impacts(double t) {
   bool any = false;
   for (int i = 0; i < fleet_.contacts(); ++i) {
     train::Contact& c = fleet_.contact(i);
-    if (separations_.touching(i) && !separations_.met(i)) continue;
+    if (separations_.touching(i) && !separations_.just_closed(i)) continue;
     c.approach_speed = std::max(c.kinematics.penetration_rate, 0.0);
     impacts_[i] = {};
     if (impact_steps_ == 0 || c.approach_speed == 0.0) continue;
@@ -63,14 +65,14 @@ void ContactEvents::record_impacts(double t) {
     if (fleet_.owns(c)) impact_durations_[i] = fleet_.impact_duration(i);
   }
   if (!any) return;
-  if (share_.dealt())
+  if (share_.distributed())
     MPI_Allreduce(MPI_IN_PLACE, impact_durations_.data(), fleet_.contacts(), MPI_DOUBLE, MPI_MAX, comm_);
   for (std::size_t i = 0; i < impacts_.size(); ++i) {
     if (impact_durations_[i] == 0.0) continue;
     impacts_[i].step = impact_durations_[i] / impact_steps_;
     const auto contact = static_cast<int>(i);
     if (!separations_.touching(contact)) continue;
-    impacts_[i].step /= refined(separations_, contact, fleet_.contact(contact).law);
+    impacts_[i].step /= refinement(separations_, contact, fleet_.contact(contact).law);
     impacts_[i].end = t + 2.0 * impact_durations_[i];
   }
 }
@@ -80,12 +82,12 @@ std::optional<train::Change> ContactEvents::change(double t, double tolerance) c
                              [&](int i) { return separations_.time_to_touch(i) <= 2.0 * tolerance_of(i, tolerance); });
 }
 
-// A damper comes on with a jump, which must lie at a step's border; an elastic force grows from nothing.
+// A damper force begins with a jump, which must be at the end of a step; an elastic force begins at zero.
 double ContactEvents::tolerance_of(int contact, double tolerance) const {
   const train::Contact& c = fleet_.contact(contact);
   const double step = impacts_[contact].step;
   if (c.law.hysteresis || c.law.damping == 0.0) return std::min(tolerance, 0.1 * step);
-  // a step of twice as much leads from this side of the damper's ramp beyond it
+  // A step of twice the tolerance has to cross the whole ramp of the damper.
   const double ramp = c.approach_speed > 0.0 ? contact::damper_ramp / c.approach_speed : 0.0;
   return std::min(tolerance, std::max(1e-3 * step, std::min(ramp, 0.1 * step)));
 }

@@ -1,5 +1,5 @@
-// What happens at contacts in the steps that are accepted: they part and meet, they strike. From it follow where steps
-// have to end, and how long they may be.
+// Contact events in the accepted steps: openings, closings and impacts. They determine at which times steps have to
+// end, and how long steps may be.
 #pragma once
 
 #include <mpi.h>
@@ -16,21 +16,21 @@ namespace traverse::coupling {
 
 class ContactEvents {
  public:
-  /// impact_steps: of an impact, at least; 0: as the step is.
+  /// impact_steps: the least number of steps in an impact; 0: no limit.
   ContactEvents(MPI_Comm comm, train::Fleet& fleet, const train::VehicleShare& share, int impact_steps)
       : comm_(comm), fleet_(fleet), share_(share), impact_steps_(impact_steps) {}
 
-  /// Collective. Notes the contacts as they are at an accepted instant: those lost and gained, the speeds with which
-  /// they approach, the impacts that begin or are to come. Returns the energy that goes where a damper lets go of a
-  /// surface not yet back, J.
+  /// Collective. Records the contacts at an accepted instant: openings and closings, approach speeds, and impacts that
+  /// begin or are expected. Returns the elastic energy that is lost because damped contacts open while they are
+  /// compressed, J.
   double accept(double t);
 
-  /// With the fleet at t, the end of a step: the first contact lost or gained in it, but for gains that were to come
-  /// within the tolerance (s).
+  /// The first opening or closing in the step that ends at t, which the fleet is set to. Closings that were expected
+  /// within the tolerance (s) are excluded.
   std::optional<train::Change> change(double t, double tolerance) const;
-  /// Time tolerance for locating this contact's gain or loss, s.
+  /// Time tolerance for locating an opening or closing of this contact, s.
   double tolerance_of(int contact, double tolerance) const;
-  /// Longest step while an impact goes on, s.
+  /// Longest step during an impact, s.
   double step_limit(double t) const;
   /// Longest step that overshoots the next impact by at most `tolerance`, s.
   double time_to_impact(double tolerance) const;
@@ -39,8 +39,8 @@ class ContactEvents {
 
  private:
   struct Impact {
-    double end = 0.0;                                       // s; past: none
-    double step = std::numeric_limits<double>::infinity();  // s, the longest while it goes on
+    double end = 0.0;                                       // s; in the past: no impact
+    double step = std::numeric_limits<double>::infinity();  // s, longest during the impact
   };
   double record_released();
   void record_impacts(double t);
@@ -50,7 +50,7 @@ class ContactEvents {
   const train::VehicleShare& share_;
   int impact_steps_;
   train::Separations separations_;
-  std::vector<Impact> impacts_;  // of every contact
+  std::vector<Impact> impacts_;  // one per contact
   std::vector<double> impact_durations_;
 };
 

@@ -1,4 +1,4 @@
-// The beam under the contacts' forces within a stage, at the elements in touch.
+// The beam under the contact forces of a stage, at the elements under the wheels.
 #include "coupling/contact_newton.hpp"
 
 namespace traverse::coupling {
@@ -21,9 +21,9 @@ void ContactNewton::beam_field(const StageData& s, const train::Fleet& fleet, Lo
   }
 }
 
-// The geometry found shows where the forces act, not quite where they did when the beam was put under them: it moves by
-// the difference.
-void ContactNewton::follow_loads(const StageData& s, train::Fleet& fleet) {
+// The evaluated geometry gives the points of action of the forces. They differ slightly from those that the beam was
+// computed with: the beam's response to the difference of the loads is added to the kinematics.
+void ContactNewton::correct_kinematics(const StageData& s, train::Fleet& fleet) {
   const std::size_t m = 2 * static_cast<std::size_t>(s.per_node);
   before_.swap(loads_);
   fleet.element_loads(s.per_node, loads_);
@@ -31,7 +31,7 @@ void ContactNewton::follow_loads(const StageData& s, train::Fleet& fleet) {
   v_.assign(v_.size(), 0.0);
   s.compliance->respond(before_, v_);
   for (train::WheelContact& c : fleet.wheels) {
-    if (c.slot() < 0 || fleet.vehicles[c.vehicle].rests) continue;
+    if (c.slot() < 0 || fleet.vehicles[c.vehicle].converged) continue;
     const double* z = &v_[m * static_cast<std::size_t>(c.slot())];
     double normal = 0.0, tangential = 0.0;
     for (std::size_t i = 0; i < m; ++i) {

@@ -1,13 +1,13 @@
-// What ranks that share the vehicles tell each other in every iteration.
+// The data that ranks with shared vehicles exchange in every iteration.
 #include <algorithm>
 
 #include "coupling/contact_newton.hpp"
 
 namespace traverse::coupling {
 
-// Residuals, the contacts' geometry, and where the vehicles go by themselves.
-unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, unsigned signs) {
-  if (s.share == nullptr) return signs;
+// Residuals, contact geometry, and the vehicles' displacements under unchanged contact forces.
+unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, unsigned flags) {
+  if (s.share == nullptr) return flags;
   const int m = s.compliance != nullptr ? 2 * s.per_node : 0;
   const auto numbers = [m](const train::Contact& c) { return 7 + (c.law.friction > 0.0 ? 2 * m : m); };
   const auto each = [&](int k, auto number) {
@@ -22,7 +22,7 @@ unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, 
       number(fleet.x(c));
       number(fleet.x_rate(c));
       number(c.active);
-      number(c.law.seat);
+      number(c.law.local_compliance);
       for (int j = 0; j < m; ++j) number(c.touch.normal_on_beam[j]);
       for (int j = 0; c.law.friction > 0.0 && j < m; ++j) number(c.touch.tangent_on_beam[j]);
     }
@@ -33,7 +33,7 @@ unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, 
     return sum;
   };
   return s.share->exchange(
-      signs, size, [&](int k, double* to) { each(k, [&to](auto& value) { *to++ = value; }); },
+      flags, size, [&](int k, double* to) { each(k, [&to](auto& value) { *to++ = value; }); },
       [&](int k, const double* from) {
         each(k, [&from](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*from++); });
       });

@@ -1,4 +1,4 @@
-// Times at which each wheel begins and ends to turn about a corner, predicted from its position and speed and from the
+// Times at which each wheel begins and ends to turn about a kink, predicted from its position and speed and from the
 // slopes of the surface on both sides.
 #include "coupling/kink_events.hpp"
 
@@ -10,95 +10,97 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double steepest = 0.05;  // slopes of beams are smaller by far
-// Of a step: what a change of sides is given at least; less costs digits of accelerations.
-constexpr double shortest = 1e-5;
-constexpr double slight = 1e-9;  // of a step: a corner that is turned faster is none
-// Of the time it takes to turn about the corner: how far outside of it steps end, so that none ends on its wrong side,
-// and within which an end is where it was expected.
-constexpr double margin = 0.02, passed = 0.01;
+constexpr double steepest = 0.05;  // slope; beams have much smaller ones
+// Of a step: the least duration of a turn; a shorter one would cost digits of accelerations.
+constexpr double least_turn = 1e-5;
+constexpr double negligible_turn = 1e-9;  // of a step: kinks with a shorter turn are ignored
+// Of the duration of the turn. margin: steps end so far outside of the turn that none ends on its wrong side. passed:
+// the tolerance for the difference of an end from its predicted time.
+constexpr double margin = 0.02, time_tolerance = 0.01;
 
 }  // namespace
 
-void KinkEvents::expect(const std::vector<base::SpeedLaw>& laws, double end, double step) {
+void KinkEvents::list_kinks(const std::vector<base::SpeedLaw>& laws, double end, double step) {
   longest_step_ = step;
-  corners_.clear();
+  kinks_.clear();
   next_ = 0;
   if (structure_ == nullptr) return;
   for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
     const train::WheelContact& c = fleet_.wheels[i];
-    if (c.is_further || c.sharp) continue;  // located by its points
+    if (c.is_further || c.sharp) continue;  // located by its contact points
     if (laws[i].direction() == 0.0) continue;
     for (const double x : structure_->line().mesh.kinks()) {
       const double t = laws[i].time_of(x - fleet_.coordinates(c).x());
       if (!(t >= 0.0 && t <= end)) continue;
       const double speed = std::abs(laws[i].speed(t));
-      if (speed > 0.0) corners_.push_back({t, static_cast<int>(i), x, speed});  // else it stands there
+      if (speed > 0.0) kinks_.push_back({t, static_cast<int>(i), x, speed});  // otherwise it is at rest there
     }
   }
-  std::sort(corners_.begin(), corners_.end(), [](const Corner& a, const Corner& b) { return a.time < b.time; });
+  std::sort(kinks_.begin(), kinks_.end(), [](const Kink& a, const Kink& b) { return a.time < b.time; });
 }
 
-double KinkEvents::longest_turn(const Corner& corner) const {
-  return steepest * fleet_.wheel(fleet_.wheels[corner.wheel]).radius / corner.speed;
+double KinkEvents::longest_turn(const Kink& kink) const {
+  return steepest * fleet_.wheel(fleet_.wheels[kink.wheel]).radius / kink.speed;
 }
 
-// Both times, the earlier one first, as the state y at t lets them be expected.
-std::array<double, 2> KinkEvents::turning_times(const Corner& corner, double t, const double* v, const double* w) {
+// The start and the end of the turn, predicted from the state at t.
+std::array<double, 2> KinkEvents::turning_times(const Kink& kink, double t, const double* v, const double* w) {
   const beam::Mesh& mesh = structure_->line().mesh;
-  const train::WheelContact& c = fleet_.wheels[corner.wheel];
+  const train::WheelContact& c = fleet_.wheels[kink.wheel];
   enum { x, speed, radius, numbers };
-  std::array<double, numbers> seen{};
+  std::array<double, numbers> state{};
   int rank = 0;
   MPI_Comm_rank(comm_, &rank);
-  if (share_.dealt() ? fleet_.owns(c) : rank == 0) {
-    seen[x] = fleet_.coordinates(c).x();
-    seen[speed] = fleet_.velocities(c).x();
-    const double penetration = fleet_.kinematics(corner.wheel).penetration;
-    seen[radius] = penetration > 0.0 ? fleet_.wheel(c).radius - penetration : 0.0;
+  if (share_.distributed() ? fleet_.owns(c) : rank == 0) {
+    state[x] = fleet_.coordinates(c).x();
+    state[speed] = fleet_.velocities(c).x();
+    const double penetration = fleet_.kinematics(kink.wheel).penetration;
+    const bool in_contact = penetration > 0.0 || c.law.kind == contact::LawKind::two_sided;
+    state[radius] = in_contact ? fleet_.wheel(c).radius - penetration : 0.0;
   }
-  MPI_Allreduce(MPI_IN_PLACE, seen.data(), numbers, MPI_DOUBLE, MPI_SUM, comm_);
-  const double far = std::numeric_limits<double>::infinity();
-  if (seen[speed] == 0.0 || seen[radius] == 0.0) return {far, far};  // at rest or in flight
-  const double straight = t + (corner.x - seen[x]) / seen[speed];    // the centre over the corner
-  // The rotations at the end of the element on the left and at the start of that on the right.
-  elements_ = {mesh.locate(corner.x, true).element, mesh.locate(corner.x, false).element};
+  MPI_Allreduce(MPI_IN_PLACE, state.data(), numbers, MPI_DOUBLE, MPI_SUM, comm_);
+  const double infinite = std::numeric_limits<double>::infinity();
+  if (state[speed] == 0.0 || state[radius] == 0.0) return {infinite, infinite};  // without motion or contact
+  const double centre_time = t + (kink.x - state[x]) / state[speed];             // the centre is above the kink
+  // The rotations at the right end of the left element and at the left end of the right element.
+  elements_ = {mesh.locate(kink.x, true).element, mesh.locate(kink.x, false).element};
   structure_->gather(elements_, v, w, v_, w_);
   const auto per_node = static_cast<std::size_t>(structure_->per_node());
   const std::size_t left = 2 * per_node - 1, right = left + per_node;
-  const auto turned = [&](bool on_beam, std::size_t rotation, double aside) {
-    const double bend = on_beam ? v_[rotation] + w_[rotation] * (straight - t) : 0.0;
-    const double there = bend + fleet_.profile(c).at(std::nextafter(corner.x, aside)).slope;
-    return straight - seen[radius] * there / std::hypot(1.0, there) / seen[speed];
+  const auto turning_time = [&](bool on_beam, std::size_t rotation, double aside) {
+    const double beam_slope = on_beam ? v_[rotation] + w_[rotation] * (centre_time - t) : 0.0;
+    const double slope = beam_slope + fleet_.profile(c).at(std::nextafter(kink.x, aside)).slope;
+    return centre_time - state[radius] * slope / std::hypot(1.0, slope) / state[speed];
   };
-  std::array<double, 2> times = {turned(corner.x > mesh.start(), left, -far),
-                                 turned(corner.x < mesh.end(), right, far)};
-  if (seen[speed] < 0.0) std::swap(times[0], times[1]);  // it comes from the right
-  if (std::abs(times[1] - times[0]) < slight * longest_step_) return {far, far};
+  std::array<double, 2> times = {turning_time(kink.x > mesh.start(), left, -infinite),
+                                 turning_time(kink.x < mesh.end(), right, infinite)};
+  if (state[speed] < 0.0) std::swap(times[0], times[1]);  // the wheel moves to the left
+  if (std::abs(times[1] - times[0]) < negligible_turn * longest_step_) return {infinite, infinite};
   const double middle = 0.5 * (times[0] + times[1]), half = 0.5 * (times[1] - times[0]);
-  const double wide = (1.0 + margin) * std::max(half, shortest * longest_step_);  // half is below 0 in a valley
-  return {middle - wide, middle + wide};
+  const double half_width =
+      (1.0 + margin) * std::max(half, least_turn * longest_step_);  // half is negative in a valley
+  return {middle - half_width, middle + half_width};
 }
 
 std::optional<KinkEvents::KinkPassage> KinkEvents::next(double t, double h, const double* v, const double* w) {
-  while (next_ < corners_.size() && corners_[next_].time + longest_turn(corners_[next_]) < t) ++next_;
+  while (next_ < kinks_.size() && kinks_[next_].time + longest_turn(kinks_[next_]) < t) ++next_;
   std::optional<KinkPassage> next;
-  for (std::size_t i = next_; i < corners_.size(); ++i) {
-    const double longest = longest_turn(corners_[i]);
-    if (corners_[i].time - longest > t + h) break;
-    const std::array<double, 2> times = turning_times(corners_[i], t, v, w);
-    const double gap = passed * (times[1] - times[0]);
+  for (std::size_t i = next_; i < kinks_.size(); ++i) {
+    const double longest = longest_turn(kinks_[i]);
+    if (kinks_[i].time - longest > t + h) break;
+    const std::array<double, 2> times = turning_times(kinks_[i], t, v, w);
+    const double gap = time_tolerance * (times[1] - times[0]);
     for (int end = 0; end < 2; ++end) {
       const double at = times[static_cast<std::size_t>(end)];
-      if (std::abs(at - corners_[i].time) < 2.0 * gap) continue;  // where a step ends anyhow
+      if (std::abs(at - kinks_[i].time) < 2.0 * gap) continue;  // a step ends there in any case
       if (at > t + gap && at < t + h - gap && (!next || at < next->time)) next = KinkPassage{at, gap, i, end};
     }
   }
   return next;
 }
 
-double KinkEvents::time_of(const KinkPassage& turn, double t, const double* v, const double* w) {
-  return turning_times(corners_[turn.corner], t, v, w)[static_cast<std::size_t>(turn.end)];
+double KinkEvents::time_of(const KinkPassage& passage, double t, const double* v, const double* w) {
+  return turning_times(kinks_[passage.kink], t, v, w)[static_cast<std::size_t>(passage.end)];
 }
 
 }  // namespace traverse::coupling

@@ -1,10 +1,10 @@
-// Where wheels turn about a corner of the running surface, at the end of the bridge or of a span.
+// Times at which wheels turn about a kink of the running surface, at the end of the bridge or of a span.
 //
-// With the slopes s_l and s_r of the surface on either side of a corner at x_c, a wheel of radius r touches the left
-// side until its centre is at x_c - r s_l and the right side from x_c - r s_r on (their sines for the slopes). In
-// between, a few microseconds at speed, it turns about a crest; in a valley it changes sides half-way. Forces keep
-// their values there, but the rate of penetration and the power of the drive change at once: a step has to end at
-// either end of that.
+// With the slopes s_l and s_r of the surface on the two sides of a kink at x_c, a wheel of radius r touches the left
+// side until its centre is at x_c - r s_l and the right side from x_c - r s_r on (with the sines of the angles in place
+// of the slopes). Between these positions, for a few microseconds at speed, it turns about a crest; in a valley the
+// contact changes sides at their middle. The forces are continuous there, but the penetration rate and the power of the
+// drive jump: a step has to end at both positions.
 #pragma once
 
 #include <mpi.h>
@@ -21,44 +21,45 @@ namespace traverse::coupling {
 
 class KinkEvents {
  public:
-  /// structure: null where there is none, and then no corners.
+  /// structure: null if there is none, and then no kinks.
   KinkEvents(MPI_Comm comm, structure::Structure* structure, const train::Fleet& fleet,
              const train::VehicleShare& share)
       : comm_(comm), structure_(structure), fleet_(fleet), share_(share) {}
 
-  /// Before the first step, the longest one: corners that the fleet's wheels, which run so, come to until `end`.
-  void expect(const std::vector<base::SpeedLaw>& laws, double end, double step);
+  /// Lists the kinks that the fleet's wheels, moving by `laws`, pass until `end`. Before the first step; step: the
+  /// longest.
+  void list_kinks(const std::vector<base::SpeedLaw>& laws, double end, double step);
 
-  /// A wheel begins or ends to turn about a corner: when, and how exactly a step has to end there.
+  /// A wheel begins or ends to turn about a kink: the time, and the tolerance for the end of a step there.
   struct KinkPassage {
     double time = 0.0, tolerance = 0.0;  // s
-    std::size_t corner = 0;
+    std::size_t kink = 0;
     int end = 0;
   };
-  /// Collective. The first such time within h s from the accepted state v, w at t, as it lets it be expected.
+  /// Collective. The first such time within h s after t, predicted from the accepted state v, w at t.
   std::optional<KinkPassage> next(double t, double h, const double* v, const double* w);
-  /// Collective. The same as it is found at the end of a step, where the vehicles are.
-  double time_of(const KinkPassage& turn, double t, const double* v, const double* w);
+  /// Collective. The same time computed at the end of a step, which the vehicles are set to.
+  double time_of(const KinkPassage& passage, double t, const double* v, const double* w);
 
  private:
-  /// A wheel's centre passes a corner of the surface.
-  struct Corner {
+  /// A wheel's centre passes a kink of the surface.
+  struct Kink {
     double time = 0.0;   // s
-    int wheel = 0;       // of the fleet's
+    int wheel = 0;       // index in Fleet::wheels
     double x = 0.0;      // m
     double speed = 0.0;  // m/s
   };
-  double longest_turn(const Corner& corner) const;
-  std::array<double, 2> turning_times(const Corner& corner, double t, const double* v, const double* w);
+  double longest_turn(const Kink& kink) const;
+  std::array<double, 2> turning_times(const Kink& kink, double t, const double* v, const double* w);
 
   MPI_Comm comm_;
   structure::Structure* structure_;
   const train::Fleet& fleet_;
   const train::VehicleShare& share_;
-  std::vector<Corner> corners_;  // ascending in time
+  std::vector<Kink> kinks_;  // ascending in time
   double longest_step_ = 0.0;
-  std::size_t next_ = 0;       // the first that may not have been turned
-  std::vector<int> elements_;  // on either side of a corner
+  std::size_t next_ = 0;       // the first kink that may not have been passed
+  std::vector<int> elements_;  // on both sides of a kink
   std::vector<double> v_, w_;  // of these
 };
 

@@ -14,19 +14,20 @@ namespace traverse::coupling {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr int positions = 2000;   // of the weights along their way
-constexpr double together = 0.5;  // m: weights whose distances change by less pass as one train
+constexpr int positions = 2000;            // of the weights along their path
+constexpr double constant_distance = 0.5;  // m: weights whose distances change by less move as one train
 
 }  // namespace
 
-// The deflection of a station under a unit downward force on the line that wheels run on, over the force's place. What
-// the nodal values of the station's element give is a load on the structure, whose deflections are that line (Maxwell
-// and Betti); a force on that element deflects it between its nodes besides.
+// The deflection of a station under a unit downward force on the line of the wheels, over the position of the force. By
+// the theorem of Maxwell and Betti it is the deflection of that line under a load: the linear form of the nodal values
+// of the station's element that gives the deflection at the station. A force on that element adds a deflection between
+// its nodes.
 struct QuasiStaticResponse::InfluenceLine {
   double station = 0.0;
   std::vector<double> nodal;             // deflection and rotation at both ends of every element, on every rank
-  std::optional<beam::Recovery> inside;  // of the station; none where wheels run on a rail
-  double of_weight = 0.0;                // m: what the beam's own weight adds
+  std::optional<beam::Recovery> inside;  // of the station; none if wheels run on a rail
+  double weight_deflection = 0.0;        // m: deflection under the beam's own weight
 
   double at(const beam::Mesh& mesh, double x) const {
     if (x < mesh.start() || x > mesh.end()) return 0.0;
@@ -36,6 +37,31 @@ struct QuasiStaticResponse::InfluenceLine {
     double sum = inside ? inside->deflection_inside(0, {s.element, s.xi, 0.0, -1.0, 0.0}) : 0.0;
     for (int i = 0; i < 4; ++i) sum += psi.value[i] * nodal[4 * static_cast<std::size_t>(s.element) + i];
     return sum;
+  }
+
+  /// The mean over a length (m) about x, 0 outside the mesh; length 0: the value at x.
+  double mean(const beam::Mesh& mesh, double x, double length) const {
+    if (length == 0.0) return at(mesh, x);
+    const double from = std::max(x - 0.5 * length, mesh.start()), to = std::min(x + 0.5 * length, mesh.end());
+    if (!(to > from)) return 0.0;
+    constexpr double position = 0.7745966692414834;  // of Gauss' rule with three points
+    double sum = 0.0;
+    const auto add = [&](double left, double right) {
+      const double middle = 0.5 * (left + right), half = 0.5 * (right - left);
+      sum += half *
+             (5.0 * at(mesh, middle - position * half) + 8.0 * at(mesh, middle) +
+              5.0 * at(mesh, middle + position * half)) /
+             9.0;
+    };
+    for (int e = mesh.locate(from).element; e <= mesh.locate(to).element; ++e) {
+      const beam::Element& element = mesh.element(e);
+      const double left = std::max(from, element.x), right = std::min(to, element.x + element.length);
+      if (!(right > left)) continue;
+      const double middle = std::clamp(station, left, right);
+      if (middle > left) add(left, middle);
+      if (right > middle) add(middle, right);
+    }
+    return sum / length;
   }
 };
 
@@ -49,15 +75,15 @@ QuasiStaticResponse::InfluenceLine QuasiStaticResponse::influence_line(double st
     structure_->add_force(beam.bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal.data());
   } else {
     line.inside.emplace(beam, std::vector<double>{station}, gravity_);
-    line.of_weight = line.inside->add_deflection_form(0, -1.0, nodal.data());
+    line.weight_deflection = line.inside->add_deflection_form(0, -1.0, nodal.data());
   }
   structure_->release_held(nodal.data());
   structure_->statics().solve_static(nodal.data());
-  double of_weight = 0.0;
-  for (std::size_t i = 0; i < nodal.size(); ++i) of_weight -= nodal[i] * structure_->dead_load()[i];
-  MPI_Allreduce(MPI_IN_PLACE, &of_weight, 1, MPI_DOUBLE, MPI_SUM, comm_);
-  line.of_weight += of_weight;
-  if (beam.model().strained()) line.of_weight = rest_at(station);
+  double weight_deflection = 0.0;
+  for (std::size_t i = 0; i < nodal.size(); ++i) weight_deflection -= nodal[i] * structure_->dead_load()[i];
+  MPI_Allreduce(MPI_IN_PLACE, &weight_deflection, 1, MPI_DOUBLE, MPI_SUM, comm_);
+  line.weight_deflection += weight_deflection;
+  if (beam.model().strained()) line.weight_deflection = permanent_deflection(station);
   for (int e = 0; e < structure_->line().mesh.elements(); ++e) {
     const auto unknowns = structure_->line().transverse(e);
     for (int i = 0; i < 4; ++i) {
@@ -70,20 +96,20 @@ QuasiStaticResponse::InfluenceLine QuasiStaticResponse::influence_line(double st
 }
 
 // The deflection of a station under the dead load, the beam's strains and settlements.
-double QuasiStaticResponse::rest_at(double station) {
-  const std::vector<double> rest = structure_->rest(), none(rest.size(), 0.0);
+double QuasiStaticResponse::permanent_deflection(double station) {
+  const std::vector<double> permanent = structure_->displacements_without_traffic(), zeros(permanent.size(), 0.0);
   beam::Recovery recovery(structure_->beam(), {station}, gravity_);
-  std::vector<beam::Response> found;
-  recovery.evaluate(rest.data(), none.data(), none.data(), {}, found);
-  return found.front().deflection;
+  std::vector<beam::Response> responses;
+  recovery.evaluate(permanent.data(), zeros.data(), zeros.data(), {}, responses);
+  return responses.front().deflection;
 }
 
 bool QuasiStaticResponse::pass_together(const train::WheelPaths& paths) const {
-  const auto otherwise = [this](const StaticLoad& w) { return w.law.speed(0.0) != weights_.front().law.speed(0.0); };
-  return steady() && std::none_of(weights_.begin(), weights_.end(), otherwise) && paths.drift() < together;
+  const auto other_speed = [this](const StaticLoad& w) { return w.law.speed(0.0) != weights_.front().law.speed(0.0); };
+  return steady() && std::none_of(weights_.begin(), weights_.end(), other_speed) && paths.drift() < constant_distance;
 }
 
-// Whether no speed changes.
+// Whether all speeds are constant.
 bool QuasiStaticResponse::steady() const {
   return std::all_of(weights_.begin(), weights_.end(), [](const StaticLoad& w) { return w.law.constant(); });
 }
@@ -91,7 +117,7 @@ bool QuasiStaticResponse::steady() const {
 double QuasiStaticResponse::static_peak(double station, const train::WheelPaths& paths, double end) {
   if (!superpose()) return 0.0;
   const InfluenceLine line = influence_line(station);
-  return pass_together(paths) ? peak_of_train(line, line.of_weight) : peak_on_the_way(line, paths, end);
+  return pass_together(paths) ? peak_of_train(line, line.weight_deflection) : peak_along_paths(line, paths, end);
 }
 
 double QuasiStaticResponse::static_energy(double station) {
@@ -101,57 +127,62 @@ double QuasiStaticResponse::static_energy(double station) {
   return compliance > 0.0 ? 0.5 * deflection * deflection / compliance : 0.0;
 }
 
-// Every weight over the station in turn (where the line peaks), and evenly along the whole way; the constant added.
+// Each weight above the station, where the influence line has its peak, and equidistant positions along the whole path.
+// The constant is added.
 double QuasiStaticResponse::peak_of_train(const InfluenceLine& line, double constant) const {
   const beam::Mesh& mesh = structure_->line().mesh;
   double front = -infinite, rear = infinite;
-  for (const auto& [x, force, law] : weights_) {
-    front = std::max(front, x);
-    rear = std::min(rear, x);
+  for (const StaticLoad& w : weights_) {
+    front = std::max(front, w.x + 0.5 * w.length);
+    rear = std::min(rear, w.x - 0.5 * w.length);
   }
   double peak = 0.0;
-  auto try_shift = [&](double shift) {
+  auto evaluate_shift = [&](double shift) {
     double sum = constant;
-    for (const auto& [x, force, law] : weights_) sum += force * line.at(mesh, x + shift);
+    for (const StaticLoad& w : weights_) sum += w.force * line.mean(mesh, w.x + shift, w.length);
     peak = std::max(peak, std::abs(sum));
   };
-  for (const auto& [x, force, law] : weights_) try_shift(line.station - x);
+  if (weights_.front().law.direction() == 0.0) {  // the loads do not move
+    evaluate_shift(0.0);
+    return peak;
+  }
+  for (const StaticLoad& w : weights_) evaluate_shift(line.station - w.x);
   for (int i = 0; i <= positions; ++i)
-    try_shift(mesh.start() - front + (mesh.end() - mesh.start() + front - rear) * i / positions);
+    evaluate_shift(mesh.start() - front + (mesh.end() - mesh.start() + front - rear) * i / positions);
   return peak;
 }
 
-// Where the weights are at the same time, from t = 0 to the end: whenever one is over the station, and evenly.
-double QuasiStaticResponse::peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths,
-                                            double end) const {
-  const std::size_t known = paths.instants();
-  const auto place = [&](std::size_t i, std::size_t instant, double t) {
-    return i < wheels_ && known > 1 ? paths.x(instant, i) : weights_[i].x + weights_[i].law.distance(t);
+// Positions of all weights at the same time, from t = 0 to the end: whenever one is above the station, and equidistant.
+double QuasiStaticResponse::peak_along_paths(const InfluenceLine& line, const train::WheelPaths& paths,
+                                             double end) const {
+  const std::size_t instants = paths.instants();
+  const auto position = [&](std::size_t i, std::size_t instant, double t) {
+    return i < wheels_ && instants > 1 ? paths.x(instant, i) : weights_[i].x + weights_[i].law.distance(t);
   };
-  std::vector<double> from(weights_.size()), way(weights_.size());
+  std::vector<double> from(weights_.size()), travel(weights_.size());
   double peak = 0.0;
-  const auto try_part = [&](double part) {
-    double sum = line.of_weight;
+  const auto evaluate_at = [&](double fraction) {
+    double sum = line.weight_deflection;
     for (std::size_t i = 0; i < weights_.size(); ++i)
-      sum += weights_[i].force * line.at(structure_->line().mesh, from[i] + part * way[i]);
+      sum += weights_[i].force * line.mean(structure_->line().mesh, from[i] + fraction * travel[i], weights_[i].length);
     peak = std::max(peak, std::abs(sum));
   };
-  const std::size_t stretches = known > 1 ? known - 1 : steady() ? 1 : positions;
+  const std::size_t stretches = instants > 1 ? instants - 1 : steady() ? 1 : positions;
   const auto time = [&](std::size_t k) {
-    return known > 1 ? paths.time(k) : end * static_cast<double>(k) / static_cast<double>(stretches);
+    return instants > 1 ? paths.time(k) : end * static_cast<double>(k) / static_cast<double>(stretches);
   };
-  const int parts = std::max(1, positions / static_cast<int>(stretches));
+  const int fractions = std::max(1, positions / static_cast<int>(stretches));
   for (std::size_t k = 0; k < stretches; ++k) {
     const double begin = time(k), next = time(k + 1);
     for (std::size_t i = 0; i < weights_.size(); ++i) {
-      from[i] = place(i, k, begin);
-      way[i] = place(i, k + 1, next) - from[i];
+      from[i] = position(i, k, begin);
+      travel[i] = position(i, k + 1, next) - from[i];
     }
     for (std::size_t i = 0; i < weights_.size(); ++i) {
-      const double part = (line.station - from[i]) / way[i];
-      if (part >= 0.0 && part <= 1.0) try_part(part);
+      const double fraction = (line.station - from[i]) / travel[i];
+      if (fraction >= 0.0 && fraction <= 1.0) evaluate_at(fraction);
     }
-    for (int i = 0; i <= parts; ++i) try_part(static_cast<double>(i) / parts);
+    for (int i = 0; i <= fractions; ++i) evaluate_at(static_cast<double>(i) / fractions);
   }
   return peak;
 }

@@ -1,5 +1,5 @@
-// The weights that pass, wheels' and moving forces', and the largest static deflection under them: what dynamic
-// amplification is measured by.
+// The moving weights of wheels and forces, and the largest static deflection under them, the reference of the dynamic
+// amplification.
 #pragma once
 
 #include <mpi.h>
@@ -12,20 +12,22 @@
 
 namespace traverse::coupling {
 
-/// A downward force that passes, where it is at t = 0.
+/// A moving downward force and its position at t = 0.
 struct StaticLoad {
   double x = 0.0;      // m
   double force = 0.0;  // N
   base::SpeedLaw law;
+  double length = 0.0;  // m, over which the force is spread, x its centre
 };
 
 class QuasiStaticResponse {
  public:
-  /// structure: null where there is none, and then no deflections. gravity: on its own mass, m/s2; 0: none.
+  /// structure: null if there is none, and then no deflections. gravity: on the structure's mass, m/s2; 0: no
+  /// self-weight.
   QuasiStaticResponse(MPI_Comm comm, structure::Structure* structure, double gravity)
       : comm_(comm), structure_(structure), gravity_(gravity) {}
 
-  /// weights: of the fleet's wheels, in its order, then of moving forces.
+  /// weights: of the fleet's wheels in their order, then of the moving forces.
   void set(std::vector<StaticLoad> weights, std::size_t wheels) {
     weights_ = std::move(weights);
     wheels_ = wheels;
@@ -33,29 +35,30 @@ class QuasiStaticResponse {
 
   const std::vector<StaticLoad>& all() const { return weights_; }
 
-  /// Whether they keep their distances.
+  /// Whether the distances between the weights are constant.
   bool pass_together(const train::WheelPaths& paths) const;
-  /// Collective. Largest magnitude of the static deflection at a station under all of them, the structure's own weight
-  /// included where it acts: where they keep their distances, placed wherever it is worst; where they do not, as they
-  /// were along `paths` until `end`, s. 0 where the foundation is not linear.
+  /// Collective. Largest magnitude of the static deflection at a station under all weights, including the structure's
+  /// own weight if it acts. If the distances are constant, the weights are in the most unfavourable position, otherwise
+  /// in their positions along `paths` until `end`, s. 0 if the foundation is not linear.
   double static_peak(double station, const train::WheelPaths& paths, double end);
-  /// Collective. What a single load does that deflects the station at most as they do, J; 0: there is none.
+  /// Collective. The work of a single load at the station that causes the largest deflection under the weights, J; 0
+  /// without a deflection.
   double static_energy(double station);
 
  private:
   struct InfluenceLine;
   InfluenceLine influence_line(double station);
-  double rest_at(double station);
+  double permanent_deflection(double station);
   double peak_of_train(const InfluenceLine& line, double constant) const;
   bool steady() const;
-  double peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const;
+  double peak_along_paths(const InfluenceLine& line, const train::WheelPaths& paths, double end) const;
   bool superpose() const { return structure_ != nullptr && !weights_.empty() && structure_->linear(); }
 
   MPI_Comm comm_;
   structure::Structure* structure_;
   double gravity_;
   std::vector<StaticLoad> weights_;
-  std::size_t wheels_ = 0;  // of them, from the first on
+  std::size_t wheels_ = 0;  // number of wheels, the first weights
 };
 
 }  // namespace traverse::coupling

@@ -1,5 +1,5 @@
-// Errors of steps in second-order form, as the difference to an embedded method shows them, made dimensionless by what
-// the structure and the vehicles do at rest under their weights.
+// Errors of steps in second-order form by an embedded method, divided by the static response of the structure and by
+// gravity and the accelerations of the vehicles.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // Evaluates the right-hand side of the combined equations of motion (equations 51 to 53 of the paper) and solves their
-// implicit stages, the structure and the vehicles coupled by the contact forces alone.
+// implicit stages, in which only the contact forces couple the structure and the vehicles.
 #include "coupling/system.hpp"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, S
       n_(structure_ ? structure_->unknowns() : 0),
       input_(std::move(input)),
       events_(comm, fleet_, share_, input_.impact_steps),
-      corners_(comm, structure_.get(), fleet_, share_),
+      kink_events_(comm, structure_.get(), fleet_, share_),
       weights_(comm, structure_.get(), input_.self_weight ? input_.gravity : 0.0) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &ranks_);
@@ -48,17 +48,17 @@ System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, S
           input_.types[static_cast<std::size_t>(input_.train.vehicles[i])]);
   }
   fleet_ = train::Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
-                        &input_.profile, surface_height(), yields_inside());
+                        &input_.profile, surface_height(), uses_local_compliance());
   fleet_.partition(0.0);
   fleet_.start_rolling();
   on_beam_.assign(input_.load.forces.size(), 0);
   begin_step(0.0, 0.0);
-  if (structure_) expect_weights();
+  if (structure_) set_reference_loads();
 }
 
 System::~System() = default;
 
-void System::expect_weights() {
+void System::set_reference_loads() {
   double load = 0.0, greatest = 0.0;
   for (double weight : structure_->dead_load()) load += std::abs(weight);
   MPI_Allreduce(MPI_IN_PLACE, &load, 1, MPI_DOUBLE, MPI_SUM, comm_);
@@ -68,19 +68,21 @@ void System::expect_weights() {
   };
   for (const train::MovingVehicle& vehicle : fleet_.vehicles) add(vehicle.weight);
   for (double force : input_.load.forces) add(std::abs(force));
-  structure_->expect_weights(load, greatest);
+  structure_->set_reference_loads(load, greatest);
 }
 
-// Of the beam's surface above its axis; a rail's is its axis.
+// Height of the beam's surface above its axis; the surface of a rail is its axis.
 double System::surface_height() const {
   return structure_ && beam()->rail() == nullptr ? beam()->model().surface_height : 0.0;
 }
 
-bool System::yields_inside() const { return structure_ && structure_->yields_inside(input_.seats); }
+bool System::uses_local_compliance() const {
+  return structure_ && structure_->uses_local_compliance(input_.local_compliance);
+}
 
 int System::local_size() const { return 2 * n_ + (rank_ == 0 ? 2 * fleet_.freedom() + 2 : 0); }
 
-// --- what all ranks share ------------------------------------------------------------------------------------------
+// --- data of all ranks ---------------------------------------------------------------------------------------------
 
 void System::share_coordinates(const double* y) {
   const int f = fleet_.freedom();
@@ -120,13 +122,13 @@ void System::rate(double t, const double* y, double* ydot, Terms terms) {
   }
 }
 
-// Vehicles and contacts at a state: positions, forces, accelerations, all from the kinematics as they are.
+// Vehicles and contacts at a state: positions, forces, accelerations, with contact forces from the state's kinematics.
 void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
   evaluated_time_ = t;
   const bool set = fleet_.set(t, p_.data(), p_.data() + fleet_.freedom());
-  if ((share_.places(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
-    throw StepTooLong("at t = " + std::to_string(t) + " s " + trouble());
+  if ((share_.wheel_positions(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
+    throw StepTooLong("at t = " + std::to_string(t) + " s " + failure_reason());
   fleet_.place_wheels();
   if (structure_) structure_->gather(fleet_.elements(), y, y + n_, v_, w_);
   const bool touched = fleet_.touch(per_node(), v_.data(), w_.data());
@@ -139,23 +141,23 @@ void System::evaluate_fleet(double t, const double* y) {
   fleet_.contact_forces();
   fleet_.contact_loads();
   pdd_.resize(fleet_.freedom());
-  signs_ = fleet_.worn() ? train::VehicleShare::worn : 0U;
+  flags_ = fleet_.worn() ? train::VehicleShare::worn : 0U;
   try {
     for (train::MovingVehicle& vehicle : fleet_.own())
       vehicle.dynamics->accelerations(vehicle, pdd_.data() + vehicle.offset);
-  } catch (const SolverError&) {  // a joint is jammed, which all have to know
-    signs_ |= train::VehicleShare::failed;
+  } catch (const SolverError&) {  // a joint is jammed, which all ranks have to detect
+    flags_ |= train::VehicleShare::failed;
   }
-  signs_ = share_.exchange(signs_);
-  if ((signs_ & train::VehicleShare::failed) != 0)
-    throw SolverError(trouble() + " (at t = " + std::to_string(t) + " s)");
+  flags_ = share_.exchange(flags_);
+  if ((flags_ & train::VehicleShare::failed) != 0)
+    throw SolverError(failure_reason() + " (at t = " + std::to_string(t) + " s)");
   fleet_.observe(pdd_.data());
   share_.states(fleet_);
   share_.coordinates(fleet_, pdd_);
   record_touched();
 }
 
-// Rates of D and W for the state that fleet and structure were last set to.
+// Rates of D and W for the last state of fleet and structure.
 void System::powers(const double* w, Terms terms, double& dissipation, double& work) {
   dissipation = work = 0.0;
   if (structure_ && terms != Terms::contact) {
@@ -167,12 +169,12 @@ void System::powers(const double* w, Terms terms, double& dissipation, double& w
   if (terms == Terms::beam) return;
   Powers fleet = fleet_powers();
   double sums[2] = {fleet.dissipation, fleet.work};
-  if (share_.dealt()) MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+  if (share_.distributed()) MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
   dissipation += sums[0];
   work += sums[1];
 }
 
-// Of this rank's vehicles and contacts at the state that they were last set to.
+// Powers of this rank's vehicles and contacts at their last state.
 System::Powers System::fleet_powers() const {
   const multibody::MechanismPowers vehicles = fleet_.powers();
   return {fleet_.contact_dissipation() + vehicles.dissipation, vehicles.work};
@@ -196,7 +198,7 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Ter
       if (shift > 0.0) {
         pd_predicted_[i] = -c_p_[f + i] / shift;
         p_predicted_[i] = (pd_predicted_[i] - c_p_[i]) / shift;
-        // The guess moves on with its velocity, so that wheels are looked for where they will be.
+        // The guess moves with its velocity, so that wheels are placed near their new positions.
         x_[i] = (p_[f + i] - pd_predicted_[i]) / shift;
       } else {
         x_[i] = p_[i];
@@ -222,25 +224,23 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Ter
   return true;
 }
 
-// The stage that the structure has begun, and the fleet's p: as often as it takes until the structure's own forces
-// agree.
+// Solves the stage that the structure has begun and the fleet's p, repeatedly until the structure's own forces agree.
 System::Solution System::solve_coupled(const StageTime& at, Terms terms) {
   for (;;) {
     if (structure_) structure_->solve_free();
-    if (terms == Terms::all && !(by_passes_ ? stage_by_passes(at) : stage_of_fleet(at)))
-      return Solution::fleet_unsettled;
+    if (terms == Terms::all && !(by_passes_ ? stage_by_passes(at) : stage_of_fleet(at))) return Solution::fleet_failed;
     if (!structure_) return Solution::found;
     if (by_passes_)
-      structure_->take_loads();
+      structure_->apply_pass_loads();
     else if (terms == Terms::all && !fleet_.elements().empty())
-      structure_->take(newton_.element_loads());
-    const structure::Structure::Verdict verdict = structure_->judge();
-    if (verdict == structure::Structure::Verdict::settled) return Solution::found;
-    if (verdict == structure::Structure::Verdict::failed) return Solution::structure_unsettled;
+      structure_->apply_contact_loads(newton_.element_loads());
+    const structure::Structure::Verdict verdict = structure_->check_stage();
+    if (verdict == structure::Structure::Verdict::converged) return Solution::found;
+    if (verdict == structure::Structure::Verdict::failed) return Solution::structure_failed;
   }
 }
 
-// From p_predicted_, pd_predicted_ and a guess in x_ to x_.
+// From p_predicted_, pd_predicted_ and the initial guess in x_ to the solution in x_.
 bool System::stage_of_fleet(const StageTime& at) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   const auto [first, past] = fleet_.own_coordinates();
@@ -253,7 +253,8 @@ bool System::stage_of_fleet(const StageTime& at) {
     pd_[i] = pd_predicted_[i] + at.shift * x_[i];
   }
   const bool set = fleet_.set(at.t, p_.data(), pd_.data());
-  if ((share_.places(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0) return false;
+  if ((share_.wheel_positions(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
+    return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
     const structure::ElementCompliance* compliance = nullptr;
@@ -264,7 +265,7 @@ bool System::stage_of_fleet(const StageTime& at) {
     const StageData stage{at.t, at.shift, at.shift2,  p_predicted_.data(), pd_predicted_.data(),
                           &v_,  &w_,      compliance, per_node(),          &share_};
     if (!newton_.solve(fleet_, stage, x_.data())) return false;
-    if (newton_.in_place()) break;  // else a wheel has left its element: once more from there
+    if (newton_.in_place()) break;  // otherwise a wheel has left its element: repeat there
   }
   for (int i = first; i < past; ++i) {
     p_[i] = p_predicted_[i] + x_[i];

@@ -1,4 +1,4 @@
-// Steps tried and accepted.
+// Steps: begin of a trial, acceptance, archive.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,9 +22,9 @@ void System::record_touched() {
     if (fleet_.contact(i).force.normal > 0.0) fleet_.contact(i).touched = true;
 }
 
-void System::arrive(double t, const double* y) {
+void System::set_vehicles(double t, const double* y) {
   const int f = fleet_.freedom();
-  bool moved = (signs_ & train::VehicleShare::moved) != 0;
+  bool moved = (flags_ & train::VehicleShare::moved) != 0;
   if (!motion_) {
     evaluated_.assign(p_.begin(), p_.begin() + f);
     share_coordinates(y);
@@ -37,12 +37,12 @@ bool System::accept(double t, double* y) {
   if (structure_ && motion_) structure_->complete_step(y, y + n_);
   if (structure_ && !motion_) structure_->update_slip(y, loaded(t, 0.0));
   if (fleet_.vehicles.empty()) return false;
-  arrive(t, y);
+  set_vehicles(t, y);
   const double lost = events_.accept(t);
-  const bool worn = share_.dealt() ? (signs_ & train::VehicleShare::worn) != 0 : fleet_.worn();
+  const bool worn = share_.distributed() ? (flags_ & train::VehicleShare::worn) != 0 : fleet_.worn();
   if (worn) evaluate_fleet(t, y);
   bool renewed = fleet_.accept();
-  if (worn && share_.dealt()) {
+  if (worn && share_.distributed()) {
     renewed = share_.exchange(renewed ? train::VehicleShare::renewed : 0U) != 0;
     if (renewed) share_.partitions(fleet_);
   }
@@ -57,17 +57,17 @@ void System::keep(base::Archive& archive, double* y) {
   const auto n = static_cast<std::size_t>(n_);
   archive.cut({y, n});
   archive.cut({y + n, n});
-  std::vector<double> behind(y + 2 * n, y + local_size());
-  archive.same(behind);
-  if (rank_ == 0) std::copy(behind.begin(), behind.end(), y + 2 * n);
+  std::vector<double> other_entries(y + 2 * n, y + local_size());
+  archive.same(other_entries);
+  if (rank_ == 0) std::copy(other_entries.begin(), other_entries.end(), y + 2 * n);
   if (motion_) {
     Motion& m = *motion_;
-    if (rank_ != 0 && !share_.dealt()) m.powers[0] = {};  // which count on the first rank alone
+    if (rank_ != 0 && !share_.distributed()) m.powers[0] = {};  // which are valid on the first rank only
     archive.same(m.length, m.p, m.pd, m.pdd[0], m.energy_scale);
     archive.sum(m.powers[0].dissipation, m.powers[0].work, m.dissipated, m.worked);
     if (archive.reads() && m.length > 0.0) set_step(m.length);
   }
-  archive.same(on_beam_, braking_force_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, signs_);
+  archive.same(on_beam_, braking_force_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, flags_);
   std::vector<int> owners = share_.owners(fleet_.vehicles.size());
   archive.same(owners);
   fleet_.keep(archive, owners);
@@ -76,16 +76,16 @@ void System::keep(base::Archive& archive, double* y) {
   if (structure_) structure_->keep(archive);
 }
 
-std::string System::trouble() const {
-  std::string text = fleet_.trouble();
-  if (share_.dealt()) {  // the first rank that has some tells the others
-    std::array<int, 2> teller = {text.empty() ? ranks_ : rank_, 0};
-    MPI_Allreduce(MPI_IN_PLACE, teller.data(), 1, MPI_INT, MPI_MIN, comm_);
-    if (teller[0] < ranks_) {
-      teller[1] = static_cast<int>(text.size());
-      MPI_Bcast(&teller[1], 1, MPI_INT, teller[0], comm_);
-      text.resize(static_cast<std::size_t>(teller[1]));
-      MPI_Bcast(text.data(), teller[1], MPI_CHAR, teller[0], comm_);
+std::string System::failure_reason() const {
+  std::string text = fleet_.failure_reason();
+  if (share_.distributed()) {  // the first rank with a reason sends it to the others
+    std::array<int, 2> sender = {text.empty() ? ranks_ : rank_, 0};
+    MPI_Allreduce(MPI_IN_PLACE, sender.data(), 1, MPI_INT, MPI_MIN, comm_);
+    if (sender[0] < ranks_) {
+      sender[1] = static_cast<int>(text.size());
+      MPI_Bcast(&sender[1], 1, MPI_INT, sender[0], comm_);
+      text.resize(static_cast<std::size_t>(sender[1]));
+      MPI_Bcast(text.data(), sender[1], MPI_CHAR, sender[0], comm_);
     }
   }
   if (!text.empty()) return text;

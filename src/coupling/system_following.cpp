@@ -1,4 +1,4 @@
-// How vehicles move where a run begins: with the surface under their wheels.
+// The vehicles' initial velocities, with which they follow the surface under their wheels.
 #include "coupling/system.hpp"
 #include "train/following.hpp"
 
@@ -6,7 +6,8 @@ namespace traverse::coupling {
 namespace {
 
 /// The wheels' contacts that carry the vehicle.
-std::vector<const train::WheelContact*> carrying(const train::Fleet& fleet, const train::MovingVehicle& vehicle) {
+std::vector<const train::WheelContact*> loaded_contacts(const train::Fleet& fleet,
+                                                        const train::MovingVehicle& vehicle) {
   std::vector<const train::WheelContact*> contacts;
   for (const int i : vehicle.touching)
     if (i < static_cast<int>(fleet.wheels.size()) && fleet.wheels[static_cast<std::size_t>(i)].force.normal > 0.0)
@@ -14,19 +15,19 @@ std::vector<const train::WheelContact*> carrying(const train::Fleet& fleet, cons
   return contacts;
 }
 
-/// By their places in p: all but those along the track, whose speed is given.
-std::vector<int> coordinates_that_follow(const train::MovingVehicle& vehicle) {
-  std::vector<int> follow;
+/// Indices in p of all coordinates but those along the track, whose speed is given.
+std::vector<int> following_coordinates(const train::MovingVehicle& vehicle) {
+  std::vector<int> following;
   const std::vector<int>& independent = vehicle.mechanism.partition().independent;
   for (int i = 0; i < static_cast<int>(independent.size()); ++i)
-    if (independent[static_cast<std::size_t>(i)] % 3 != 0) follow.push_back(i);
-  return follow;
+    if (independent[static_cast<std::size_t>(i)] % 3 != 0) following.push_back(i);
+  return following;
 }
 
-/// p' with which its contacts keep their penetrations, v and w of the surface as they are.
+/// Sets p' so that the vehicle's contacts keep their penetrations, with v and w of the surface unchanged.
 void follow(const train::Fleet& fleet, train::MovingVehicle& vehicle) {
-  const std::vector<const train::WheelContact*> contacts = carrying(fleet, vehicle);
-  const std::vector<int> coordinates = coordinates_that_follow(vehicle);
+  const std::vector<const train::WheelContact*> contacts = loaded_contacts(fleet, vehicle);
+  const std::vector<int> coordinates = following_coordinates(vehicle);
   if (contacts.empty() || coordinates.empty()) return;
   multibody::MechanismState& state = vehicle.state;
   const Eigen::MatrixXd B = state.B(Eigen::all, coordinates);
@@ -71,7 +72,7 @@ void System::follow_surface(const double* y) {
   for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).kinematics = fleet_.contact(i).touch.kinematics;
   fleet_.contact_forces();
   for (train::MovingVehicle& vehicle : fleet_.own()) follow(fleet_, vehicle);
-  if (!share_.dealt()) return;
+  if (!share_.distributed()) return;
   std::vector<double> p(static_cast<std::size_t>(fleet_.freedom())), pd = p;
   fleet_.coordinates_of_state(0.0, p.data(), pd.data());
   share_.coordinates(fleet_, pd);

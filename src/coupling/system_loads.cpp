@@ -1,4 +1,4 @@
-// What acts on the structure: moving forces, contacts, and what trains are braked by whose speed is prescribed.
+// The loads on the structure: moving forces, contact forces, and the braking forces of trains with prescribed speed.
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -7,13 +7,15 @@
 
 namespace traverse::coupling {
 
-// The moving forces as they stand at t.
+// The moving forces at their positions at t.
 void System::load_structure(double t) {
   loads_.clear();
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
+    if (train::length_of(input_.load, i) > 0.0) load_line(i, t);
     if (on_beam_[i] == 0) continue;
     const beam::Station s = line_->mesh.locate(train::place_of(input_.load, i, t));
-    loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0, train::speed_of(input_.load, i, t)});
+    loads_.push_back({s.element, s.xi, 0.0, -train::force_at(input_.load, i, t), train::moment_of(input_.load, i),
+                      train::speed_of(input_.load, i, t)});
   }
   for (std::size_t i = 0; i < braking_force_.size(); ++i) {
     if (braking_force_[i] == 0.0) continue;
@@ -28,9 +30,27 @@ void System::load_structure(double t) {
   structure_->load(loads_);
 }
 
+// The part of line load i that is on the line at t, element by element.
+void System::load_line(std::size_t i, double t) {
+  const beam::Mesh& mesh = line_->mesh;
+  const double length = train::length_of(input_.load, i), x = train::place_of(input_.load, i, t);
+  const double from = std::max(x - 0.5 * length, mesh.start()), to = std::min(x + 0.5 * length, mesh.end());
+  if (!(to > from)) return;
+  const double per_length = -train::force_at(input_.load, i, t) / length;  // N/m, upward
+  const int last = mesh.locate(to).element;
+  for (int e = mesh.locate(from).element; e <= last; ++e) {
+    const beam::Element& element = mesh.element(e);
+    const double left = std::max(from, element.x), right = std::min(to, element.x + element.length);
+    if (!(right > left)) continue;
+    beam::ElementLoad load{e, (0.5 * (left + right) - element.x) / element.length, 0.0, per_length * (right - left)};
+    load.extent = (right - left) / element.length;
+    loads_.push_back(load);
+  }
+}
+
 void System::apply_to_body(int member, int body, const Eigen::Vector3d& action) {
   fleet_.apply(member, body, action);
-  applied_anew_ = true;
+  applied_changed_ = true;
 }
 
 void System::apply_to_beam(double x, double force) {
@@ -39,7 +59,7 @@ void System::apply_to_beam(double x, double force) {
     throw InputError("the station " + std::to_string(x) + " m is not on the beam, which goes from " +
                      std::to_string(line_->mesh.start()) + " to " + std::to_string(line_->mesh.end()) + " m");
   applied_[x] = force;
-  applied_anew_ = true;
+  applied_changed_ = true;
 }
 
 structure::ElementLoads System::contact_loads() {
@@ -47,7 +67,7 @@ structure::ElementLoads System::contact_loads() {
   return {fleet_.elements(), element_loads_};
 }
 
-// What accelerates a vehicle comes from the track. Wheels that rub put it there by themselves.
+// Whether the force that accelerates the vehicle acts on the track. Wheels with friction transmit it by themselves.
 bool System::brakes_track(int wheel) const {
   if (line_ == nullptr || line_->per_node != 3 || !is_driven(wheel) || law_of_wheel(wheel).constant()) return false;
   const auto member = static_cast<std::size_t>(fleet_.member(wheel));
@@ -58,7 +78,7 @@ bool System::brakes_track(int wheel) const {
                       [](const multibody::Driver& d) { return d.coordinate == 0; });
 }
 
-// The mass of each vehicle on its wheels, by what they carry at rest.
+// Distributes the mass of each vehicle over its wheels in proportion to the static wheel loads.
 void System::record_braking() {
   braking_.clear();
   std::vector<double> carried(input_.train.vehicles.size(), 0.0);
@@ -77,8 +97,8 @@ void System::record_braking() {
   braking_force_.assign(braking_.size(), 0.0);
 }
 
-// The forces of a step whose middle is t. True where they are others than before.
-bool System::take_braking(double t) {
+// The braking forces of a step whose middle is t. True if they have changed.
+bool System::update_braking(double t) {
   bool changed = false;
   for (std::size_t i = 0; i < braking_.size(); ++i) {
     const BrakingWheel& wheel = braking_[i];
@@ -92,13 +112,14 @@ bool System::take_braking(double t) {
 }
 
 bool System::begin_step(double from, double to) {
-  bool changed = std::exchange(applied_anew_, false);
+  bool changed = std::exchange(applied_changed_, false);
   changed = fleet_.begin_step(0.5 * (from + to)) || changed;
   if (line_ == nullptr) return changed;
-  changed = take_braking(0.5 * (from + to)) || changed;
+  changed = update_braking(0.5 * (from + to)) || changed;
   for (std::size_t i = 0; i < on_beam_.size(); ++i) {
     const double x = train::place_of(input_.load, i, 0.5 * (from + to));
-    const char on = x >= line_->mesh.start() && x <= line_->mesh.end() ? 1 : 0;
+    const bool point = train::length_of(input_.load, i) == 0.0;
+    const char on = point && x >= line_->mesh.start() && x <= line_->mesh.end() ? 1 : 0;
     changed = changed || on != on_beam_[i];
     on_beam_[i] = on;
   }

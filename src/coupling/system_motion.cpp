@@ -1,4 +1,4 @@
-// The system stepped in second-order form (one_step_methods.hpp): stages of the structure, and Newton on vehicles and
+// Steps in second-order form (one_step_methods.hpp): stages of the structure, and Newton's method for vehicles and
 // contacts.
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double same_position = 1e-9;  // m or rad: a step's last stage is its end
+constexpr double same_position = 1e-9;  // m or rad: the last stage is at the end of the step
 constexpr double same_length = 1e-10;   // relative, of steps whose ends are rounded
 
 }  // namespace
@@ -22,22 +22,22 @@ void System::begin_motion(const structure::Method& method) {
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
   make_linear_train();
-  if (!train_) share_.deal(comm_, fleet_);
+  if (!train_) share_.distribute(comm_, fleet_);
   if (structure_) structure_->begin_motion(method);
 }
 
-// Where vehicles are linear with plain contacts, every rank takes all of them: there is less in that than in messages.
+// If vehicles are linear with plain contacts, every rank computes all of them: messages would cost more time.
 void System::make_linear_train() {
   train_.reset();
   const int own = static_cast<int>(engine::best_target());
-  int bounds[2] = {own, -own};  // all ranks have to compute the same to the last bit
+  int bounds[2] = {own, -own};  // all ranks must compute the same to the last bit
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm_);
   if (bounds[0] != -bounds[1] || !engine::LinearTrain::obstacle(fleet_).empty()) return;
   train_ = std::make_unique<engine::LinearTrain>(fleet_, line_ != nullptr ? &line_->mesh : nullptr, per_node(),
                                                  surface_height());
 }
 
-// Where wheels and forces are during a step.
+// The reaches of wheels and forces during a step.
 const std::vector<structure::Reach>& System::loaded(double t, double h) {
   reaches_.clear();
   const auto add = [&](double from, double to, double width) {
@@ -45,11 +45,12 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
   };
   for (const train::WheelContact& c : fleet_.wheels) {
     if (c.is_further) continue;
-    const double x = fleet_.coordinates(c).x(), way = fleet_.velocities(c).x() * h;
-    add(x, x + 2.0 * way, fleet_.reach(c));  // a wheel touches beside its centre
+    const double x = fleet_.coordinates(c).x(), travel = fleet_.velocities(c).x() * h;
+    add(x, x + 2.0 * travel, fleet_.reach(c));  // a wheel may touch beside its centre
   }
   for (std::size_t i = 0; i < input_.load.positions.size(); ++i)
-    add(train::place_of(input_.load, i, t), train::place_of(input_.load, i, t + h), 0.0);
+    add(train::place_of(input_.load, i, t), train::place_of(input_.load, i, t + h),
+        0.5 * train::length_of(input_.load, i));
   for (const auto& [x, force] : applied_) add(x, x, 0.0);
   return reaches_;
 }
@@ -89,28 +90,28 @@ bool System::step_motion(double t, double h, double* y, const std::function<bool
   if (std::abs(h - m.length) > same_length * m.length) set_step(h);
   m.before.dissipated = m.dissipated;
   m.before.worked = m.worked;
-  if (keep_steps_) m.before.p.assign(y + 2 * n_, y + local_size());
+  if (store_steps_) m.before.p.assign(y + 2 * n_, y + local_size());
   by_passes_ = train_ != nullptr;
   bool solved = false;
   if (by_passes_) {
     train_->begin_step();
-    solved = take_stages(t, y, y + n_);
+    solved = solve_stages(t, y, y + n_);
     by_passes_ = solved;
     if (!solved) evaluate_fleet(t, y);
   }
-  if (!solved && !take_stages(t, y, y + n_)) return false;
+  if (!solved && !solve_stages(t, y, y + n_)) return false;
   if (good_enough && !good_enough()) return false;
   finish_step(y);
-  if (by_passes_) evaluated_time_ = t + h;  // where the fleet was told to be
+  if (by_passes_) evaluated_time_ = t + h;  // the state that the fleet's contacts have
   return true;
 }
 
-// All stages of a step from t.
-bool System::take_stages(double t, const double* v, const double* w) {
+// Solves all stages of a step from t.
+bool System::solve_stages(double t, const double* v, const double* w) {
   Motion& m = *motion_;
   if (structure_) {
     load_structure(t);
-    structure_->begin_step(loaded(t, m.length), v, w, keep_steps_);
+    structure_->begin_step(loaded(t, m.length), v, w, store_steps_);
   }
   for (std::size_t i = 0; i < m.method.stages.size(); ++i)
     if (!stage_of_motion(t + m.method.stages[i].time, i, v, w)) return false;
@@ -143,7 +144,7 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   if (structure_) structure_->end_stage(stage, v, w);
   if (by_passes_) {
     train_->accelerations(m.pdd[rule.known].data());
-    m.powers[rule.known] = {train_->lost(), train_->given()};
+    m.powers[rule.known] = {train_->dissipation(), train_->drive_power()};
     return true;
   }
   for (int i = first; i < past; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
@@ -151,13 +152,13 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   return true;
 }
 
-// As solve_coupled asks for it, by passes over all contacts until their forces no longer change.
+// The stage of solve_coupled by passes over all contacts, repeated until their forces no longer change.
 bool System::stage_by_passes(const StageTime& at) {
   train_->predict(stage_, at.t);
   if (!train_->place(fleet_)) return false;
   if (structure_) {
     const structure::ContactField& field = structure_->begin_passes(train_->elements());
-    train_->meet(field, &structure_->own_compliance());
+    train_->set_contact_field(field, &structure_->own_compliance());
   }
   const auto respond = [&] {
     if (!structure_) return;
@@ -170,7 +171,7 @@ bool System::stage_by_passes(const StageTime& at) {
     if (!train_->update_forces()) return false;
   } while (!train_->converged());
   respond();
-  // Where the step ends rates are seen, too.
+  // The last stage also needs rates.
   if (structure_ && stage_ + 1 == motion_->method.stages.size()) structure_->find_rates(at.shift);
   train_->end_stage();
   return true;
@@ -180,7 +181,7 @@ void System::finish_step(double* y) {
   Motion& m = *motion_;
   const structure::StepRule& rule = m.method.step;
   const auto [first, past] = fleet_.own_coordinates();
-  signs_ = by_passes_ || !fleet_.worn() ? 0U : train::VehicleShare::worn;
+  flags_ = by_passes_ || !fleet_.worn() ? 0U : train::VehicleShare::worn;
   for (int i = first; !by_passes_ && i < past; ++i) {
     m.p[i] += rule.w_in_v * m.pd[i];
     for (int j = 0; j < rule.known; ++j) {
@@ -190,9 +191,9 @@ void System::finish_step(double* y) {
     double next = 0.0;
     for (int j = 0; j < rule.known; ++j) next += rule.a_next[j] * m.pdd[j][i];
     m.pdd[0][i] = next;
-    if (std::abs(m.p[i] - p_[i]) > same_position) signs_ |= train::VehicleShare::moved;
+    if (std::abs(m.p[i] - p_[i]) > same_position) flags_ |= train::VehicleShare::moved;
   }
-  if (share_.dealt() || rank_ == 0) {  // else another rank counts the vehicles and contacts
+  if (share_.distributed() || rank_ == 0) {  // otherwise another rank adds the vehicles and contacts
     for (int j = 0; j < rule.known; ++j) {
       m.dissipated += rule.power[j] * m.powers[j].dissipation;
       m.worked += rule.power[j] * m.powers[j].work;
@@ -211,13 +212,13 @@ void System::finish_step(double* y) {
   std::copy(m.pd.begin(), m.pd.end(), p + m.p.size());
 }
 
-// Between steps the fleet knows of its contacts what events are found by.
+// Copies the positions and contacts that contact events need to the fleet.
 void System::finish_passes() {
   Motion& m = *motion_;
   train_->finish_step(m.p.data(), m.pd.data(), m.pdd[0].data());
   train_->copy_contacts_to(fleet_);
   std::copy(m.p.begin(), m.p.end(), p_.begin());
-  if (!train_->ends_with_stage()) signs_ |= train::VehicleShare::moved;
+  if (!train_->ends_with_stage()) flags_ |= train::VehicleShare::moved;
 }
 
 // p, p' and p'' at the end of the step, of all vehicles.
@@ -225,8 +226,8 @@ void System::share_step() {
   Motion& m = *motion_;
   const auto freedom = [this](int k) { return fleet_.vehicles[k].freedom(); };
   const std::array<std::vector<double>*, 3> all = {&m.p, &m.pd, &m.pdd[0]};
-  signs_ = share_.exchange(
-      signs_, [&](int k) { return 3 * freedom(k); },
+  flags_ = share_.exchange(
+      flags_, [&](int k) { return 3 * freedom(k); },
       [&](int k, double* to) {
         for (const std::vector<double>* x : all)
           to = std::copy_n(x->begin() + fleet_.vehicles[k].offset, freedom(k), to);

@@ -1,4 +1,4 @@
-// What is seen of an accepted state: accelerations, loads, forces, energies.
+// Observation of an accepted state: accelerations, loads, forces, energies.
 #include <algorithm>
 
 #include "coupling/system.hpp"
@@ -6,16 +6,16 @@
 
 namespace traverse::coupling {
 
-// Whether the fleet has its wheels' places and forces of t from a step by passes that has led there.
+// Whether a step by passes has given the fleet the wheels' positions and forces at t.
 bool System::contacts_are_known(double t) const {
   return by_passes_ && t == evaluated_time_ && train_->ends_with_stage() && surface_height() == 0.0 &&
          std::none_of(fleet_.wheels.begin(), fleet_.wheels.end(), [](const auto& wheel) { return wheel.further > 0; });
 }
 
 void System::observe(double t, const double* y, const double* a, Observation& out, bool all) {
-  const bool known = contacts_are_known(t), residual_grows = known && train_->departs_further();
-  const bool quick = known && !all && !residual_grows;
-  if (!quick) evaluate_fleet(t, y);
+  const bool known = contacts_are_known(t), residual_grows = known && train_->residual_may_grow();
+  const bool from_passes = known && !all && !residual_grows;
+  if (!from_passes) evaluate_fleet(t, y);
   out.loads.clear();
   out.bridge_loads.clear();
   if (structure_) {
@@ -28,24 +28,26 @@ void System::observe(double t, const double* y, const double* a, Observation& ou
           {c.patches[c.active].element, c.touch.xi, f.x(), f.y(), moment_about_axis(c), fleet_.velocities(c).x()});
     }
     const structure::ElementLoads contacts =
-        quick ? structure::ElementLoads{train_->elements(), structure_->pass_loads()} : contact_loads();
+        from_passes ? structure::ElementLoads{train_->elements(), structure_->pass_loads()} : contact_loads();
     structure_->observe(y, y + n_, a, contacts, all, out.beam);
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
     out.bridge_loads.insert(out.bridge_loads.end(), out.beam.foundation_loads.begin(), out.beam.foundation_loads.end());
   }
-  if (!quick) out.energy = energy(y);
+  if (!from_passes) out.energy = energy(y);
 }
 
-/// Of a wheel's force on the beam: what it does as the element turns about the point of the axis at its station.
+/// The moment of a wheel's force on the beam about the point of the axis at its station, from the work of the force in
+/// a rotation of the element about this point.
 double System::moment_about_axis(const train::WheelContact& c) const {
   if (surface_height() == 0.0) return 0.0;
   const double length = line_->mesh.element(c.patches[c.active].element).length;
-  const auto turned = [&](const std::array<double, train::most_element_unknowns>& direction) {
+  const auto rotation_work = [&](const std::array<double, train::most_element_unknowns>& direction) {
     const auto block = static_cast<std::size_t>(per_node());
     const double *left = &direction[block - 2], *right = left + block;
     return left[1] + right[1] + length * ((1.0 - c.touch.xi) * right[0] - c.touch.xi * left[0]);
   };
-  return -c.force.normal * turned(c.touch.normal_on_beam) - c.force.tangential * turned(c.touch.tangent_on_beam);
+  return -c.force.normal * rotation_work(c.touch.normal_on_beam) -
+         c.force.tangential * rotation_work(c.touch.tangent_on_beam);
 }
 
 Energy System::energy(const double* y) {

@@ -1,4 +1,4 @@
-// The runs of a batch from start to end.
+// Computes the runs of a batch from start to end.
 #include "engine/batch.hpp"
 
 #include <algorithm>
@@ -12,16 +12,17 @@
 
 namespace traverse::engine {
 
-// Compiled from batch_kernel.cpp, once for each kind of processor.
+// Compiled from batch_kernel.cpp, once for each instruction set.
 TRAVERSE_LANES_DECLARE(void set_batch_step(const BatchTask& t);
-                       void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew);
-                       void finish_batch_step(const BatchTask& t, double gone); void look_at_batch(const BatchTask& t);
-                       void look_before_kink(const BatchTask& t); void finish_batch(const BatchTask& t);)
+                       void solve_batch_stage(const BatchTask& t, int stage, double distance, bool new_step);
+                       void finish_batch_step(const BatchTask& t, double distance);
+                       void start_batch_peaks(const BatchTask& t); void end_peaks_at_kink(const BatchTask& t);
+                       void finish_batch(const BatchTask& t);)
 
 constexpr double last_change = 1e-7;  // of a force, over the vehicle's weight
-constexpr double nowhere = -1e9;      // m: where no track is looked up
+constexpr double no_station = -1e9;   // m: initial profile_station, far from any track
 
-/// The memory of a batch, and its way.
+/// The memory of a batch and the loop over its steps.
 class Batch {
  public:
   Batch(const BatchPlan& plan, std::span<const BatchRun> runs);
@@ -36,28 +37,28 @@ class Batch {
   void start_vehicles();
   void start_wheels();
   void set_track();
-  void prepare_looks();
+  void prepare_peaks();
   void set_step(double ds);
-  void wake(double gone);
-  void keep_accelerations();
+  void activate_vehicles(double distance);
+  void store_accelerations();
   std::size_t rows(std::size_t count) const { return count * arrays_.lanes; }
 
   const BatchPlan& plan_;
   const BatchStructure& structure_;
   const std::size_t count_;
-  const std::vector<BatchRun> runs_;  // one a lane: what lanes are left repeat the last one
+  const std::vector<BatchRun> runs_;  // one for each lane; unused lanes repeat the last run
   TrainArrays arrays_;
   TrainTask& train_ = arrays_.task;
   BeamTask beam_;
   BatchTask task_;
-  PeakState looks_;
-  std::vector<int> table_, there_;
+  PeakState peaks_;
+  std::vector<int> table_, interval_;
   std::vector<char> under_wheels_;
-  std::vector<double> rests_until_;  // m, of every block
+  std::vector<double> inactive_until_;  // m, for each block
   double ds_ = 0.0, ds_before_ = 0.0;
   std::size_t unknowns_ = 0;
   double* roots_ = nullptr;
-  std::vector<std::vector<double>> kept_;  // of every run
+  std::vector<std::vector<double>> stored_accelerations_;  // for each run
 };
 
 std::vector<BatchRun> Batch::filled(std::span<const BatchRun> runs) {
@@ -82,10 +83,10 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
       arrays_(blocks_of(runs_), plan.structure->line_.per_node,
               plan.structure->beam_.rail() == nullptr ? plan.structure->line_.model.surface_height : 0.0),
       beam_(structure_.task_),
-      kept_(runs.size()) {
+      stored_accelerations_(runs.size()) {
   task_.train = &train_;
   task_.beam = &beam_;
-  task_.look = &looks_;
+  task_.peaks = &peaks_;
   task_.distance = arrays_.distance.data();
   task_.second = arrays_.second.data();
   task_.work = arrays_.add(2 * static_cast<std::size_t>(train_.coordinates));
@@ -101,14 +102,14 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
   start_vehicles();
   start_wheels();
   set_track();
-  prepare_looks();
+  prepare_peaks();
 }
 
 void Batch::start_structure() {
   unknowns_ = static_cast<std::size_t>(beam_.unknowns);
   const auto columns = static_cast<std::size_t>(beam_.columns);
   const auto block = static_cast<std::size_t>(beam_.block), bb = block * block;
-  const std::size_t nodal = (columns + 2) * block;  // the last two columns stand for rigid ground
+  const std::size_t nodal = (columns + 2) * block;  // the last two columns are rigid ground
   if (beam_.shape != nullptr) {
     under_wheels_.assign(columns, 0);
     beam_.under_wheels = under_wheels_.data();
@@ -129,7 +130,7 @@ void Batch::start_structure() {
     const BatchRun& run = runs_[l];
     const train::MovingVehicle& first = run.fleet->vehicles.front();
     const auto x = 3 * static_cast<Eigen::Index>(first.wheels.front().body);
-    const double own = first.dynamics->linear()->matrices().u[x];  // m/s, that the fleet starts with
+    const double own = first.dynamics->linear()->matrices().u[x];  // m/s, initial speed in the fleet
     for (std::size_t i = 0; i < unknowns_; ++i) {
       beam_.v[i * arrays_.lanes + l] = (*run.state)[i];
       beam_.w[i * arrays_.lanes + l] = own != 0.0 ? (*run.state)[unknowns_ + i] * run.speed / own : 0.0;
@@ -140,22 +141,22 @@ void Batch::start_structure() {
   train_.ground = static_cast<int>(columns * block) * lanes;
   train_.shears = structure_.shears_;
   train_.nodal = beam_.v_stage = arrays_.add(nodal);
-  train_.lost = train_.given = nullptr;
-  train_.settled = arrays_.add(arrays_.blocks.size());
+  train_.dissipated = train_.drive_power = nullptr;
+  train_.converged = arrays_.add(arrays_.blocks.size());
   train_.tolerance = last_change;
   train_.load = beam_.work;
 }
 
-// At rest in the state that they were linearised in, but for what follows the surface as it rises.
+// At rest in the state of linearisation, except for the motion that follows the rise of the surface.
 void Batch::start_vehicles() {
   roots_ = arrays_.add(static_cast<std::size_t>(train_.coordinates));
-  rests_until_.assign(arrays_.blocks.size(), 0.0);
+  inactive_until_.assign(arrays_.blocks.size(), 0.0);
   for (std::size_t v = 0; v < arrays_.blocks.size(); ++v) {
     const VehicleBlock& b = arrays_.blocks[v];
     double foremost = -TrainArrays::infinite;
     for (int j = 0; j < b.wheels; ++j)
       foremost = std::max(foremost, train_.place[rows(static_cast<std::size_t>(b.first_wheel + j))]);
-    rests_until_[v] = std::max(0.0, plan_.level_until - foremost);
+    inactive_until_[v] = std::max(0.0, plan_.level_until - foremost);
     for (std::size_t l = 0; l < runs_.size(); ++l) {
       const train::MovingVehicle& vehicle = runs_[l].fleet->vehicles[v];
       const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
@@ -177,7 +178,7 @@ void Batch::start_vehicles() {
 void Batch::start_wheels() {
   const auto wheels = static_cast<std::size_t>(train_.wheels);
   table_.assign(rows(wheels), 0);
-  there_.assign(rows(wheels), 0);
+  interval_.assign(rows(wheels), 0);
   for (std::size_t v = 0; v < arrays_.blocks.size(); ++v) {
     const VehicleBlock& b = arrays_.blocks[v];
     for (std::size_t l = 0; l < runs_.size(); ++l) {
@@ -187,16 +188,16 @@ void Batch::start_wheels() {
         const std::size_t at = rows(static_cast<std::size_t>(b.first_wheel + j)) + l;
         const train::WheelContact& c = fleet.wheels[static_cast<std::size_t>(vehicle.first_wheel + j)];
         arrays_.start_contact(at, c);
-        train_.along[at] = train_.station[at] = train_.place[at];  // while it stands still
+        train_.along[at] = train_.station[at] = train_.place[at];  // while it is at rest
         table_[at] = static_cast<int>(structure_.surfaces_.number(fleet.wheel(c).radius));
       }
     }
   }
   task_.surface = structure_.surfaces_.tables().data();
   task_.table = table_.data();
-  task_.there = there_.data();
+  task_.interval = interval_.data();
   std::fill_n(train_.h, table_.size(), 0.0);
-  std::fill_n(train_.looked_up, table_.size(), nowhere);
+  std::fill_n(train_.profile_station, table_.size(), no_station);
 }
 
 void Batch::set_track() {
@@ -217,29 +218,29 @@ void Batch::set_track() {
   task_.heights.values = values;
 }
 
-void Batch::prepare_looks() {
+void Batch::prepare_peaks() {
   const std::size_t n = structure_.probes_.size(), wheels = static_cast<std::size_t>(train_.wheels);
   task_.probes = static_cast<int>(n);
   task_.probe = structure_.probes_.data();
   task_.kinks = static_cast<int>(structure_.kinks_.size());
   task_.kink = structure_.kinks_.data();
-  for (double*& seen : looks_.seen) seen = arrays_.add(4 * n);
-  for (double*& force : looks_.force) force = arrays_.add(wheels);
-  looks_.peak = arrays_.add(3 * n);
-  looks_.peak_time = arrays_.add(3 * n);
-  looks_.least = arrays_.add(1);
-  looks_.greatest = arrays_.add(1);
-  std::fill_n(looks_.least, arrays_.lanes, 1e300);
-  std::fill_n(looks_.greatest, arrays_.lanes, -1e300);
-  looks_.lost_at = arrays_.add(wheels);
-  std::fill_n(looks_.lost_at, rows(wheels), -1.0);
-  looks_.losses = arrays_.add(1);
-  looks_.longest = arrays_.add(1);
-  looks_.inner = arrays_.add(n);
-  looks_.lagging = arrays_.add(n);
-  looks_.lag = structure_.beam_.rayleigh().b;
-  looks_.departure = arrays_.add(arrays_.blocks.size());
-  looks_.farthest = arrays_.add(static_cast<std::size_t>(train_.coordinates));
+  for (double*& response : peaks_.response) response = arrays_.add(4 * n);
+  for (double*& force : peaks_.force) force = arrays_.add(wheels);
+  peaks_.peak = arrays_.add(3 * n);
+  peaks_.peak_time = arrays_.add(3 * n);
+  peaks_.least = arrays_.add(1);
+  peaks_.greatest = arrays_.add(1);
+  std::fill_n(peaks_.least, arrays_.lanes, 1e300);
+  std::fill_n(peaks_.greatest, arrays_.lanes, -1e300);
+  peaks_.lost_at = arrays_.add(wheels);
+  std::fill_n(peaks_.lost_at, rows(wheels), -1.0);
+  peaks_.losses = arrays_.add(1);
+  peaks_.longest = arrays_.add(1);
+  peaks_.inner = arrays_.add(n);
+  peaks_.lagging = arrays_.add(n);
+  peaks_.lag = structure_.beam_.rayleigh().b;
+  peaks_.departure = arrays_.add(arrays_.blocks.size());
+  peaks_.farthest = arrays_.add(static_cast<std::size_t>(train_.coordinates));
 }
 
 void Batch::set_step(double ds) {
@@ -250,49 +251,50 @@ void Batch::set_step(double ds) {
   ds_ = ds;
 }
 
-void Batch::wake(double gone) {
-  for (std::size_t v = 0; v < arrays_.active.size(); ++v) arrays_.active[v] = gone > rests_until_[v] ? 1 : 0;
+void Batch::activate_vehicles(double distance) {
+  for (std::size_t v = 0; v < arrays_.active.size(); ++v) arrays_.active[v] = distance > inactive_until_[v] ? 1 : 0;
 }
 
-void Batch::keep_accelerations() {
+void Batch::store_accelerations() {
   const std::size_t n = structure_.probes_.size();
   for (std::size_t l = 0; l < count_; ++l)
-    for (std::size_t p = 0; p < n; ++p) kept_[l].push_back(looks_.seen[looks_kept - 1][rows(n + p) + l]);
+    for (std::size_t p = 0; p < n; ++p)
+      stored_accelerations_[l].push_back(peaks_.response[kept_samples - 1][rows(n + p) + l]);
 }
 
 void Batch::run() {
-  constexpr double same_step = 1e-10;  // far above what rounding leaves of differences of distances
+  constexpr double same_step = 1e-10;  // far above the rounding errors of differences of distances
   const std::vector<BatchStretch>& stretches = plan_.stretches;
   const bool keeps = std::any_of(stretches.begin(), stretches.end(), [](const BatchStretch& s) { return s.keeps; });
-  const auto going = [&] {
+  const auto any_running = [&] {
     return std::any_of(task_.failed, task_.failed + arrays_.lanes,
-                       [](double trouble) { return static_cast<int>(trouble) == none; });
+                       [](double failure) { return static_cast<int>(failure) == none; });
   };
-  TRAVERSE_LANES_CALL(look_at_batch(task_));
-  if (keeps) keep_accelerations();
+  TRAVERSE_LANES_CALL(start_batch_peaks(task_));
+  if (keeps) store_accelerations();
   double from = 0.0;
-  bool anew = true;
+  bool new_step = true;
   for (const BatchStretch& stretch : stretches) {
     const double ds = (stretch.to - from) / static_cast<double>(stretch.steps);
     if (std::abs(ds - ds_) > same_step * ds) {
       set_step(ds);
-      anew = true;
+      new_step = true;
     }
     for (long k = 0; k < stretch.steps; ++k) {
       const double at = from + static_cast<double>(k) * ds, to = k + 1 < stretch.steps ? at + ds : stretch.to;
-      wake(to);
-      if (ds_before_ != ds || anew) arrays_.set_guesses(plan_.method, ds_before_ / ds);
+      activate_vehicles(to);
+      if (ds_before_ != ds || new_step) arrays_.set_guesses(plan_.method, ds_before_ / ds);
       for (int stage = 0; stage < train_.stages; ++stage) {
-        const double gone = at + plan_.method.stages[static_cast<std::size_t>(stage)].time * ds;
-        TRAVERSE_LANES_CALL(solve_batch_stage(task_, stage, gone, anew));
-        anew = false;
+        const double distance = at + plan_.method.stages[static_cast<std::size_t>(stage)].time * ds;
+        TRAVERSE_LANES_CALL(solve_batch_stage(task_, stage, distance, new_step));
+        new_step = false;
       }
       TRAVERSE_LANES_CALL(finish_batch_step(task_, to));
       ds_before_ = ds;
     }
-    if (stretch.kink) TRAVERSE_LANES_CALL(look_before_kink(task_));
-    if (stretch.keeps) keep_accelerations();
-    if (!going()) break;
+    if (stretch.kink) TRAVERSE_LANES_CALL(end_peaks_at_kink(task_));
+    if (stretch.keeps) store_accelerations();
+    if (!any_running()) break;
     from = stretch.to;
   }
   TRAVERSE_LANES_CALL(finish_batch(task_));
@@ -305,17 +307,17 @@ std::vector<BatchResult> Batch::results() const {
     BatchResult& r = results[l];
     r.trouble = static_cast<Trouble>(static_cast<int>(task_.failed[l]));
     const auto peak = [&](std::size_t row) {
-      return base::Extreme{looks_.peak[rows(row) + l], looks_.peak_time[rows(row) + l]};
+      return base::Extreme{peaks_.peak[rows(row) + l], peaks_.peak_time[rows(row) + l]};
     };
     for (std::size_t p = 0; p < n; ++p) r.peaks.push_back({peak(p), peak(n + p), peak(2 * n + p)});
-    r.kept = kept_[l];
-    r.least_wheel_force = looks_.least[l];
-    r.greatest_wheel_force = looks_.greatest[l];
-    r.contact_losses = looks_.losses[l];
-    r.longest_loss = looks_.longest[l];
+    r.kept = stored_accelerations_[l];
+    r.least_wheel_force = peaks_.least[l];
+    r.greatest_wheel_force = peaks_.greatest[l];
+    r.contact_losses = peaks_.losses[l];
+    r.longest_loss = peaks_.longest[l];
     for (const VehicleBlock& b : arrays_.blocks)
       for (int i = 0; i < b.freedom; ++i)
-        r.farthest.push_back(looks_.farthest[rows(static_cast<std::size_t>(b.first_coordinate + i)) + l]);
+        r.farthest.push_back(peaks_.farthest[rows(static_cast<std::size_t>(b.first_coordinate + i)) + l]);
   }
   return results;
 }

@@ -1,6 +1,6 @@
-// Runs side by side: passages of trains that differ in numbers only (speeds, tracks, masses, springs) over one
-// structure by its elements, one run in each lane of the processor's vectors. The same stages of the same methods as a
-// run by itself has (coupling/system.hpp), by the kernel that its train has, too (train_kernel.hpp).
+// Batches of runs: passages of trains with different parameter values (speeds, tracks, masses, springs) over one
+// structure, one run in each SIMD lane. They have the same stages of the same methods as a single run
+// (coupling/system.hpp), and the kernel of its linear train (train_kernel.hpp).
 #pragma once
 
 #include <deque>
@@ -21,14 +21,14 @@
 
 namespace traverse::engine {
 
-/// What all runs have in common: the structure, the surface on it, the stations that are looked at.
+/// The data that all runs share: the structure, its surface, the probes.
 class BatchStructure {
  public:
-  /// Why a structure cannot be taken so, in words; empty: it can. modal: its modes, null by elements.
+  /// The reason why a structure cannot be computed in a batch; empty: it can. modal: its modes, null for elements.
   static std::string obstacle(const beam::Beam& beam, const structure::ModalBridge* modal);
 
-  /// The fleet's wheels as they stand on the structure; rest: its nodal displacements without them; probes in m;
-  /// gravity of its own weight, m/s2 (0: it has none). Beam and modes must outlive it.
+  /// The fleet's wheels at their positions on the structure; rest: nodal displacements without them; probes in m;
+  /// gravity for the self-weight, m/s2 (0: none). Beam and modes must outlive this object.
   BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
                  const std::vector<double>& rest, const std::vector<double>& probes, double gravity);
   BatchStructure(const BatchStructure&) = delete;
@@ -42,54 +42,54 @@ class BatchStructure {
   void add_probe(const beam::Recovery& recovery, std::size_t station);
   void find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element, ProbeForms& p) const;
   const double* keep(const std::vector<double>& numbers) { return numbers_.emplace_back(numbers).data(); }
-  std::vector<double> by_unknowns(const beam::StationForms& forms, const std::vector<double>& form) const;
+  std::vector<double> form_of_unknowns(const beam::StationForms& forms, const std::vector<double>& form) const;
 
   const beam::Beam& beam_;
   const structure::ModalBridge* modal_;
-  const beam::Line& line_;  // that wheels run on
-  BeamTask task_;           // but for the rows
-  std::vector<double> mass_, damping_, stiffness_, dead_, shape_;
+  const beam::Line& line_;  // of the wheels
+  BeamTask task_;           // without the arrays of the runs
+  std::vector<double> mass_, damping_, stiffness_, dead_load_, shape_;
   std::vector<char> held_;
   std::vector<int> first_column_;
-  int offset_[most_nodal] = {};  // of an element's unknowns, counted from its first column
+  int offset_[most_nodal] = {};  // of an element's unknowns, from its first column
   Surfaces surfaces_;
   std::vector<ProbeForms> probes_;
-  std::deque<std::vector<double>> numbers_;  // of their forms
-  std::deque<std::vector<int>> lists_;       // of their unknowns
+  std::deque<std::vector<double>> numbers_;  // of the probes' forms
+  std::deque<std::vector<int>> lists_;       // of the probes' unknowns
   std::vector<double> kinks_;
   bool shears_ = false;
 };
 
-/// A stretch of equal steps.
+/// A series of equal steps.
 struct BatchStretch {
-  double to = 0.0;  // m travelled since t = 0
+  double to = 0.0;  // m travelled since t = 0, at the end
   long steps = 0;
-  bool kink = true;    // a wheel meets a corner of the surface or a probe at its end
-  bool keeps = false;  // accelerations at its end are kept
+  bool kink = true;    // at the end a wheel is at a kink of the surface or a probe
+  bool keeps = false;  // accelerations at the end are stored
 };
 
-/// One run: a train as it starts, with vehicles as those of the other runs but for their numbers, on its own track.
+/// One run: a train in its initial state, on its own track. The vehicles of all runs differ in parameter values only.
 struct BatchRun {
   const train::Fleet* fleet = nullptr;
-  const track::HeightTable* track = nullptr;   // stations as in all runs
-  const std::vector<double>* state = nullptr;  // of the structure at t = 0, v and w; w of the fleet's own speed
-  double speed = 0.0, end_time = 0.0;          // m/s; s: peaks count until then
+  const track::HeightTable* track = nullptr;   // with the same stations in all runs
+  const std::vector<double>* state = nullptr;  // structure at t = 0, v and w; w for the fleet's speed
+  double speed = 0.0, end_time = 0.0;          // m/s; s: end of the peaks' interval
 };
 
 struct BatchPlan {
   const BatchStructure* structure = nullptr;
   structure::Method method;  // for steps of 1 s
   std::vector<BatchStretch> stretches;
-  double level_until = 0.0;  // m: before it the track is level and the ground rigid, so that a vehicle stands still
+  double level_until = 0.0;  // m: up to here track and ground are level and rigid; vehicles are at rest
 };
 
 struct BatchResult : base::PassagePeaks {
   Trouble trouble = none;
-  std::vector<double> kept;      // accelerations, a row of probes at each place
-  std::vector<double> farthest;  // coordinates of every vehicle where it was farthest from linear
+  std::vector<double> kept;      // accelerations, a row of probes at each stored instant
+  std::vector<double> farthest;  // coordinates of every vehicle at its largest departure
 };
 
-/// At most as many runs as the processor's vectors have numbers (best_width()).
+/// At most as many runs as there are lanes (best_width()).
 std::vector<BatchResult> run_batch(const BatchPlan& plan, std::span<const BatchRun> runs);
 
 }  // namespace traverse::engine

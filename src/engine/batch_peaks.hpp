@@ -1,5 +1,5 @@
-// What is seen of runs side by side (batch_task.hpp): peaks at the probes and extremes of wheel forces, between steps
-// too, lane by lane as app::Curve and app::WheelExtremes have them for one run (base/extremum.hpp).
+// Observation of a batch (batch_task.hpp): peaks at the probes and extremes of wheel forces, also between steps, in
+// each lane as for a single run (base/extremum.hpp).
 #pragma once
 
 #include "base/extremum.hpp"
@@ -9,17 +9,17 @@
 namespace traverse::engine {
 namespace {
 
-inline constexpr double near_peak = 0.9;  // of the largest magnitude so far: nothing that turns below is larger
-inline constexpr int latest = looks_kept - 1;
+inline constexpr double near_peak = 0.9;  // of the largest magnitude so far: no extremum below it can be larger
+inline constexpr int latest = kept_samples - 1;
 
-inline RowMask runs_until(const BatchTask& t, double gone) {
-  return gone / row(t.speed) <= row(t.end_time) * (1.0 + 1e-12);
+inline RowMask runs_until(const BatchTask& t, double distance) {
+  return distance / row(t.speed) <= row(t.end_time) * (1.0 + 1e-12);
 }
 
-inline double* take_turns(double** kept) {
-  double* const oldest = kept[0];
-  for (int i = 0; i < latest; ++i) kept[i] = kept[i + 1];
-  return kept[latest] = oldest;
+inline double* rotate_samples(double** samples) {
+  double* const oldest = samples[0];
+  for (int i = 0; i < latest; ++i) samples[i] = samples[i + 1];
+  return samples[latest] = oldest;
 }
 
 inline Row product(const ProbeForms& p, const double* form, const double* values) {
@@ -28,17 +28,17 @@ inline Row product(const ProbeForms& p, const double* form, const double* values
   return sum;
 }
 
-/// What wheels on the probe's element add to its deflection and moment.
+/// The contributions of wheels on the probe's element to its deflection and moment.
 inline void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection, Row& moment) {
   const TrainTask& train = *t.train;
   const Row length = Rows::fill(p.to - p.from);
   for (int i = 0; i < train.wheels; ++i) {
     const Row x = rows(train.station)[i], force = rows(train.force_up)[i];
-    const RowMask there = (x >= p.from) & (x <= p.to) & (force != 0.0);
-    if (!Rows::any(there)) continue;
+    const RowMask inside_element = (x >= p.from) & (x <= p.to) & (force != 0.0);
+    if (!Rows::any(inside_element)) continue;
     const Row lever =
         rows(train.normal)[i] * (rows(train.normal_along)[i] + rows(train.normal_up)[i] * rows(train.turn)[i]);
-    const Row load[2] = {there ? -force : Row{}, there ? train.surface_height * lever : Row{}};
+    const Row load[2] = {inside_element ? -force : Row{}, inside_element ? train.surface_height * lever : Row{}};
     const Row xi = (x - p.from) / length;
     const RowMask left = x < p.x;
     for (int kind = 0; kind < (train.surface_height != 0.0 ? 2 : 1); ++kind) {
@@ -56,13 +56,13 @@ inline void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection,
   }
 }
 
-/// The responses of the probes after a step from `before`, m.
-inline void see(const BatchTask& t, double before) {
-  PeakState& s = *t.look;
+/// Computes the responses of the probes after a step from `before`, m.
+inline void evaluate_probes(const BatchTask& t, double before) {
+  PeakState& s = *t.peaks;
   const BeamTask& beam = *t.beam;
   const int n = t.probes;
-  Row* seen = rows(take_turns(s.seen));
-  const Row h = (s.gone[latest] - before) / row(t.speed);
+  Row* response = rows(rotate_samples(s.response));
+  const Row h = (s.distance[latest] - before) / row(t.speed);
   for (int k = 0; k < n; ++k) {
     const ProbeForms& p = t.probe[k];
     Row deflection = Rows::fill(p.constant[0]), inner = Rows::fill(p.constant[1]);
@@ -73,7 +73,7 @@ inline void see(const BatchTask& t, double before) {
     }
     add_wheels(t, p, deflection, inner);
     Row &known = rows(s.inner)[k], &lagging = rows(s.lagging)[k];
-    if (s.lag <= 0.0 || s.sampling_interval == 1) {
+    if (s.lag <= 0.0 || s.samples == 1) {
       lagging = inner;
     } else {
       Row decay{};
@@ -82,10 +82,10 @@ inline void see(const BatchTask& t, double before) {
       lagging = inner - late + (lagging - known + late) * decay;
     }
     known = inner;
-    seen[k] = deflection;
-    seen[n + k] = product(p, p.acceleration, beam.a[0]);
-    seen[2 * n + k] = product(p, p.nodal_moment, beam.v) + lagging;
-    seen[3 * n + k] = product(p, p.nodal_moment, beam.w) + (s.lag > 0.0 ? (inner - lagging) / s.lag : Row{});
+    response[k] = deflection;
+    response[n + k] = product(p, p.acceleration, beam.a[0]);
+    response[2 * n + k] = product(p, p.nodal_moment, beam.v) + lagging;
+    response[3 * n + k] = product(p, p.nodal_moment, beam.w) + (s.lag > 0.0 ? (inner - lagging) / s.lag : Row{});
   }
   Row sum{};
   for (int i = 0; i < beam.unknowns; ++i) sum += rows(beam.v)[i];
@@ -93,57 +93,58 @@ inline void see(const BatchTask& t, double before) {
   failed = (sum - sum == Row{}) | (failed != Row{}) ? failed : Rows::fill(not_finite);
 }
 
-/// Which instants tell where a curve turns about the one at m; seen: so many instants without a kink.
-inline base::Stencil stencil(const double* at, int m, long seen) {
-  return {at, m, seen < looks_kept ? looks_kept - static_cast<int>(seen) : 0};
+/// The samples that interpolate a curve about sample m; known: number of samples since the last kink.
+inline base::Stencil stencil(const double* at, int m, long known) {
+  return {at, m, known < kept_samples ? kept_samples - static_cast<int>(known) : 0};
 }
 
-/// The value where the curve of row i turns about the instant m, and how far behind m that is.
-inline Row turn(const double* at, double* const* seen, int i, int m, const base::Stencil& by, bool five, Row& behind) {
-  Row y[looks_kept];
-  for (int k = 0; k < looks_kept; ++k) y[k] = rows(seen[k])[i];
+/// The extremum of the curve of row i near sample m, and its distance behind m.
+inline Row extremum(const double* at, double* const* response, int i, int m, const base::Stencil& by, bool five,
+                    Row& behind) {
+  Row y[kept_samples];
+  for (int k = 0; k < kept_samples; ++k) y[k] = rows(response[k])[i];
   return base::extreme_between(at, y, m, by, five, behind);
 }
 
 inline void record_peak(const BatchTask& t, int i, RowMask counts, Row value, Row time) {
-  Row &peak = rows(t.look->peak)[i], &at = rows(t.look->peak_time)[i];
+  Row &peak = rows(t.peaks->peak)[i], &at = rows(t.peaks->peak_time)[i];
   const RowMask larger = counts & (value > peak);
   peak = larger ? value : peak;
   at = larger ? time : at;
 }
 
-/// Response i, where its magnitude at the instant m is larger than those of its neighbours.
-inline void look_between(const BatchTask& t, int i, int m) {
-  const PeakState& s = *t.look;
+/// Response i, if its magnitude at sample m is larger than at the neighbouring samples.
+inline void interpolate_peak(const BatchTask& t, int i, int m) {
+  const PeakState& s = *t.peaks;
   const bool is_moment = i >= 2 * t.probes;
   if (is_moment && s.lag > 0.0) return;
-  const auto y = [&](int k) { return rows(s.seen[k])[i]; };
+  const auto y = [&](int k) { return rows(s.response[k])[i]; };
   const Row middle = Rows::magnitude(y(m));
   const RowMask large = (middle > near_peak * rows(s.peak)[i]) & (middle > Rows::magnitude(y(m + 1)));
   if (!Rows::any(large)) return;
-  const double* at = s.gone;
-  const base::Stencil by = stencil(at, m, is_moment ? s.known : s.sampling_interval);
+  const double* at = s.distance;
+  const base::Stencil by = stencil(at, m, is_moment ? s.samples_since_kink : s.samples);
   if (!by.three) return;
   const RowMask turns = large & runs_until(t, at[m + 1]) & ((y(m) - y(by.left)) * (y(by.right) - y(m)) <= Row{}) &
                         (middle >= Rows::magnitude(y(m - 1)));
   if (!Rows::any(turns)) return;
   Row behind;
-  const Row top = Rows::magnitude(turn(at, s.seen, i, m, by, by.five, behind));
+  const Row top = Rows::magnitude(extremum(at, s.response, i, m, by, by.five, behind));
   record_peak(t, i, turns, top, (at[m] + behind) / row(t.speed));
 }
 
-/// Between the last two instants of a moment that lags.
-inline void look_at_lagging(const BatchTask& t, int i, RowMask counts) {
-  const PeakState& s = *t.look;
+/// A moment with viscous lag, between the last two samples.
+inline void interpolate_lagging_peak(const BatchTask& t, int i, RowMask counts) {
+  const PeakState& s = *t.peaks;
   const int rate = i + t.probes;
-  const Row *last = rows(s.seen[latest]), *before_last = rows(s.seen[latest - 1]);
+  const Row *last = rows(s.response[latest]), *before_last = rows(s.response[latest - 1]);
   const Row start = before_last[i], rising = before_last[rate], falling = last[rate];
   const RowMask turns = counts & (rising * falling < Row{}) & (rising * start > Row{}) &
                         (Rows::greater(Rows::magnitude(start), Rows::magnitude(last[i])) > near_peak * rows(s.peak)[i]);
   if (!Rows::any(turns)) return;
-  const Row began = s.gone[latest - 1] / row(t.speed), h = s.gone[latest] / row(t.speed) - began;
+  const Row began = s.distance[latest - 1] / row(t.speed), h = s.distance[latest] / row(t.speed) - began;
   for (int l = 0; l < lanes; ++l) {
-    if (!Rows::holds(turns, l)) continue;
+    if (!Rows::is_set(turns, l)) continue;
     double later = 0.0;
     const double top = base::extreme_of_lagging(Rows::numbers(h)[l], Rows::numbers(start)[l], Rows::numbers(last[i])[l],
                                                 Rows::numbers(rising)[l], Rows::numbers(falling)[l], s.lag, later);
@@ -154,30 +155,30 @@ inline void look_at_lagging(const BatchTask& t, int i, RowMask counts) {
   }
 }
 
-inline void look_at_probes(const BatchTask& t, RowMask counts) {
-  const PeakState& s = *t.look;
+inline void update_probe_peaks(const BatchTask& t, RowMask counts) {
+  const PeakState& s = *t.peaks;
   const int n = t.probes;
   for (int i = 0; i < 3 * n; ++i) {
-    record_peak(t, i, counts, Rows::magnitude(rows(s.seen[latest])[i]), s.gone[latest] / row(t.speed));
+    record_peak(t, i, counts, Rows::magnitude(rows(s.response[latest])[i]), s.distance[latest] / row(t.speed));
     if (i < 2 * n || s.lag <= 0.0)
-      look_between(t, i, 2);
-    else if (s.sampling_interval >= 2)
-      look_at_lagging(t, i, counts);
+      interpolate_peak(t, i, 2);
+    else if (s.samples >= 2)
+      interpolate_lagging_peak(t, i, counts);
   }
 }
 
-/// Whether a wheel that began at x has met no corner of the surface between two distances.
+/// Whether a wheel that started at x has passed no kink of the surface between two distances.
 inline bool smooth(const BatchTask& t, double x, double from, double to) {
   for (int i = 0; i < t.kinks; ++i)
     if (t.kink[i] >= x + from && t.kink[i] <= x + to) return false;
   return true;
 }
 
-/// What forces of wheels were between steps where they turn at the instant m, as app::WheelExtremes has it.
-inline void look_at_turns(const BatchTask& t, int m) {
-  const PeakState& s = *t.look;
-  const double* at = s.gone;
-  const base::Stencil by = stencil(at, m, s.sampling_interval);
+/// Extremes of wheel forces between steps, interpolated near sample m.
+inline void interpolate_forces(const BatchTask& t, int m) {
+  const PeakState& s = *t.peaks;
+  const double* at = s.distance;
+  const base::Stencil by = stencil(at, m, s.samples);
   if (!by.three) return;
   const RowMask counts = runs_until(t, at[m + 1]);
   for (int j = 0; j < t.train->wheels; ++j) {
@@ -189,11 +190,11 @@ inline void look_at_turns(const BatchTask& t, int m) {
         counts & (before * after <= Row{}) & ((F - y(m - 1)) * (y(m + 1) - F) <= Row{}) & (after != Row{});
     const double x = t.train->place[static_cast<long>(j) * lanes];
     if (!Rows::any(turns) || !smooth(t, x, at[by.left], at[by.right])) continue;
-    Row behind, top = turn(at, s.force, j, m, by, false, behind);
+    Row behind, top = extremum(at, s.force, j, m, by, false, behind);
     if (by.five && smooth(t, x, at[0], at[latest])) {
       RowMask touched = y(0) > Row{};
-      for (int i = 1; i < looks_kept; ++i) touched &= y(i) > Row{};
-      top = touched ? turn(at, s.force, j, m, by, true, behind) : top;
+      for (int i = 1; i < kept_samples; ++i) touched &= y(i) > Row{};
+      top = touched ? extremum(at, s.force, j, m, by, true, behind) : top;
     }
     Row &least = rows(s.least)[0], &greatest = rows(s.greatest)[0];
     least = turns & (top < least) & (top > Row{}) ? top : least;
@@ -201,10 +202,10 @@ inline void look_at_turns(const BatchTask& t, int m) {
   }
 }
 
-/// Wheels that have lost contact in the last step, and those that have found it again.
+/// Records the wheels that have lost contact in the last step, and those that have regained it.
 inline void record_losses(const BatchTask& t, RowMask counts) {
-  const PeakState& s = *t.look;
-  const Row now = s.gone[latest] / row(t.speed), before = s.gone[latest - 1] / row(t.speed);
+  const PeakState& s = *t.peaks;
+  const Row now = s.distance[latest] / row(t.speed), before = s.distance[latest - 1] / row(t.speed);
   for (int j = 0; j < t.train->wheels; ++j) {
     const Row force = rows(s.force[latest])[j];
     Row& lost_at = rows(s.lost_at)[j];
@@ -212,67 +213,67 @@ inline void record_losses(const BatchTask& t, RowMask counts) {
     if (!Rows::any(lost | found)) continue;
     Row &losses = rows(s.losses)[0], &longest = rows(s.longest)[0];
     losses += lost ? Rows::fill(1.0) : Row{};
-    const Row away = now - lost_at;
-    longest = found & (away > longest) ? away : longest;
+    const Row loss_duration = now - lost_at;
+    longest = found & (loss_duration > longest) ? loss_duration : longest;
     lost_at = lost ? before : found ? Rows::fill(-1.0) : lost_at;
   }
 }
 
-inline void look_at_wheels(const BatchTask& t, RowMask counts, bool moved) {
-  PeakState& s = *t.look;
-  Row *now = rows(take_turns(s.force)), &least = rows(s.least)[0], &greatest = rows(s.greatest)[0];
+inline void update_wheel_forces(const BatchTask& t, RowMask counts, bool moved) {
+  PeakState& s = *t.peaks;
+  Row *now = rows(rotate_samples(s.force)), &least = rows(s.least)[0], &greatest = rows(s.greatest)[0];
   for (int j = 0; j < t.train->wheels; ++j) {
     const Row force = now[j] = rows(t.train->normal)[j];
     least = counts & (force < least) ? force : least;
     greatest = counts & (force > greatest) ? force : greatest;
   }
   if (!moved) return;
-  look_at_turns(t, 2);
+  interpolate_forces(t, 2);
   record_losses(t, counts);
 }
 
-/// Coordinates of vehicles where they were farthest from the state that they were linearised in.
-inline void look_at_departures(const BatchTask& t) {
-  const PeakState& s = *t.look;
+/// Records the coordinates of vehicles at their largest departure from the state of linearisation.
+inline void record_departures(const BatchTask& t) {
+  const PeakState& s = *t.peaks;
   for (int k = 0; k < t.train->blocks; ++k) {
     const VehicleBlock& b = t.train->block[k];
     if (*b.active == 0) continue;
     Row departure{}, &most = rows(s.departure)[k];
     for (int i = b.first_coordinate; i < b.first_coordinate + b.freedom; ++i)
       departure += rows(t.roots)[i] * Rows::magnitude(rows(t.train->x)[i]);
-    const RowMask farther = departure > most;
-    if (!Rows::any(farther)) continue;
-    most = farther ? departure : most;
+    const RowMask larger = departure > most;
+    if (!Rows::any(larger)) continue;
+    most = larger ? departure : most;
     for (int i = b.first_coordinate; i < b.first_coordinate + b.freedom; ++i)
-      rows(s.farthest)[i] = farther ? rows(t.train->x)[i] : rows(s.farthest)[i];
+      rows(s.farthest)[i] = larger ? rows(t.train->x)[i] : rows(s.farthest)[i];
   }
 }
 
-/// After a step, with the wheels `gone` m along; moved: false at the start.
-inline void look(const BatchTask& t, double gone, bool moved) {
-  PeakState& s = *t.look;
-  const double before = s.gone[latest];
-  for (int i = 0; i < latest; ++i) s.gone[i] = s.gone[i + 1];
-  s.gone[latest] = gone;
-  ++s.known;
-  ++s.sampling_interval;
-  const RowMask counts = runs_until(t, gone);
-  see(t, before);
-  look_at_probes(t, counts);
-  look_at_wheels(t, counts, moved);
-  if (moved) look_at_departures(t);
+/// After a step, with the wheels at `distance` m; moved: false at the start.
+inline void sample(const BatchTask& t, double distance, bool moved) {
+  PeakState& s = *t.peaks;
+  const double before = s.distance[latest];
+  for (int i = 0; i < latest; ++i) s.distance[i] = s.distance[i + 1];
+  s.distance[latest] = distance;
+  ++s.samples_since_kink;
+  ++s.samples;
+  const RowMask counts = runs_until(t, distance);
+  evaluate_probes(t, before);
+  update_probe_peaks(t, counts);
+  update_wheel_forces(t, counts, moved);
+  if (moved) record_departures(t);
 }
 
-/// Before what comes next, which has a kink: what turns just before it.
-inline void look_before_kink(const BatchTask& t) {
-  for (int i = 2 * t.probes; i < 3 * t.probes; ++i) look_between(t, i, latest - 1);
-  t.look->known = 1;
+/// Interpolates peaks just before a kink of the following motion.
+inline void end_peaks_at_kink(const BatchTask& t) {
+  for (int i = 2 * t.probes; i < 3 * t.probes; ++i) interpolate_peak(t, i, latest - 1);
+  t.peaks->samples_since_kink = 1;
 }
 
-/// After the last look.
-inline void finish_looks(const BatchTask& t) {
-  for (int i = 0; i < 3 * t.probes; ++i) look_between(t, i, latest - 1);
-  look_at_turns(t, latest - 1);
+/// After the last sample.
+inline void finish_peaks(const BatchTask& t) {
+  for (int i = 0; i < 3 * t.probes; ++i) interpolate_peak(t, i, latest - 1);
+  interpolate_forces(t, latest - 1);
 }
 
 }  // namespace

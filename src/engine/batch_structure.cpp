@@ -1,4 +1,4 @@
-// What runs side by side have in common, as the kernel reads it.
+// The shared data of a batch in the form that the kernel reads.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace traverse::engine {
 namespace {
 
-/// [column][2]: the block on the diagonal, the one above it.
+/// [column][2]: the diagonal block, the block above it.
 std::vector<double> by_columns(const solve::BlockTridiagonal& A) {
   const auto bb = static_cast<std::size_t>(A.block) * static_cast<std::size_t>(A.block);
   std::vector<double> numbers;
@@ -37,7 +37,7 @@ std::vector<double> product(const solve::BlockTridiagonal& A, const std::vector<
   return y;
 }
 
-/// The unknowns of an element counted from its first column's, or -1 where they are not in two neighbouring ones.
+/// The unknowns of an element counted from its first column; -1 unless they are in two neighbouring columns.
 std::array<int, most_nodal> places(const beam::Line& line, int block, int element) {
   std::array<int, most_nodal> place{};
   const auto unknowns = line.unknowns(element);
@@ -79,7 +79,7 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const structure::ModalBri
     read_modes(rest);
   else
     read_matrices(rest);
-  task_.dead = dead_.data();
+  task_.dead = dead_load_.data();
   find_columns();
   const beam::Recovery recovery(beam, probes, gravity);
   for (std::size_t i = 0; i < probes.size(); ++i) add_probe(recovery, i);
@@ -99,7 +99,7 @@ void BatchStructure::read_matrices(const std::vector<double>& rest) {
   mass_ = by_columns(mass);
   damping_ = by_columns(damping);
   stiffness_ = by_columns(stiffness);
-  dead_ = product(stiffness, rest);  // whatever bends it; settlements are no part of the matrices' columns
+  dead_load_ = product(stiffness, rest);  // load of these displacements; settlements are not in the matrices' columns
   task_.unknowns = task_.block * task_.columns;
   task_.mass = mass_.data();
   task_.damping = damping_.data();
@@ -115,7 +115,7 @@ void BatchStructure::read_modes(const std::vector<double>& rest) {
     damping_.push_back(2.0 * modal_->sigma()[i]);
     stiffness_.push_back(modal_->omega()[i] * modal_->omega()[i]);
   }
-  dead_ = rest;
+  dead_load_ = rest;
   task_.shape = shape_.data();
   task_.modal_damping = damping_.data();
   task_.modal_stiffness = stiffness_.data();
@@ -134,9 +134,9 @@ void BatchStructure::find_columns() {
   task_.first_column = first_column_.data();
 }
 
-/// A form of the station's nodal unknowns as one of the structure's.
-std::vector<double> BatchStructure::by_unknowns(const beam::StationForms& forms,
-                                                const std::vector<double>& form) const {
+/// Converts a form of the station's nodal unknowns to one of the structure's unknowns.
+std::vector<double> BatchStructure::form_of_unknowns(const beam::StationForms& forms,
+                                                     const std::vector<double>& form) const {
   if (modal_ == nullptr) return form;
   std::vector<double> of_modes(modal_->modes(), 0.0);
   for (std::size_t i = 0; i < of_modes.size(); ++i)
@@ -147,7 +147,7 @@ std::vector<double> BatchStructure::by_unknowns(const beam::StationForms& forms,
 void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t station) {
   const beam::StationForms forms = recovery.forms(station);
   ProbeForms& p = probes_.emplace_back();
-  const auto kept = [&](const std::vector<double>& form) { return keep(by_unknowns(forms, form)); };
+  const auto kept = [&](const std::vector<double>& form) { return keep(form_of_unknowns(forms, form)); };
   for (std::size_t d = 0; d < 3; ++d) {
     p.deflection[d] = kept(forms.deflection[d]);
     p.moment[d] = kept(forms.moment[d]);
@@ -159,7 +159,7 @@ void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t stati
   lists_.push_back(forms.unknown);
   if (modal_ != nullptr) {
     for (std::size_t k = 0; k < forms.unknown.size(); ++k)
-      p.constant[0] += forms.deflection[0][k] * dead_[static_cast<std::size_t>(forms.unknown[k])];
+      p.constant[0] += forms.deflection[0][k] * dead_load_[static_cast<std::size_t>(forms.unknown[k])];
     lists_.back().resize(modal_->modes());
     std::iota(lists_.back().begin(), lists_.back().end(), 0);
   }
@@ -168,7 +168,7 @@ void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t stati
   if (beam_.rail() == nullptr && modal_ == nullptr) find_inner_responses(recovery, station, forms.element, p);
 }
 
-/// Each side's polynomials from as many loads as they have powers.
+/// Fits the polynomials of both sides to as many loads as they have coefficients.
 void BatchStructure::find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element,
                                           ProbeForms& p) const {
   p.x = recovery.stations()[station];

@@ -1,6 +1,6 @@
-// Runs side by side as plain arrays: the train and the structure of all of them (train_task.hpp, beam_task.hpp), the
-// surface that its wheels run on, and what is seen. Lane l of every row belongs to run l; all runs take their steps by
-// distance, so that wheels meet ends of spans, kinks and probes in the same step.
+// A batch of runs as plain arrays: the train and the structure of all runs (train_task.hpp, beam_task.hpp), the surface
+// of its wheels, and the observed responses. Lane l of every row belongs to run l. All runs have the same steps in
+// distance, so that wheels reach ends of spans, kinks and probes in the same step.
 #pragma once
 
 #include "base/extremum.hpp"
@@ -14,43 +14,43 @@ struct HeightTable {
   int stations = 0;                    // 0: level
   bool shared = true;                  // all runs have one track
   double start = 0.0, distance = 1.0;  // m
-  const double* values = nullptr;  // [station][height, slope*distance], m: numbers, or rows where they are not shared
+  const double* values = nullptr;      // [station][height, slope*distance], m: numbers if shared, else rows
 };
 
-/// How a station responds: linear forms of `count` unknowns of the structure (beam::StationForms).
+/// The response of a station: linear forms of `count` unknowns of the structure (beam::StationForms).
 struct ProbeForms {
   int count = 0;
   const int* unknown = nullptr;
   const double* deflection[3] = {};      // of v, w and a, m
   const double* acceleration = nullptr;  // of a, m/s2
   const double* nodal_moment = nullptr;  // of v, N m
-  const double* moment[3] = {};          // what else of the moment follows from v, w and a, N m
-  double constant[2] = {};               // of its own weight and temperature: deflection, moment
-  double from = 1.0, to = 0.0, x = 0.0;  // m: of the element, if wheels run on it; of the station
-  /// What a force or a moment at xi of the element adds, left and right of the station, to the deflection and to the
-  /// moment: by powers of xi.
+  const double* moment[3] = {};          // other parts of the moment, of v, w and a, N m
+  double constant[2] = {};               // of self-weight and temperature: deflection, moment
+  double from = 1.0, to = 0.0, x = 0.0;  // m: ends of the element, if wheels run on it; station
+  /// The contributions of a force or a moment at xi of the element, left and right of the station, to deflection and
+  /// moment: coefficients of the powers of xi.
   static constexpr int powers = 6;
   double inside[2][2][2][powers] = {};
 };
 
-inline constexpr int looks_kept = base::samples_kept;
+inline constexpr int kept_samples = base::samples_kept;
 
-/// What is seen of the runs from step to step: rows of the latest instants, peaks.
+/// The observed motion of the runs: rows of the latest samples, peaks.
 struct PeakState {
-  long known = 0, sampling_interval = 0;         // instants since the last kink of moments, and since the start
-  double gone[looks_kept] = {};                  // m: travelled
-  double* seen[looks_kept] = {};                 // [deflections, accelerations, moments, rates of moments]
-  double* force[looks_kept] = {};                // normal, of all wheels
+  long samples_since_kink = 0, samples = 0;      // number since the last kink of moments, and since the start
+  double distance[kept_samples] = {};            // m
+  double* response[kept_samples] = {};           // [deflections, accelerations, moments, rates of moments]
+  double* force[kept_samples] = {};              // normal, of all wheels
   double* peak = nullptr;                        // [deflections, accelerations, moments]: magnitudes
   double* peak_time = nullptr;                   // s
   double *least = nullptr, *greatest = nullptr;  // N: a row
-  double* lost_at = nullptr;                     // of every wheel, s: when it lost contact; below 0: it touches
-  double *losses = nullptr, *longest = nullptr;  // a row: how many wheels lost contact, and for how long at most, s
-  double *inner = nullptr, *lagging = nullptr;  // of every probe: what loads and inertia add to the moment, and what of
-                                                // it has reached the elastic forces (viscous_lag.hpp)
-  double lag = 0.0;                             // s
-  double* departure = nullptr;                  // of every block: the root of its linearisation residual at most
-  double* farthest = nullptr;                   // coordinates then
+  double* lost_at = nullptr;                     // s: time when each wheel lost contact; negative: in contact
+  double *losses = nullptr, *longest = nullptr;  // a row: number of losses of contact; longest loss, s
+  double *inner = nullptr, *lagging = nullptr;   // N m, of every probe: moment of loads and inertia; its elastic part
+                                                 // with viscous lag (viscous_lag.hpp)
+  double lag = 0.0;                              // s
+  double* departure = nullptr;  // for each block: largest bound of the root of its linearisation residual
+  double* farthest = nullptr;   // coordinates at that time
 };
 
 enum Trouble { none = 0, below_surface = 1, not_converged = 2, not_finite = 3 };
@@ -60,19 +60,19 @@ struct BatchTask {
   BeamTask* beam = nullptr;
   const double *speed = nullptr, *end_time = nullptr;  // rows: m/s, s
   const SurfaceTable* surface = nullptr;
-  const int* table = nullptr;  // of every wheel's number: its surface
-  int* there = nullptr;        // where in it the wheel is
+  const int* table = nullptr;  // index of each wheel's surface
+  int* interval = nullptr;     // index of the wheel's interval in its surface
   HeightTable heights;
-  double* const* distance = nullptr;  // a row of every block: VehicleBlock::distance
+  double* const* distance = nullptr;  // a row for each block: VehicleBlock::distance
   char* second = nullptr;             // TrainTask::second
   double* failed = nullptr;           // a row: Trouble
-  double* work = nullptr;             // two rows a coordinate
+  double* work = nullptr;             // two rows for each coordinate
 
   int probes = 0, kinks = 0;
   const ProbeForms* probe = nullptr;
-  const double* kink = nullptr;   // m: stations at which the surface has a corner, ascending
-  const double* roots = nullptr;  // of every coordinate, a row: what it departs by
-  PeakState* look = nullptr;
+  const double* kink = nullptr;   // m: stations with a kink of the surface, ascending
+  const double* roots = nullptr;  // a row for each coordinate: train::residual_roots
+  PeakState* peaks = nullptr;
 };
 
 }  // namespace traverse::engine

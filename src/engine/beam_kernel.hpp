@@ -1,10 +1,10 @@
 // The structure's side of a stage (beam_task.hpp): J a = P + forces - C w~ - K v~ with J = M + rate C + displacement K,
 // from w = w~ + rate a and v = v~ + displacement a.
 //
-// Columns are eliminated from both ends to the middle column. Under the contacts' forces, which change from pass to
-// pass, only the window of columns that wheels are on is solved anew: those outside it are eliminated once in a stage
-// and found from it at its end. The middle goes along with a window that has left it. As all kernels it is seen by no
-// linker (train_kernel.hpp).
+// Columns are eliminated from both ends to the middle column. The contact forces change from pass to pass. In each pass
+// only the window of columns under the wheels is solved; the columns outside it are eliminated once before the passes
+// of a stage, and solved after them. If the window has left the middle, the middle is moved to it. All functions
+// of the kernels must have internal linkage (train_kernel.hpp).
 #pragma once
 
 #include "engine/beam_task.hpp"
@@ -13,17 +13,17 @@
 namespace traverse::engine {
 namespace {
 
-/// For blocks of `Size` unknowns; 0: of any size.
+/// For blocks of `Size` unknowns; 0: any size.
 template <int Size>
 struct BeamRows {
   BeamTask& t;
   const int b = Size > 0 ? Size : t.block, bb = b * b;
 
   Row* pivot(int column) const { return rows(t.pivot) + static_cast<long>(column) * bb; }
-  /// Of the columns `pair` and pair + 1: rows of the one nearer to the middle.
+  /// The factor of columns `pair` and pair + 1: rows of the column nearer to the middle.
   Row* factor(int pair) const { return rows(t.factor) + static_cast<long>(pair) * bb; }
-  /// Calls use(pair, further, nearer) of the pairs from column `left` on to `to_left`, and from `right` back to
-  /// `to_right`, in turns: two chains of products keep the processor busy.
+  /// Calls use(pair, further, nearer) for the pairs from column `left` on to `to_left`, and from `right` back to
+  /// `to_right`, alternately: two independent chains of products use the processor better.
   template <class Use>
   void inwards(int left, int right, int to_left, int to_right, Use use) const {
     const int before = to_left - left, behind = right - to_right;
@@ -32,7 +32,7 @@ struct BeamRows {
       if (k < behind) use(right - k - 1, right - k, right - k - 1);
     }
   }
-  /// The same the other way.
+  /// The same in the opposite order.
   template <class Use>
   void outwards(int left, int right, int to_left, int to_right, Use use) const {
     const int before = to_left - left, behind = right - to_right;
@@ -50,8 +50,8 @@ struct BeamRows {
     find_compliance(displacement);
   }
 
-  /// Sets the window to the columns that wheels are on.
-  void mark(const TrainTask& train, Row rate, Row displacement) const {
+  /// Sets the window to the columns under wheels.
+  void set_window(const TrainTask& train, Row rate, Row displacement) const {
     constexpr int worth_moving = 32;
     int first = t.columns, last = -1;
     for (const SurfacePatch& p : train.patch)
@@ -70,7 +70,7 @@ struct BeamRows {
     move_middle((first + last) / 2, rate, displacement);
   }
 
-  /// Eliminates what is outside the window.
+  /// Eliminates the columns outside the window.
   void begin_passes() const {
     inwards(0, t.columns - 1, t.first, t.last, [&](int pair, int further, int nearer) {
       subtract(factor(pair), rows(t.residual) + further * b, rows(t.residual) + nearer * b);
@@ -79,7 +79,7 @@ struct BeamRows {
   void clear_loads() const {
     for (int i = t.first * b; i < (t.last + 1) * b; ++i) rows(t.work)[i] = rows(t.residual)[i];
   }
-  /// The window under the forces as they are, in lanes that are open.
+  /// Solves the window under the present forces, in open lanes.
   void solve(Row displacement, RowMask open) const {
     Row *x = rows(t.work), *solution = rows(t.solution), *v = rows(t.v_stage);
     inwards(t.first, t.last, t.middle, t.middle,
@@ -92,7 +92,7 @@ struct BeamRows {
       v[i] = rows(t.v_predicted)[i] + displacement * solution[i];
     }
   }
-  /// Finds what is outside the window.
+  /// Solves the columns outside the window.
   void end_passes() const {
     Row* x = rows(t.solution);
     outwards(0, t.columns - 1, t.first, t.last, [&](int pair, int further, int nearer) {
@@ -101,11 +101,11 @@ struct BeamRows {
     });
   }
 
-  /// r with J x = r + forces. Damping C = a M + b K spares its product: with alpha = a/(1 + rate a)
+  /// r with J x = r + forces. With damping C = a M + b K no product with C is needed: with alpha = a/(1 + rate a)
   ///
   ///   J (acceleration + alpha w~) = P + forces - K (v~ + (b - alpha (displacement + rate b)) w~)
   ///
-  /// and x is the acceleration and alpha w~, of which v~ is made less already. Else x is the acceleration.
+  /// Then x is the acceleration plus alpha w~, and v~ is reduced accordingly. Otherwise x is the acceleration.
   void find_residual(Row rate, Row displacement) const {
     Row *v = rows(t.v_predicted), *w = rows(t.w_predicted), *r = rows(t.residual), *u = rows(t.work);
     const int n = t.unknowns;
@@ -122,7 +122,7 @@ struct BeamRows {
     }
     subtract_product(t.stiffness, u, r);
   }
-  /// The accelerations of x.
+  /// The accelerations from x.
   void accelerations(Row rate, Row* a) const {
     const Row *w = rows(t.w_predicted), *x = rows(t.solution), alpha = t.proportional ? shift(rate) : Row{};
     for (int i = 0; i < t.unknowns; ++i) a[i] = x[i] - alpha * w[i];
@@ -154,7 +154,7 @@ struct BeamRows {
     }
   }
 
-  /// J's block on the diagonal, by rows.
+  /// Stores the diagonal block of J, by rows.
   void set_diagonal(int column, Row rate, Row displacement) const {
     const double *m = t.mass + 2L * column * bb, *d = t.damping + 2L * column * bb, *k = t.stiffness + 2L * column * bb;
     const char* held = t.held + static_cast<long>(column) * b;
@@ -165,7 +165,7 @@ struct BeamRows {
             held[i] != 0 || held[j] != 0 ? Rows::fill(i == j ? 1.0 : 0.0) : m[at] + rate * d[at] + displacement * k[at];
       }
   }
-  /// Less what an eliminated neighbour's factor makes of it.
+  /// Subtracts the contribution of an eliminated neighbour from the diagonal block.
   void subtract_neighbour(int pair, int further, int nearer, Row rate, Row displacement) const {
     Row coupling[most_block * most_block];  // of the nearer column's rows with the further one
     couple(pair, nearer > further, rate, displacement, coupling);
@@ -175,7 +175,7 @@ struct BeamRows {
       for (int j = 0; j < b; ++j)
         for (int k = 0; k < b; ++k) to[i * b + j] -= F[i * b + k] * coupling[j * b + k];
   }
-  /// The further column, whose own further neighbour is eliminated if it has one.
+  /// Eliminates the further column after its own further neighbour, if it has one.
   void eliminate(int pair, int further, int nearer, Row rate, Row displacement) const {
     const int before = 2 * further - nearer;
     set_diagonal(further, rate, displacement);
@@ -228,7 +228,7 @@ struct BeamRows {
       if (t.held[static_cast<long>(column) * b + j] != 0) pivot(column)[j * b + j] = Row{};
   }
 
-  /// J of the pair, by rows: of the right column's with the left one, or the other way round.
+  /// Stores the coupling block of J for the pair, by rows: of the right column with the left one, or the reverse.
   void couple(int pair, bool rows_of_right, Row rate, Row displacement, Row* to) const {
     const double* m = t.mass + (2L * pair + 1) * bb;
     const double *d = t.damping + (2L * pair + 1) * bb, *k = t.stiffness + (2L * pair + 1) * bb;
@@ -241,7 +241,7 @@ struct BeamRows {
       }
   }
 
-  /// The inverse of J within the band, column by column from the middle, at the elements' transverse unknowns.
+  /// Computes the inverse of J within the band, column by column from the middle, at the elements' transverse unknowns.
   void find_compliance(Row displacement) const {
     Row* inverse = rows(t.inverse);  // of every column's block, then of every pair's: rows of the nearer one
     Row* const pairs = inverse + static_cast<long>(t.columns) * bb;

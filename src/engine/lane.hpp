@@ -1,11 +1,11 @@
-// What the kernels share: a number of every run, one in each lane of a vector. As all that kernels are made of, it is
-// compiled once for each kind of processor and seen by no linker (train_kernel.hpp).
+// SIMD vectors for the kernels: a number of each run in each lane. Like all parts of kernels, this file is compiled
+// once for each instruction set, and its functions must have internal linkage (train_kernel.hpp).
 #pragma once
 
 namespace traverse::engine {
 namespace {
 
-/// For what is called for every wheel: values in registers are not worth a call's memory.
+/// For functions called for every wheel: values remain in registers.
 #define TRAVERSE_INLINE inline __attribute__((always_inline))
 
 // NOLINTBEGIN: vector types have no other spelling
@@ -23,7 +23,7 @@ struct Lanes {
   typedef long Mask __attribute__((vector_size(8 * W), may_alias));
   // NOLINTEND
 
-  /// Numbers in a vector of the processor.
+  /// Lanes of a vector register.
 #if defined(__AVX512F__)
   static constexpr int in_a_row = 8;
 #elif defined(__AVX__)
@@ -33,20 +33,20 @@ struct Lanes {
 #endif
 
   static Lane fill(double value) { return Lane{} + value; }
-  /// The numbers of a vector, one a lane, and whether a mask holds a lane.
+  /// The numbers of a vector, one for each lane, and whether a mask is true in a lane.
   static double* numbers(Lane& x) { return reinterpret_cast<double*>(&x); }
   static const double* numbers(const Lane& x) { return reinterpret_cast<const double*>(&x); }
-  static bool holds(Mask mask, int lane) { return reinterpret_cast<const long*>(&mask)[lane] != 0; }
+  static bool is_set(Mask mask, int lane) { return reinterpret_cast<const long*>(&mask)[lane] != 0; }
   static const Lane* lanes(const double* numbers) { return reinterpret_cast<const Lane*>(numbers); }
   static Lane* lanes(double* numbers) { return reinterpret_cast<Lane*>(numbers); }
-  /// Without the bit of the sign.
+  /// Clears the sign bit.
   static Lane magnitude(Lane x) { return (Lane)((Mask)x & 0x7fffffffffffffffL); }
   static Lane greater(Lane a, Lane b) { return a > b ? a : b; }
   static Lane root(Lane x) {
     for (int l = 0; l < W; ++l) numbers(x)[l] = __builtin_sqrt(numbers(x)[l]);
     return x;
   }
-  /// Bits, one at least where a > b in some lane, and none where it is in no lane.
+  /// Non-zero if a > b in some lane, otherwise zero.
   static int exceeds(Lane a, Lane b) {
 #ifdef __AVX512DQ__
     constexpr int greater_than = 14, all = 0xff, no_rounding = 4;
@@ -57,7 +57,7 @@ struct Lanes {
 #endif
     return any(a > b) ? 1 : 0;
   }
-  /// All bits of a lane of the mask are set, or none: one of them tells.
+  /// Whether a mask is true in some lane. All bits of a lane are equal, so that one bit is sufficient.
   static bool any(Mask mask) {
 #ifdef __AVX512DQ__
     if constexpr (W == 8) return __builtin_ia32_cvtq2mask512(*reinterpret_cast<const EightWords*>(&mask)) != 0;
@@ -69,16 +69,16 @@ struct Lanes {
     if constexpr (W == 4) return __builtin_ia32_movmskpd256(*reinterpret_cast<const FourNumbers*>(&mask)) != 0;
 #endif
     const long* words = reinterpret_cast<const long*>(&mask);
-    long seen = 0;
-    for (int l = 0; l < W; ++l) seen |= words[l];
-    return seen != 0;
+    long combined = 0;
+    for (int l = 0; l < W; ++l) combined |= words[l];
+    return combined != 0;
   }
 };
 
-/// The next `count` numbers of type T of the memory at `work`, of which `used` lanes are taken, from where the widest
-/// vectors may start; null while work is null and the size alone is asked for.
+/// The next `count` numbers of type T of the memory at `work`, aligned for the widest vectors; `used` is the number of
+/// vectors in use. Null while work is null, to compute the size only.
 template <class T>
-T* take_from(double* work, long& used, int width, long count) {
+T* allocate_from(double* work, long& used, int width, long count) {
   double* at = work == nullptr ? nullptr : work + used * width;
   constexpr long widest_vector = 8;  // doubles
   constexpr long bytes = 8 * widest_vector;
@@ -86,7 +86,7 @@ T* take_from(double* work, long& used, int width, long count) {
   return reinterpret_cast<T*>(at);
 }
 
-/// Doubles that a task's work takes, and its runs, by a kernel as wide as the task asks.
+/// The number of doubles that a task's kernel needs, and the call of the kernel, with the task's width.
 template <template <int> class Group, class Task>
 long size_of_work(const Task& task) {
   return task.width == 8   ? Group<8>(task, nullptr).size()
@@ -94,7 +94,7 @@ long size_of_work(const Task& task) {
                            : Group<2>(task, nullptr).size();
 }
 template <template <int> class Group, class Task>
-void run_as_wide(const Task& task) {
+void run_with_width(const Task& task) {
   if (task.width == 8)
     Group<8>(task, task.work).run();
   else if (task.width == 4)

@@ -1,4 +1,4 @@
-// The stages and steps of a linear train, and what the fleet is told between them.
+// The stages and steps of a linear train, and the data that it copies to the fleet between steps.
 #include "engine/linear_train.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace traverse::engine {
 
-// Compiled from train_kernel.cpp, once for each kind of processor.
+// Compiled from train_kernel.cpp, once for each instruction set.
 TRAVERSE_LANES_DECLARE(void set_train_step(const TrainTask& task);
                        void predict_train(const TrainTask& task, int stage, double* work);
                        bool train_in_place(const TrainTask& task); void load_by_train(const TrainTask& task);
@@ -23,14 +23,14 @@ TRAVERSE_LANES_DECLARE(void set_train_step(const TrainTask& task);
 
 namespace {
 
-constexpr double tolerance = 1e-11;  // of a vehicle's weight: changes of forces still to come
-constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
+constexpr double tolerance = 1e-11;  // of a vehicle's weight: expected further change of forces
+constexpr double rounding = 1e-9;    // of the weight: a smaller change that does not decrease is rounding
 constexpr int most_passes = 60;      // of a stage
 constexpr double best_contraction = 1e-3;
-constexpr double measurable = 1e-10;    // of the weight: changes above it tell a contraction
-constexpr double growth = 1.1;          // of a contraction that is trusted without having been measured again
-constexpr double worth_looking = 1.05;  // times the departure: of the residual a tenth
-constexpr double near_look_up = 2e-5;   // m: as far the profile's parabola is exact
+constexpr double measurable = 1e-10;      // of the weight: larger changes determine a contraction
+constexpr double growth = 1.1;            // of a contraction that is used again without a measurement
+constexpr double relevant_growth = 1.05;  // times the departure: a tenth more residual
+constexpr double profile_reach = 2e-5;    // m: the parabola of the profile is exact within this distance
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void LinearTrain::set_method(const structure::Method& method, double h) {
   const structure::StageRule& last = method.stages.back();
   ends_with_stage_ = std::abs(last.time - h) <= 1e-9 * h;
   TRAVERSE_LANES_CALL(set_train_step(task_));
-  placed_ = false;  // the structure yields otherwise
+  placed_ = false;  // the compliance of the structure has changed
 }
 
 void LinearTrain::begin_step() {
@@ -77,15 +77,16 @@ void LinearTrain::predict(std::size_t stage, double t) {
   TRAVERSE_LANES_CALL(predict_train(task_, static_cast<int>(stage), work_));
 }
 
-// Anew for wheels whose contacts have moved farther than `within` (m); whether there were any.
-bool LinearTrain::look_up_profiles(double within) {
+// Evaluates the profiles of wheels whose contacts have moved farther than `within` (m). Returns whether there were any.
+bool LinearTrain::evaluate_profiles(double within) {
   bool moved = false;
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
     if (profile_[i] == nullptr) continue;
     const std::size_t at = wheel_[i];
-    if (task_.h[at] == TrainArrays::no_surface || std::abs(task_.station[at] - task_.looked_up[at]) <= within) continue;
+    if (task_.h[at] == TrainArrays::no_surface || std::abs(task_.station[at] - task_.profile_station[at]) <= within)
+      continue;
     moved = true;
-    task_.looked_up[at] = task_.station[at];
+    task_.profile_station[at] = task_.station[at];
     const track::Height height = profile_[i]->at(task_.station[at]);
     task_.h[at] = height.value;
     task_.h_x[at] = height.slope;
@@ -96,7 +97,7 @@ bool LinearTrain::look_up_profiles(double within) {
 
 bool LinearTrain::place(train::Fleet& fleet) {
   if (placed_ && !always_places_ && TRAVERSE_LANES_CALL(train_in_place(task_))) {
-    look_up_profiles(0.0);
+    evaluate_profiles(0.0);
     return true;
   }
   if (!surfaces_ && !place_by_fleet(fleet)) {
@@ -104,29 +105,29 @@ bool LinearTrain::place(train::Fleet& fleet) {
     return false;
   }
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
-    const PatchesThere* there = surfaces_ ? there_[i] : &found_[i];
+    const WheelPatches* patches = surfaces_ ? patches_[i] : &found_[i];
     if (surfaces_) {
       const SurfaceTable& table = surfaces_->tables()[table_[i]];
-      entry_in_table_[i] = follow(table, task_.along[wheel_[i]], entry_in_table_[i]);
-      there = &table.there[entry_in_table_[i]];
+      interval_[i] = find_interval(table, task_.along[wheel_[i]], interval_[i]);
+      patches = &table.patches[interval_[i]];
     }
-    if (placed_ && surfaces_ && there == there_[i]) continue;
-    there_[i] = there;
+    if (placed_ && surfaces_ && patches == patches_[i]) continue;
+    patches_[i] = patches;
     moved_[i] = 1;
     const std::size_t at = wheel_[i];
-    put_on(task_, static_cast<int>(at), *there);
-    task_.h[at] = there->candidates > 0 ? 0.0 : TrainArrays::no_surface;
+    set_patches(task_, static_cast<int>(at), *patches);
+    task_.h[at] = patches->candidates > 0 ? 0.0 : TrainArrays::no_surface;
     task_.h_x[at] = task_.h_xx[at] = 0.0;
   }
-  if (!placed_ || !all_listed()) list_elements();
-  look_up_profiles(0.0);
+  if (!placed_ || !elements_listed()) list_elements();
+  evaluate_profiles(0.0);
   placed_ = true;
-  if (mesh_ == nullptr) meet(nowhere_, nullptr);
+  if (mesh_ == nullptr) set_contact_field(no_field_, nullptr);
   return true;
 }
 
-// As the fleet finds its wheels' patches: where they may leave the surface, or touch it at several points. False where
-// one does the latter.
+// Lets the fleet determine its wheels' patches, if wheels may leave the surface or touch it at several points. False if
+// a wheel touches at several points.
 bool LinearTrain::place_by_fleet(train::Fleet& fleet) {
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
     train::WheelContact& c = fleet.wheels[entry_[i]];
@@ -147,60 +148,61 @@ bool LinearTrain::place_by_fleet(train::Fleet& fleet) {
   return true;
 }
 
-bool LinearTrain::all_listed() const {
+bool LinearTrain::elements_listed() const {
   for (std::size_t i = 0; i < wheel_.size(); ++i)
-    for (int k = 0; moved_[i] != 0 && k < there_[i]->candidates; ++k) {
-      const int element = there_[i]->patch[k].element;
+    for (int k = 0; moved_[i] != 0 && k < patches_[i]->candidates; ++k) {
+      const int element = patches_[i]->patch[k].element;
       if (element >= 0 && !std::binary_search(elements_.begin(), elements_.end(), element)) return false;
     }
   return true;
 }
 
-// Those under wheels, and those that wheels will be on before the step ends, so that one list serves all its stages.
+// Lists the elements under wheels, and those that wheels reach before the step ends, so that one list is valid for all
+// its stages.
 void LinearTrain::list_elements() {
   elements_.clear();
-  const auto add = [this](const PatchesThere& there) {
-    for (int k = 0; k < there.candidates; ++k)
-      if (there.patch[k].element >= 0) elements_.push_back(there.patch[k].element);
+  const auto add = [this](const WheelPatches& patches) {
+    for (int k = 0; k < patches.candidates; ++k)
+      if (patches.patch[k].element >= 0) elements_.push_back(patches.patch[k].element);
   };
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
-    add(*there_[i]);
+    add(*patches_[i]);
     if (!surfaces_) continue;
     const SurfaceTable& table = surfaces_->tables()[table_[i]];
-    const double way = speed_[i] * length_, x = task_.along[wheel_[i]] + way;
-    for (int k = entry_in_table_[i]; way > 0.0 && k + 1 < table.count && table.there[k].to < x;) add(table.there[++k]);
-    for (int k = entry_in_table_[i]; way < 0.0 && k > 0 && table.there[k].from > x;) add(table.there[--k]);
+    const double travel = speed_[i] * length_, x = task_.along[wheel_[i]] + travel;
+    for (int k = interval_[i]; travel > 0.0 && k + 1 < table.count && table.patches[k].to < x;) add(table.patches[++k]);
+    for (int k = interval_[i]; travel < 0.0 && k > 0 && table.patches[k].from > x;) add(table.patches[--k]);
   }
   std::sort(elements_.begin(), elements_.end());
   elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
   field_ = nullptr;
 }
 
-void LinearTrain::meet(const structure::ContactField& field, const structure::ElementCompliance* own) {
+void LinearTrain::set_contact_field(const structure::ContactField& field, const structure::ElementCompliance* own) {
   task_.nodal = field.v;
   task_.nodal_rate = field.w;
   task_.load = field.load;
-  const bool anew = &field != field_;
+  const bool changed = &field != field_;
   field_ = &field;
-  if (anew) {
+  if (changed) {
     std::copy_n(field.offset.begin(), 2 * task_.per_node, task_.offset);
     task_.ground = field.ground;
   } else if (std::find(moved_.begin(), moved_.end(), 1) == moved_.end()) {
     return;
   }
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
-    if (!anew && moved_[i] == 0) continue;
+    if (!changed && moved_[i] == 0) continue;
     moved_[i] = 0;
-    for (int k = 0; k < 2; ++k) put_on_element(task_.patch[k], wheel_[i], there_[i]->patch[k].element, own);
+    for (int k = 0; k < 2; ++k) put_on_element(task_.patch[k], wheel_[i], patches_[i]->patch[k].element, own);
   }
   std::fill(arrays_.second.begin(), arrays_.second.end(), 0);
   for (std::size_t i = 0; i < wheel_.size(); ++i)
-    if (there_[i]->candidates > 1) arrays_.second[wheel_[i] / arrays_.lanes] = 1;
+    if (patches_[i]->candidates > 1) arrays_.second[wheel_[i] / arrays_.lanes] = 1;
   for (SurfacePatch& p : task_.patch)
     for (std::size_t row = 0; row < arrays_.second.size(); ++row) {
       const int* slot = p.slot + row * arrays_.lanes;
       const bool ground = std::all_of(slot, slot + arrays_.lanes, [&](int at) { return at == task_.ground; });
-      p.together[row] = ground ? grounded : apart;
+      p.slot_order[row] = ground ? all_ground : scattered;
     }
 }
 
@@ -227,7 +229,7 @@ bool LinearTrain::update_forces() {
   change_ = TRAVERSE_LANES_CALL(update_train_forces(task_));
   if (!(change_ >= 0.0) || !std::isfinite(change_) || ++passes_ > most_passes) return false;
   if (passes_ > 1 && before > measurable) contraction_ = std::clamp(change_ / before, best_contraction, 1.0);
-  converged_ = !look_up_profiles(near_look_up) && change_ * contraction_ <= tolerance;
+  converged_ = !evaluate_profiles(profile_reach) && change_ * contraction_ <= tolerance;
   converged_ = converged_ || (passes_ > 1 && change_ <= rounding && change_ > 0.1 * before);
   if (converged_ && passes_ == 1) contraction_ = std::min(growth * contraction_, 1.0);
   return true;
@@ -251,14 +253,14 @@ void LinearTrain::finish_step(double* p, double* pd, double* pdd) {
   write(task_.a[0], pdd);
 }
 
-bool LinearTrain::departs_further() {
+bool LinearTrain::residual_may_grow() {
   bool further = false;
-  for (std::size_t v = 0; v < farthest_.size(); ++v) {
-    double departure = 0.0;  // the root of the residual, at most
+  for (std::size_t v = 0; v < largest_departure_.size(); ++v) {
+    double departure = 0.0;  // bound of the square root of the residual
     for (std::size_t k = first_entry_[v]; k < first_entry_[v + 1]; ++k)
       departure += roots_[k] * std::abs(task_.x[coordinate_[k]]);
-    if (departure <= worth_looking * farthest_[v]) continue;
-    farthest_[v] = departure;
+    if (departure <= relevant_growth * largest_departure_[v]) continue;
+    largest_departure_[v] = departure;
     further = true;
   }
   return further;
@@ -273,10 +275,10 @@ void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
     vehicle.state.q[body] = task_.station[at] - task_.ahead[at];
     vehicle.state.qd[body] = task_.along_rate[at];
     c.kinematics = c.touch.kinematics = {task_.penetration[at], task_.penetration_rate[at], 0.0};
-    c.law.seat = c.touch.seat = task_.seat[at];
+    c.law.local_compliance = c.touch.local_compliance = task_.local_compliance[at];
     c.touch.ahead = task_.ahead[at];
     c.touch.station = task_.station[at];
-    put_patches(*there_[i], c);
+    copy_patches(*patches_[i], c);
     c.active = task_.active[at];
     const train::Patch& patch = c.patches[static_cast<std::size_t>(c.active)];
     c.touch.xi = patch.element >= 0 ? (c.touch.station - patch.x) / patch.length : 0.0;
@@ -287,7 +289,7 @@ void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
   }
 }
 
-// One behind the other, as another processor may have other lanes.
+// Wheel by wheel, as another processor may have another number of lanes.
 void LinearTrain::keep(base::Bytes& bytes) {
   const auto numbers = [&](auto* of_lanes, const std::vector<std::size_t>& places) {
     auto list = std::vector<std::remove_pointer_t<decltype(of_lanes)>>(places.size());
@@ -302,7 +304,7 @@ void LinearTrain::keep(base::Bytes& bytes) {
         task_.ahead_before, task_.turn, task_.history[most_stages], task_.history[most_stages + 1]})
     numbers(of, wheel_);
   numbers(task_.active, wheel_);
-  bytes(length_before_, contraction_, last_time_, time_before_, farthest_);
+  bytes(length_before_, contraction_, last_time_, time_before_, largest_departure_);
   if (bytes.reads()) placed_ = false;
 }
 

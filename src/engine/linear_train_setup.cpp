@@ -1,4 +1,4 @@
-// What a linear train is set up from.
+// Set-up of a linear train.
 #include <algorithm>
 #include <utility>
 
@@ -16,12 +16,12 @@ LinearTrain::LinearTrain(const train::Fleet& fleet, const beam::Mesh* mesh, int 
   for (int e = 0; mesh_ != nullptr && e < mesh_->elements(); ++e)
     task_.shears = task_.shears || mesh_->element(e).shear != 0.0;
   work_ = arrays_.add(2 * static_cast<std::size_t>(task_.coordinates));
-  find_numbers(fleet);
+  find_indices(fleet);
   find_surfaces(fleet);
 }
 
-// Of the fleet's coordinates and wheels among those of the rows.
-void LinearTrain::find_numbers(const train::Fleet& fleet) {
+// Determines the indices of the fleet's coordinates and wheels in the arrays of rows.
+void LinearTrain::find_indices(const train::Fleet& fleet) {
   const auto blocks = TrainArrays::side_by_side(fleet);
   struct Place {
     std::size_t block = 0, lane = 0;
@@ -31,7 +31,7 @@ void LinearTrain::find_numbers(const train::Fleet& fleet) {
     for (std::size_t lane = 0; lane < blocks[block].size(); ++lane)
       places[static_cast<std::size_t>(blocks[block][lane] - fleet.vehicles.data())] = {block, lane};
   coordinate_.resize(static_cast<std::size_t>(fleet.freedom()));
-  farthest_.assign(fleet.vehicles.size(), 0.0);
+  largest_departure_.assign(fleet.vehicles.size(), 0.0);
   for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
     const train::MovingVehicle& vehicle = fleet.vehicles[k];
     first_entry_.push_back(roots_.size());
@@ -59,14 +59,14 @@ void LinearTrain::find_numbers(const train::Fleet& fleet) {
 
 void LinearTrain::find_surfaces(const train::Fleet& fleet) {
   found_.resize(wheel_.size());
-  there_.resize(wheel_.size());
+  patches_.resize(wheel_.size());
   moved_.assign(wheel_.size(), 0);
   always_places_ = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
-  const bool several =
+  const bool several_points =
       std::any_of(fleet.wheels.begin(), fleet.wheels.end(), [](const auto& c) { return c.further > 0; });
-  if (!always_places_ && !several) {
+  if (!always_places_ && !several_points) {
     surfaces_.emplace(fleet);
-    entry_in_table_.assign(wheel_.size(), 0);
+    interval_.assign(wheel_.size(), 0);
     for (const std::size_t entry : entry_) table_.push_back(surfaces_->number(fleet.wheel(fleet.wheels[entry]).radius));
     return;
   }

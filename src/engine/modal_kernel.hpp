@@ -1,8 +1,9 @@
-// The structure by modes in a stage (beam_task.hpp). With v = v~ + displacement a and w = w~ + rate a each mode has
+// The structure by modes in a stage (beam_task.hpp). With v = v~ + displacement a and w = w~ + rate a the equation of
+// each mode is
 //
 //   (1 + 2 sigma rate + omega^2 displacement) a = phi^T forces - 2 sigma w~ - omega^2 v~
 //
-// and wheels meet nodal values: those of the bridge's own weight and the sum of phi v.
+// The wheels need nodal values: those under the bridge's self-weight plus the sum of phi v.
 #pragma once
 
 #include "engine/beam_task.hpp"
@@ -32,15 +33,15 @@ struct ModalRows {
     }
   }
 
-  /// The forces but those of wheels.
+  /// The modal forces without those of wheels.
   void find_residual(Row /*rate*/, Row /*displacement*/) const {
     const Row *v = rows(t.v_predicted), *w = rows(t.w_predicted);
     for (int i = 0; i < t.unknowns; ++i)
       rows(t.residual)[i] = -(t.modal_damping[i] * w[i] + t.modal_stiffness[i] * v[i]);
   }
 
-  /// The columns that wheels are on: no others are loaded or looked at.
-  void mark(const TrainTask& train, Row /*rate*/, Row /*displacement*/) const {
+  /// Marks the columns under wheels; no others are loaded or evaluated.
+  void set_window(const TrainTask& train, Row /*rate*/, Row /*displacement*/) const {
     for (int c = 0; c < t.columns; ++c) t.under_wheels[c] = 0;
     for (const SurfacePatch& p : train.patch)
       for (int at = 0; at < train.wheels * lanes; ++at) {
@@ -56,7 +57,7 @@ struct ModalRows {
     for (int i = 0; i < t.columns * t.block; ++i) rows(t.work)[i] = Row{};
   }
 
-  /// The stage under the forces as they are, in lanes that are open.
+  /// Solves the stage under the present forces, in open lanes.
   void solve(Row displacement, RowMask open) const {
     Row* a = rows(t.solution);
     for (int i = 0; i < t.unknowns; ++i) a[i] = open ? rows(t.residual)[i] : a[i];

@@ -1,4 +1,4 @@
-// Which of a kernel's builds this processor can run, and memory as kernels take it.
+// The build of a kernel for this processor's instruction set, and aligned memory for kernels.
 #pragma once
 
 #include <cstddef>
@@ -7,15 +7,15 @@
 
 namespace traverse::engine {
 
-/// What a kernel is compiled for, each in a namespace of that name.
+/// The instruction sets that kernels are compiled for, each in a namespace of that name.
 enum class Target { plain, avx2, avx512 };
-/// The best that this processor can run, and its name as people know it.
+/// The best one on this processor, and its common name.
 Target best_target();
 std::string instructions();
-/// The runs side by side that are quickest: comparisons of vectors wider than the processor's cost more than they save.
+/// The fastest number of runs in a batch: comparisons of vectors wider than the processor's registers are slow.
 std::size_t best_width();
 
-// Declares what each build of a kernel has; calls it in the build for best_target().
+// Declares the functions of each build of a kernel; calls a function of the build for best_target().
 #ifdef __x86_64__
 #define TRAVERSE_LANES_DECLARE(...) \
   namespace plain {                 \
@@ -39,10 +39,10 @@ std::size_t best_width();
 #define TRAVERSE_LANES_CALL(call) (plain::call)
 #endif
 
-/// The most runs that go side by side.
+/// The largest number of runs in a batch.
 inline constexpr std::size_t widest = 8;
 
-/// Numbers that start where the widest vectors may.
+/// Numbers aligned for the widest vectors.
 class Aligned {
  public:
   explicit Aligned(std::size_t size) : chunks_((size + widest - 1) / widest) {}

@@ -1,12 +1,12 @@
-// Classes of speeds that take the same steps by distance: a run's steps follow from its own speed, whatever runs are
-// beside it.
+// Classes of speeds with the same steps in distance, so that the steps of a run depend on its own speed only, not on
+// the other runs of a batch.
 #pragma once
 
 #include <cmath>
 
 namespace traverse::engine {
 
-inline constexpr double classes_an_octave = 4.0;  // of speeds: steps are at most a fifth shorter than asked for
+inline constexpr double classes_an_octave = 4.0;  // of speeds: steps are at most a fifth shorter than requested
 
 inline int speed_class(double speed) {
   return static_cast<int>(std::floor(classes_an_octave * std::log2(speed) + 1e-9));

@@ -1,4 +1,4 @@
-// The pieces of running surface under a wheel by where its centre is: what single runs and batches place wheels with.
+// The pieces of running surface under a wheel by the position of its centre, for single runs and batches.
 #pragma once
 
 #include "engine/train_task.hpp"
@@ -6,7 +6,7 @@
 namespace traverse::engine {
 
 /// The patches under a wheel whose centre is between two stations.
-struct PatchesThere {
+struct WheelPatches {
   struct Patch {
     int element = -1;                                                                      // -1: rigid ground
     double x = 0.0, length = 1.0, shear = 0.0, flexibility = 0.0, low = 1.0, high = -1.0;  // SurfacePatch
@@ -16,23 +16,23 @@ struct PatchesThere {
   Patch patch[2];
 };
 
-/// Those of wheels of one radius, ascending and without gaps from minus to plus infinity.
+/// The intervals of wheels of one radius, ascending and without gaps from minus to plus infinity.
 struct SurfaceTable {
   int count = 0;
-  const PatchesThere* there = nullptr;
+  const WheelPatches* patches = nullptr;
 };
 
 namespace {
 
-/// Where in the table x is, from where the wheel was: mostly there or beside that.
-inline int follow(const SurfaceTable& table, double x, int k) {
-  constexpr int near = 4;
-  for (int step = 0; step < near && k + 1 < table.count && x > table.there[k].to; ++step) ++k;
-  for (int step = 0; step < near && k > 0 && x < table.there[k].from; ++step) --k;
-  int low = x < table.there[k].from ? 0 : k, high = x > table.there[k].to ? table.count - 1 : k;
+/// The index of the interval with x. The search starts at the previous index k, usually the same or a neighbour.
+inline int find_interval(const SurfaceTable& table, double x, int k) {
+  constexpr int nearby = 4;
+  for (int step = 0; step < nearby && k + 1 < table.count && x > table.patches[k].to; ++step) ++k;
+  for (int step = 0; step < nearby && k > 0 && x < table.patches[k].from; ++step) --k;
+  int low = x < table.patches[k].from ? 0 : k, high = x > table.patches[k].to ? table.count - 1 : k;
   while (low < high) {
     const int middle = (low + high) / 2;
-    if (x > table.there[middle].to)
+    if (x > table.patches[middle].to)
       low = middle + 1;
     else
       high = middle;
@@ -40,13 +40,13 @@ inline int follow(const SurfaceTable& table, double x, int k) {
   return low;
 }
 
-/// Puts the wheel with that number on its patches, but for their slots and compliances.
-inline void put_on(TrainTask& train, int at, const PatchesThere& there) {
-  train.from[at] = there.from;
-  train.to[at] = there.to;
-  if (train.active[at] >= there.candidates) train.active[at] = 0;
+/// Sets the patches of a wheel, without their slots and compliances.
+inline void set_patches(TrainTask& train, int at, const WheelPatches& patches) {
+  train.from[at] = patches.from;
+  train.to[at] = patches.to;
+  if (train.active[at] >= patches.candidates) train.active[at] = 0;
   for (int n = 0; n < 2; ++n) {
-    const PatchesThere::Patch& from = there.patch[n];
+    const WheelPatches::Patch& from = patches.patch[n];
     SurfacePatch& p = train.patch[n];
     p.x[at] = from.x;
     p.length[at] = from.length;

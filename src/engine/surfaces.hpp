@@ -9,26 +9,26 @@
 
 namespace traverse::engine {
 
-/// The patches where a wheel is placed now, as the fleet has found them.
-PatchesThere patches_of(const train::WheelContact& c);
-/// Puts a wheel there as Fleet::place_wheels does, but for the elements' numbers among those under all wheels.
-void put_patches(const PatchesThere& there, train::WheelContact& c);
+/// The patches of a wheel that the fleet has determined.
+WheelPatches patches_of(const train::WheelContact& c);
+/// Sets a wheel's patches as Fleet::place_wheels does, without the elements' indices among all elements under wheels.
+void copy_patches(const WheelPatches& patches, train::WheelContact& c);
 
 class Surfaces {
  public:
-  /// Of wheels that never leave the surface and have one point of contact each.
+  /// For wheels that never leave the surface and have one contact point each.
   explicit Surfaces(const train::Fleet& fleet);
 
-  /// One a radius.
+  /// One table for each radius.
   const std::vector<SurfaceTable>& tables() const { return tables_; }
-  /// Which of them is that of wheels with such a radius, m.
+  /// The index of the table for a radius, m.
   std::size_t number(double radius) const;
 
  private:
   void add(train::Fleet fleet, std::size_t entry);
 
   std::vector<double> radii_;
-  std::deque<std::vector<PatchesThere>> there_;
+  std::deque<std::vector<WheelPatches>> patches_;
   std::vector<SurfaceTable> tables_;
 };
 

@@ -1,4 +1,4 @@
-// How vehicles and wheels come into rows.
+// Stores vehicles and wheels in rows.
 #include "engine/train_arrays.hpp"
 
 #include <fmt/format.h>
@@ -13,9 +13,9 @@
 namespace traverse::engine {
 namespace {
 
-constexpr int most_freedom = 64;       // of a vehicle; larger ones are matrices that are mostly zeros
-constexpr double least_before = 1e-3;  // of a step: from a shorter one before it rounding would be extrapolated
-constexpr double same = 1e-13;         // of the largest entry: matrices are equal, but for rounding
+constexpr int most_freedom = 64;       // of a vehicle; the matrices of larger ones are mostly zero
+constexpr double least_before = 1e-3;  // of a step: with a shorter previous step rounding would be extrapolated
+constexpr double same = 1e-13;         // of the largest entry: equal except for rounding
 
 bool in_block_with(const train::MovingVehicle& a, const train::MovingVehicle& b) {
   const auto same_law = [](const train::Wheel& x, const train::Wheel& y) { return x.law.kind == y.law.kind; };
@@ -31,10 +31,10 @@ Eigen::MatrixXd rows_of_wheels(const train::MovingVehicle& vehicle, Eigen::Index
   return G;
 }
 
-/// What rounding has left of a zero is one.
-Eigen::MatrixXd cleaned(const Eigen::MatrixXd& A) {
-  const double none = 1e-14 * A.cwiseAbs().maxCoeff();
-  return A.unaryExpr([none](double x) { return std::abs(x) > none ? x : 0.0; });
+/// Sets entries that are rounding errors to zero.
+Eigen::MatrixXd without_rounding(const Eigen::MatrixXd& A) {
+  const double zero = 1e-14 * A.cwiseAbs().maxCoeff();
+  return A.unaryExpr([zero](double x) { return std::abs(x) > zero ? x : 0.0; });
 }
 
 void fill(double (&row)[most_lanes], double value) { std::fill_n(row, most_lanes, value); }
@@ -48,7 +48,7 @@ void fill_rule(StageRows& to, std::size_t lane, double h, double w_in_v, const s
   }
 }
 
-/// Instants at which contact forces are known, and which of their histories has them.
+/// Times with known contact forces, and the index of their history.
 struct Instants {
   std::array<double, most_stages + 2> time{};
   std::array<int, most_stages + 2> history{};
@@ -72,15 +72,22 @@ std::string TrainArrays::obstacle(const train::Fleet& fleet) {
   if (fleet.vehicles.empty()) return "no vehicles run";
   if (!fleet.pairs.empty()) return "bodies of its vehicles touch each other";
   for (const train::MovingVehicle& vehicle : fleet.vehicles) {
-    const auto no = [&](const std::string& why) { return fmt::format("vehicle '{}': {}", vehicle.name(), why); };
-    if (vehicle.dynamics->linear() == nullptr) return no("it is not linearised");
-    if (!vehicle.mechanism.model().actuators.empty()) return no("actuators act on it");
-    if (vehicle.freedom() > most_freedom || vehicle.wheels.size() > most_wheels) return no("it has too many parts");
+    const auto vehicle_obstacle = [&](const std::string& why) {
+      return fmt::format("vehicle '{}': {}", vehicle.name(), why);
+    };
+    if (vehicle.dynamics->linear() == nullptr) return vehicle_obstacle("it is not linearised");
+    if (!vehicle.mechanism.model().actuators.empty()) return vehicle_obstacle("actuators act on it");
+    if (vehicle.freedom() > most_freedom || vehicle.wheels.size() > most_wheels)
+      return vehicle_obstacle("it has too many parts");
     for (const train::Wheel& wheel : vehicle.wheels) {
-      const auto its = [&](const char* why) { return no(fmt::format("its wheel '{}' {}", wheel.name, why)); };
-      if (wheel.law.damping != 0.0 || wheel.law.hysteresis) return its("has a contact with damping");
-      if (wheel.law.friction != 0.0) return its("has a contact with friction");
-      if (!wheel.shape.round()) return its("is out of round");
+      const auto wheel_obstacle = [&](const char* why) {
+        return vehicle_obstacle(fmt::format("its wheel '{}' {}", wheel.name, why));
+      };
+      if (wheel.law.damping != 0.0 || wheel.law.hysteresis) return wheel_obstacle("has a contact with damping");
+      if (wheel.law.kind == contact::LawKind::other) return wheel_obstacle("has a contact law of its own");
+      if (wheel.law.kind == contact::LawKind::two_sided) return wheel_obstacle("has a two-sided contact");
+      if (wheel.law.friction != 0.0) return wheel_obstacle("has a contact with friction");
+      if (!wheel.shape.round()) return wheel_obstacle("is out of round");
     }
   }
   for (const train::WheelContact& wheel : fleet.wheels)
@@ -92,8 +99,8 @@ std::vector<std::vector<const train::MovingVehicle*>> TrainArrays::side_by_side(
   const std::size_t most = best_width();
   std::vector<std::vector<const train::MovingVehicle*>> blocks;
   for (const train::MovingVehicle& vehicle : fleet.vehicles) {
-    auto block = std::find_if(blocks.begin(), blocks.end(), [&](const auto& its) {
-      return its.size() < most && in_block_with(*its.front(), vehicle);
+    auto block = std::find_if(blocks.begin(), blocks.end(), [&](const auto& candidates) {
+      return candidates.size() < most && in_block_with(*candidates.front(), vehicle);
     });
     if (block == blocks.end()) block = blocks.emplace(block);
     block->push_back(&vehicle);
@@ -162,7 +169,7 @@ int* TrainArrays::add_integers(std::size_t rows) {
   return integers_.back()->data();
 }
 
-/// The entries that are not zero in all lanes.
+/// The entries that are non-zero in some lane.
 SparseRows TrainArrays::sparse(const std::vector<Eigen::MatrixXd>& of_lanes) {
   const Eigen::MatrixXd& first = of_lanes.front();
   std::vector<std::pair<Eigen::Index, Eigen::Index>> entries;
@@ -193,8 +200,8 @@ PairedRows TrainArrays::paired(const std::vector<Eigen::MatrixXd>& A, const std:
   std::size_t width = 1;
   for (std::size_t i = 0; i < n; ++i) {
     const auto is_entry = [&](Eigen::Index j) {
-      const auto there = [&](const Eigen::MatrixXd& of) { return of(static_cast<Eigen::Index>(i), j) != 0.0; };
-      return std::any_of(A.begin(), A.end(), there) || std::any_of(B.begin(), B.end(), there);
+      const auto is_nonzero = [&](const Eigen::MatrixXd& of) { return of(static_cast<Eigen::Index>(i), j) != 0.0; };
+      return std::any_of(A.begin(), A.end(), is_nonzero) || std::any_of(B.begin(), B.end(), is_nonzero);
     };
     for (Eigen::Index j = 0; j < A.front().cols(); ++j)
       if (is_entry(j)) columns[i].push_back(j);
@@ -231,10 +238,10 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
   for (std::size_t l = 0; l < vehicles.size(); ++l) {
     const train::MovingVehicle& vehicle = *vehicles[l];
     const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
-    C.push_back(cleaned(of.C));
-    K.push_back(cleaned(of.K));
-    G.push_back(cleaned(rows_of_wheels(vehicle, 1)));
-    G_along.push_back(cleaned(rows_of_wheels(vehicle, 0)));
+    C.push_back(without_rounding(of.C));
+    K.push_back(without_rounding(of.K));
+    G.push_back(without_rounding(rows_of_wheels(vehicle, 1)));
+    G_along.push_back(without_rounding(rows_of_wheels(vehicle, 0)));
     const bool drives = !vehicle.mechanism.model().drivers.empty();
     its_speed[l] = of.u[3 * static_cast<Eigen::Index>(vehicle.wheels.front().body)];
     drive[l] = drives ? its_speed[l] : 0.0;
@@ -260,10 +267,11 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
   distance.push_back(add(1));
   b.distance = distance.back();
   b.active = &active.emplace_back(1);
-  const auto its = blocks.begin() + static_cast<std::ptrdiff_t>(number);
-  const auto other = std::find_if(blocks.begin(), its, [&](const VehicleBlock& before) { return is_alike(before, b); });
-  if (other != its) {
-    b.alike = static_cast<int>(other - blocks.begin());
+  const auto end_of_earlier = blocks.begin() + static_cast<std::ptrdiff_t>(number);
+  const auto other = std::find_if(blocks.begin(), end_of_earlier,
+                                  [&](const VehicleBlock& before) { return equal_matrices(before, b); });
+  if (other != end_of_earlier) {
+    b.same_as = static_cast<int>(other - blocks.begin());
     b.C = other->C;
     b.K_and_C = other->K_and_C;
     b.both_G = other->both_G;
@@ -279,23 +287,24 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
   b.H = add(4 * m * m);
 }
 
-/// Whether two blocks have the same matrices, but for rounding.
-bool TrainArrays::is_alike(const VehicleBlock& a, const VehicleBlock& b) const {
-  const auto near = [&](const double* x, const double* y, int rows) {
+/// Whether two blocks have the same matrices except for rounding.
+bool TrainArrays::equal_matrices(const VehicleBlock& a, const VehicleBlock& b) const {
+  const auto nearly_equal = [&](const double* x, const double* y, int rows) {
     const std::size_t n = static_cast<std::size_t>(rows) * lanes;
-    double largest = 0.0, apart = 0.0;
+    double largest = 0.0, difference = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
       largest = std::max(largest, std::abs(x[i]));
-      apart = std::max(apart, std::abs(x[i] - y[i]));
+      difference = std::max(difference, std::abs(x[i] - y[i]));
     }
-    return apart <= same * largest;
+    return difference <= same * largest;
   };
-  const auto alike = [&](const SparseRows& x, const SparseRows& y) {
+  const auto equal_entries = [&](const SparseRows& x, const SparseRows& y) {
     return x.count == y.count && std::equal(x.row, x.row + x.count, y.row) &&
-           std::equal(x.column, x.column + x.count, y.column) && near(x.value, y.value, x.count);
+           std::equal(x.column, x.column + x.count, y.column) && nearly_equal(x.value, y.value, x.count);
   };
-  return a.alike < 0 && a.freedom == b.freedom && a.wheels == b.wheels && near(a.M, b.M, a.freedom * a.freedom) &&
-         alike(a.C, b.C) && alike(a.K, b.K) && alike(a.G, b.G) && alike(a.G_along, b.G_along);
+  return a.same_as < 0 && a.freedom == b.freedom && a.wheels == b.wheels &&
+         nearly_equal(a.M, b.M, a.freedom * a.freedom) && equal_entries(a.C, b.C) && equal_entries(a.K, b.K) &&
+         equal_entries(a.G, b.G) && equal_entries(a.G_along, b.G_along);
 }
 
 void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehicle*>> vehicles) {
@@ -304,23 +313,39 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   for (double*& a : task.a) a = add(coordinates);
   double *place = add(wheels), *height = add(wheels), *radius = add(wheels), *stiffness = add(wheels),
          *per_scale = add(wheels);
-  for (double** of : {&task.up,       &task.along,       &task.from,
-                      &task.to,       &task.h,           &task.h_x,
-                      &task.h_xx,     &task.looked_up,   &task.normal,
-                      &task.root,     &task.normal_up,   &task.normal_along,
-                      &task.force_up, &task.force_along, &task.turn,
-                      &task.seat,     &task.ahead,       &task.ahead_before,
-                      &task.station,  &task.penetration, &task.penetration_rate,
-                      &task.up_rate,  &task.along_rate,  &task.largest})
+  for (double** of : {&task.up,
+                      &task.along,
+                      &task.from,
+                      &task.to,
+                      &task.h,
+                      &task.h_x,
+                      &task.h_xx,
+                      &task.profile_station,
+                      &task.normal,
+                      &task.root,
+                      &task.normal_up,
+                      &task.normal_along,
+                      &task.force_up,
+                      &task.force_along,
+                      &task.turn,
+                      &task.local_compliance,
+                      &task.ahead,
+                      &task.ahead_before,
+                      &task.station,
+                      &task.penetration,
+                      &task.penetration_rate,
+                      &task.up_rate,
+                      &task.along_rate,
+                      &task.largest})
     *of = add(wheels);
   for (double*& history : task.history) history = add(wheels);
   task.active = add_integers(wheels * lanes);
-  task.lost = add(most_kept);
-  task.given = add(most_kept);
+  task.dissipated = add(most_kept);
+  task.drive_power = add(most_kept);
   hertz_.assign(wheels, 1);
   second.assign(wheels, 0);
   level.assign(wheels, 1);
-  // Lanes without a vehicle: far above a level ground.
+  // Lanes without a vehicle: wheels far above level ground.
   for (std::size_t i = 0; i < wheels * lanes; ++i) {
     radius[i] = stiffness[i] = per_scale[i] = 1.0;
     task.h[i] = no_surface;
@@ -331,7 +356,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   }
   for (SurfacePatch& p : task.patch) {
     p.slot = add_integers(wheels * lanes);
-    p.together = add_integers(wheels);
+    p.slot_order = add_integers(wheels);
     for (double** of : {&p.x, &p.length, &p.per_length, &p.shear, &p.flexibility, &p.low, &p.high}) *of = add(wheels);
     for (double*& entry : p.compliance) entry = add(wheels);
     for (double* of : {p.length, p.per_length}) std::fill_n(of, wheels * lanes, 1.0);

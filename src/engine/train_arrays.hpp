@@ -1,5 +1,4 @@
-// Vehicles and wheels in the rows of a train's task (train_task.hpp): what the kernel reads of them, and the memory it
-// works in.
+// Vehicles and wheels in the rows of a train's task (train_task.hpp): the input of the kernel, and its memory.
 #pragma once
 
 #include <cstddef>
@@ -19,46 +18,47 @@ namespace traverse::engine {
 
 class TrainArrays {
  public:
-  /// Why the vehicles of a fleet have no place in rows, in words; empty: they have.
+  /// The reason why the vehicles of a fleet cannot be stored in rows; empty: they can.
   static std::string obstacle(const train::Fleet& fleet);
-  /// The vehicles of each block, lane by lane: as many of a fleet as there are lanes.
+  /// The vehicles of each block, lane by lane: at most as many as there are lanes.
   static std::vector<std::vector<const train::MovingVehicle*>> side_by_side(const train::Fleet& fleet);
 
-  /// Vehicles with as many coordinates and wheels in each block; what they are made of need not outlive this.
+  /// The vehicles of a block have equal numbers of coordinates and wheels. The vehicles need not outlive this object.
   TrainArrays(std::span<const std::vector<const train::MovingVehicle*>> blocks, int per_node, double surface_height);
 
   static constexpr double infinite = std::numeric_limits<double>::infinity();
-  static constexpr double no_surface = -1e3;  // m: height of what is under a wheel with no surface
+  static constexpr double no_surface = -1e3;  // m: height of the surface if there is none
 
-  /// The method, scaled to steps of h[lane] seconds.
+  /// Sets the method, scaled to steps of h[lane] seconds.
   void set_rules(const structure::Method& method, std::span<const double> h);
-  /// What the contact forces of each stage are guessed from: those of the stages before, of the step's start and of the
-  /// start of the step before, which began `before` earlier in the method's unit of time (0: there was none).
+  /// Sets the weights for the initial guess of the contact forces of each stage, from the forces of the previous
+  /// stages, at the start of the step, and at the start of the previous step, which began `before` earlier in the
+  /// method's unit of time (0: there was none).
   void set_guesses(const structure::Method& method, double before);
 
-  /// The contact of the wheel with that number as it is at the start.
+  /// Sets the contact of the wheel with that index to its initial state.
   void start_contact(std::size_t at, const train::WheelContact& c);
 
-  /// Zeros that live as long as this: so many rows, so many integers.
+  /// Zeros with the lifetime of this object: so many rows, so many integers.
   double* add(std::size_t rows);
   int* add_integers(std::size_t rows);
 
   const std::size_t lanes = best_width();  // numbers of a row
   TrainTask task;
   std::vector<VehicleBlock> blocks;
-  std::vector<double*> distance;    // m, of every block's lanes: travelled
-  std::vector<double*> speed;       // m/s, of every block's lanes
-  std::vector<char> second, level;  // one a row of wheels, as the TrainTask's
-  std::deque<char> active;          // one a block: VehicleBlock::awake
+  std::vector<double*> distance;    // m travelled, for the lanes of every block
+  std::vector<double*> speed;       // m/s, for the lanes of every block
+  std::vector<char> second, level;  // one for each row of wheels, as in TrainTask
+  std::deque<char> active;          // one for each block: VehicleBlock::active
 
  private:
   void fill_block(std::size_t block, const std::vector<const train::MovingVehicle*>& vehicles);
-  bool is_alike(const VehicleBlock& a, const VehicleBlock& b) const;
+  bool equal_matrices(const VehicleBlock& a, const VehicleBlock& b) const;
   SparseRows sparse(const std::vector<Eigen::MatrixXd>& of_lanes);
   PairedRows paired(const std::vector<Eigen::MatrixXd>& A, const std::vector<Eigen::MatrixXd>& B);  // of lanes
   void make_rows(std::span<const std::vector<const train::MovingVehicle*>> vehicles);
 
-  std::vector<std::unique_ptr<Aligned>> numbers_;  // what the arrays of the task are
+  std::vector<std::unique_ptr<Aligned>> numbers_;  // memory of the task's arrays
   std::vector<std::unique_ptr<std::vector<int>>> integers_;
   std::vector<char> hertz_;
 };

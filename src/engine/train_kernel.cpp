@@ -1,4 +1,4 @@
-// Compiled once for each kind of processor, each time with another name for TRAVERSE_LANES_TARGET.
+// Compiled once for each instruction set, each time with another name for TRAVERSE_LANES_TARGET.
 #include "engine/train_kernel.hpp"
 
 namespace traverse::engine::TRAVERSE_LANES_TARGET {  // NOLINT(readability-identifier-naming): plain, avx2 or avx512

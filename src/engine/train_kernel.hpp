@@ -1,20 +1,22 @@
-// Linear vehicles and their contacts with the structure in a stage of a one-step method (one_step_methods.hpp), as
-// many vehicles at a time as the processor's vectors have lanes.
+// Linear vehicles and their contacts with the structure in a stage of a one-step method (one_step_methods.hpp), with
+// one vehicle in each SIMD lane.
 //
 //   vehicles   J a = G^T f - r0 - C w~ - K v~,   J = M + rate C + displacement K
-//              so that wheels move by H f, H = displacement G J^-1 G^T, from where they are without contact forces
-//   contacts   each wheel's closest point on the surface by Newton's method; then its own force N from
+//              The wheels move by H f, H = displacement G J^-1 G^T, from their positions without contact forces.
+//   contacts   Newton's method determines each wheel's closest point on the surface; then its force N follows from
 //
-//                delta(N) + seat N = radius - distance + q (N_before - N),   q = H n n + what the structure yields
+//                delta(N) + s N = radius - distance + q (N_before - N)
 //
-//              with the contact law's penetration delta and the seat that the element itself makes
-//              (wheel_on_track.hpp), all other forces held. Contacts that part have N = 0: a mask.
-//   structure  moves under the new forces (the caller's affair), and so on until no force changes any more.
+//              with all other forces unchanged. delta is the penetration of the contact law, s the local compliance of
+//              the element (wheel_on_track.hpp), and q = H n n + compliance of the structure. A mask sets N = 0 for
+//              open contacts.
+//   structure  The caller computes its response to the new forces. This is repeated until no force changes.
 //
-// Left out: contact damping, friction, wheels out of round, several points of one wheel (linear_train.hpp: obstacle).
+// Not included: contact damping, friction, wheels out of round, several points of one wheel (linear_train.hpp:
+// obstacle).
 //
-// As all kernels it is compiled once for each kind of processor, and nothing in it may be seen by the linker: no
-// functions of the library, everything in an unnamed namespace.
+// Like all kernels this file is compiled once for each instruction set, and its functions must have internal linkage:
+// it calls no library functions, and everything is in an unnamed namespace.
 #pragma once
 
 #include "engine/train_surface.hpp"
@@ -22,7 +24,7 @@
 namespace traverse::engine {
 namespace {
 
-/// Whether surfaces are level with the axis, of elements that neither shear nor move along x.
+/// Whether the surface is at the axis, on elements that have neither shear nor axial unknowns.
 inline bool is_flat(const TrainTask& task) { return task.per_node == 2 && task.surface_height == 0.0 && !task.shears; }
 
 struct Touched {
@@ -31,10 +33,10 @@ struct Touched {
   RowMask fallen;         // the centre is below the surface, and not beside its end
 };
 
-inline constexpr int closest_steps = 1;  // of Newton's method a pass: the point hardly moves from one pass to the next
+inline constexpr int closest_steps = 1;  // of Newton's method in a pass: the point moves little between passes
 
-/// The point of the patch that is closest to the centre, which is at `along` and a radius above `up`. With its height
-/// e above the surface, less a radius, all that the penetration is computed from is small, so that it keeps its digits.
+/// The point of the patch closest to the centre, which is at `along` and a radius above `up`. The penetration is
+/// computed from e, the height of the centre above the surface minus the radius: e is small and keeps its digits.
 template <Surface kind>
 TRAVERSE_INLINE Touched closest(const TrainTask& task, const SurfacePatch& p, int i, Row along, Row up) {
   const Row origin = rows(task.station)[i];
@@ -50,8 +52,8 @@ TRAVERSE_INLINE Touched closest(const TrainTask& task, const SurfacePatch& p, in
   for (int step = 0; step < closest_steps; ++step) {
     const Row dx = across - at.x, dy = radius + (up - at.y);
     const Row slope = dx * at.x_x + dy * at.y_x;
-    const Row bend = at.x_x * at.x_x + at.y_x * at.y_x - dx * at.x_xx - dy * at.y_xx;
-    s = within(s + slope / bend);
+    const Row derivative = at.x_x * at.x_x + at.y_x * at.y_x - dx * at.x_xx - dy * at.y_xx;
+    s = within(s + slope / derivative);
     at = point_at(f, s);
   }
   const Row dx = across - at.x, e = up - at.y, dy = radius + e;
@@ -62,41 +64,41 @@ TRAVERSE_INLINE Touched closest(const TrainTask& task, const SurfacePatch& p, in
   return {depth, dy * inverse, dx * inverse, origin + s, at.xi, at.turn, fallen};
 }
 
-inline constexpr double least_root = 1e-6;  // m^0.5: from where the next contact is looked for after a loss
+inline constexpr double least_root = 1e-6;  // m^0.5: initial guess for the next contact after a loss
 inline constexpr int most_steps = 60;       // of a contact's own Newton iteration
 inline constexpr double root_tolerance = 1e-14;
 
-/// r with r^2 + yielding r^3 = target > 0 of n wheels, from guesses, by Newton's method, which does not pass the
-/// solution twice. All at once, as one by one would wait for each division; each stops where it has arrived.
-TRAVERSE_INLINE void hertz_roots(int n, const Row* yielding, const Row* target, Row* r) {
-  RowMask arrived[most_wheels];
-  for (int j = 0; j < n; ++j) arrived[j] = RowMask{};
+/// r with r^2 + relative_compliance r^3 = target > 0 of n wheels, from initial guesses, by Newton's method, which
+/// passes the solution at most once. All wheels together, so that their divisions overlap; each stops when converged.
+TRAVERSE_INLINE void hertz_roots(int n, const Row* relative_compliance, const Row* target, Row* r) {
+  RowMask converged[most_wheels];
+  for (int j = 0; j < n; ++j) converged[j] = RowMask{};
   for (int step = 0; step < most_steps; ++step) {
     RowMask all = ~RowMask{};
     for (int j = 0; j < n; ++j) {
-      const Row x = r[j], excess = x * x * (1.0 + yielding[j] * x) - target[j];
-      Row next = x - excess / (x * (2.0 + 3.0 * yielding[j] * x));
+      const Row x = r[j], excess = x * x * (1.0 + relative_compliance[j] * x) - target[j];
+      Row next = x - excess / (x * (2.0 + 3.0 * relative_compliance[j] * x));
       next = next < 0.1 * x ? 0.1 * x : next;
-      r[j] = arrived[j] ? x : next;
-      arrived[j] |= ~(Rows::magnitude(next - x) > root_tolerance + 1e-6 * next);
-      all &= arrived[j];
+      r[j] = converged[j] ? x : next;
+      converged[j] |= ~(Rows::magnitude(next - x) > root_tolerance + 1e-6 * next);
+      all &= converged[j];
     }
     if (!Rows::any(~all)) break;
   }
 }
 
-/// One wheel of every lane: the patch that it touches, and the point.
+/// One wheel in every lane: the touched patch and the contact point.
 struct ContactRow {
   Touched at;
-  Row structure, seat, seat_by_x;
+  Row structure, local_compliance, local_compliance_by_x;
 };
 
-/// On level rigid ground.
+/// For level rigid ground.
 TRAVERSE_INLINE Touched on_ground(Row height, Row along, Row up) {
   return {height - up, Rows::fill(1.0), Row{}, along, Row{}, Row{}, up != up};
 }
 
-/// What the patch makes of a force at the point.
+/// The compliances of the patch at the point.
 template <Surface kind>
 TRAVERSE_INLINE ContactRow on_patch(const SurfacePatch& p, int i, const Touched& at) {
   const Row length = rows(p.length)[i], shear = rows(p.shear)[i];
@@ -107,99 +109,101 @@ TRAVERSE_INLINE ContactRow on_patch(const SurfacePatch& p, int i, const Touched&
     for (int b = a; b < 4; ++b, ++k) sum += rows(p.compliance[k])[i] * s.value[b];
     structure += sum * s.value[a];
   }
-  const Seat seat = seat_at<kind>(at.xi, length, shear, rows(p.flexibility)[i]);
-  return {at, structure, seat.value, seat.by_x};
+  const LocalCompliance local_compliance = local_compliance_at<kind>(at.xi, length, shear, rows(p.flexibility)[i]);
+  return {at, structure, local_compliance.value, local_compliance.by_x};
 }
 
-/// a in the lanes of a mask, b in others.
-TRAVERSE_INLINE ContactRow choose(RowMask there, const ContactRow& a, const ContactRow& b) {
-  const auto of = [there](Row x, Row y) { return there ? x : y; };
+/// a in the lanes of a mask, b in the others.
+TRAVERSE_INLINE ContactRow select_rows(RowMask mask, const ContactRow& a, const ContactRow& b) {
+  const auto of = [mask](Row x, Row y) { return mask ? x : y; };
   return {{of(a.at.depth, b.at.depth), of(a.at.up, b.at.up), of(a.at.along, b.at.along), of(a.at.station, b.at.station),
-           of(a.at.xi, b.at.xi), of(a.at.turn, b.at.turn), there ? a.at.fallen : b.at.fallen},
+           of(a.at.xi, b.at.xi), of(a.at.turn, b.at.turn), mask ? a.at.fallen : b.at.fallen},
           of(a.structure, b.structure),
-          of(a.seat, b.seat),
-          of(a.seat_by_x, b.seat_by_x)};
+          of(a.local_compliance, b.local_compliance),
+          of(a.local_compliance_by_x, b.local_compliance_by_x)};
 }
 
-/// The patch that is touched: of two the one where the wheel is deeper.
+/// The touched patch: of two patches the one with the larger penetration.
 template <Surface kind>
 ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
   const SurfacePatch &first = task.patch[0], &other = task.patch[1];
   int* active = task.active + static_cast<long>(i) * lanes;
   for (int l = 0; l < lanes; ++l) active[l] = 0;
   const ContactRow ground = {on_ground(rows(task.h)[i], along, up), Row{}, Row{}, Row{}};
-  if (task.level[i] != 0 && task.second[i] == 0 && first.together[i] == grounded) return ground;
+  if (task.level[i] != 0 && task.second[i] == 0 && first.slot_order[i] == all_ground) return ground;
   ContactRow c = on_patch<kind>(first, i, closest<kind>(task, first, i, along, up));
-  RowMask two{};
+  RowMask has_second{};
   if (task.second[i] != 0) {
     const ContactRow second = on_patch<kind>(other, i, closest<kind>(task, other, i, along, up));
-    two = rows(other.high)[i] >= rows(other.low)[i];
-    const RowMask there = two & (second.at.depth > c.at.depth), fallen = c.at.fallen | (two & second.at.fallen);
-    for (int l = 0; l < lanes; ++l) active[l] = Rows::holds(there, l) ? 1 : 0;
-    c = choose(there, second, c);
+    has_second = rows(other.high)[i] >= rows(other.low)[i];
+    const RowMask second_touched = has_second & (second.at.depth > c.at.depth),
+                  fallen = c.at.fallen | (has_second & second.at.fallen);
+    for (int l = 0; l < lanes; ++l) active[l] = Rows::is_set(second_touched, l) ? 1 : 0;
+    c = select_rows(second_touched, second, c);
     c.at.fallen = fallen;
   }
-  if (task.level[i] == 0 || first.together[i] == in_line) return c;
-  // Level ground is the same whatever the lanes beside it are on.
-  Row on_it{};
-  for (int l = 0; l < lanes; ++l) Rows::numbers(on_it)[l] = first.slot[i * lanes + l] == task.ground ? 1.0 : 0.0;
-  return choose((on_it > 0.0) & ~two, ground, c);
+  if (task.level[i] == 0 || first.slot_order[i] == contiguous) return c;
+  // For level ground the result must not depend on the patches of other lanes.
+  Row ground_lanes{};
+  for (int l = 0; l < lanes; ++l) Rows::numbers(ground_lanes)[l] = first.slot[i * lanes + l] == task.ground ? 1.0 : 0.0;
+  return select_rows((ground_lanes > 0.0) & ~has_second, ground, c);
 }
 
-/// The normal forces of n wheels, the first of them i, each with all others held, by the law; `q`: what vehicle and
-/// structure yield to them.
+/// The normal forces of n wheels, from wheel i on, each by the contact law with all other forces unchanged; `q`:
+/// compliance of vehicle and structure.
 TRAVERSE_INLINE void own_forces(const TrainTask& task, RowMask open, int i, int n, const Row* depth, const Row* q,
-                                const Row* seat, Row* force) {
-  Row yielding[most_wheels], target[most_wheels], root[most_wheels];
+                                const Row* local_compliance, Row* force) {
+  Row relative_compliance[most_wheels], target[most_wheels], root[most_wheels];
   for (int j = 0; j < n; ++j) {
-    const Row all = (q[j] + seat[j]) * rows(task.stiffness)[i + j], own = depth[j] + q[j] * rows(task.normal)[i + j];
+    const Row all = (q[j] + local_compliance[j]) * rows(task.stiffness)[i + j],
+              own = depth[j] + q[j] * rows(task.normal)[i + j];
     const RowMask touches = own > 0.0;
-    yielding[j] = touches ? all : Row{};
+    relative_compliance[j] = touches ? all : Row{};
     target[j] = touches ? own : Row{};
-    // Where nothing touches the root is 1.
+    // Without contact the root is 1.
     root[j] = task.hertz[i + j] == 0 ? Rows::fill(1.0) : touches ? rows(task.root)[i + j] : Rows::fill(1.0);
     force[j] = touches ? own : Rows::fill(1.0);
   }
-  hertz_roots(n, yielding, force, root);
+  hertz_roots(n, relative_compliance, force, root);
   for (int j = 0; j < n; ++j) {
     const RowMask touches = target[j] > 0.0;
     const Row stiffness = rows(task.stiffness)[i + j], r = root[j], least = Rows::fill(least_root);
     if (task.hertz[i + j] == 0) {
-      force[j] = touches ? stiffness * target[j] / (1.0 + yielding[j]) : Row{};
+      force[j] = touches ? stiffness * target[j] / (1.0 + relative_compliance[j]) : Row{};
       continue;
     }
-    Row& known = rows(task.root)[i + j];
-    known = open & touches ? (r > least ? r : least) : known;
+    Row& stored_root = rows(task.root)[i + j];
+    stored_root = open & touches ? (r > least ? r : least) : stored_root;
     force[j] = touches ? stiffness * r * r * r : Row{};
   }
 }
 
-/// Whether forces of a vehicle on level rigid ground would not change by more than the tolerance in another pass, as
-/// what its wheels yield to the new forces of each other tells.
-inline RowMask settles(const TrainTask& task, const VehicleBlock& b, const Row* force) {
+/// Whether another pass would change the forces of a vehicle on level rigid ground by no more than the tolerance,
+/// estimated from the displacements of its wheels by the changes of the other wheels' forces.
+inline RowMask would_converge(const TrainTask& task, const VehicleBlock& b, const Row* force) {
   const int m = b.wheels, first = b.first_wheel;
-  RowMask predicted = ~RowMask{};
+  RowMask converged = ~RowMask{};
   for (int j = 0; j < m; ++j) {
     const int i = first + j;
-    if (task.level[i] == 0 || task.second[i] != 0 || task.patch[0].together[i] != grounded) return RowMask{};
+    if (task.level[i] == 0 || task.second[i] != 0 || task.patch[0].slot_order[i] != all_ground) return RowMask{};
     Row moved{};
     for (int l = 0; l < m; ++l)
       if (l != j) moved += Rows::magnitude(rows(b.H)[j * m + l] * (force[l] - rows(task.normal)[first + l]));
     const Row stiffness = rows(task.stiffness)[i],
               tangent = task.hertz[i] == 0 ? stiffness : 1.5 * stiffness * rows(task.root)[i];
-    predicted &= tangent * moved * rows(task.per_scale)[i] <= task.tolerance;
+    converged &= tangent * moved * rows(task.per_scale)[i] <= task.tolerance;
   }
-  return predicted;
+  return converged;
 }
 
-/// What a pass has changed, lane by lane.
+/// The changes of a pass in each lane.
 struct Changes {
   Row most;        // largest change of a force over its scale
   RowMask fallen;  // a wheel's centre is below the surface
 };
 
-/// The forces of all contacts with the structure as `nodal` has it, in the lanes that are still open; others stay as
-/// they are, so that no lane depends on its neighbours.
+/// Computes the forces of all contacts with the structure's motion in `nodal`, in open lanes. The other lanes remain
+/// unchanged, so that no lane depends on its neighbours.
 template <Surface kind>
 Changes update_forces(const TrainTask& task, RowMask of_runs) {
   Row most{};
@@ -207,7 +211,7 @@ Changes update_forces(const TrainTask& task, RowMask of_runs) {
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
     if (*b.active == 0) continue;
-    const RowMask open = task.settled == nullptr ? of_runs : of_runs & (rows(task.settled)[k] == 0.0);
+    const RowMask open = task.converged == nullptr ? of_runs : of_runs & (rows(task.converged)[k] == 0.0);
     if (!Rows::any(open)) continue;
     const int m = b.wheels, first = b.first_wheel;
     const Row* H = rows(b.H);
@@ -222,51 +226,52 @@ Changes update_forces(const TrainTask& task, RowMask of_runs) {
       up[j] = y;
       along[j] = x;
     }
-    Row depth[most_wheels], q[most_wheels], seat[most_wheels], seat_by_x[most_wheels], force[most_wheels];
+    Row depth[most_wheels], q[most_wheels], local_compliance[most_wheels], local_compliance_by_x[most_wheels],
+        force[most_wheels];
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
       const ContactRow c = touched_patch<kind>(task, i, along[j], up[j]);
       fallen |= c.at.fallen;
       depth[j] = c.at.depth;
       q[j] = (H[j * m + j] + c.structure) * c.at.up * c.at.up;
-      seat[j] = c.seat;
-      seat_by_x[j] = c.seat_by_x;
-      const auto take = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
-      take(task.normal_up, c.at.up);
-      take(task.normal_along, c.at.along);
-      take(task.turn, c.at.turn);
-      take(task.ahead, c.at.station - along[j]);
-      take(task.station, c.at.station);
+      local_compliance[j] = c.local_compliance;
+      local_compliance_by_x[j] = c.local_compliance_by_x;
+      const auto store = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
+      store(task.normal_up, c.at.up);
+      store(task.normal_along, c.at.along);
+      store(task.turn, c.at.turn);
+      store(task.ahead, c.at.station - along[j]);
+      store(task.station, c.at.station);
     }
-    own_forces(task, open, first, m, depth, q, seat, force);
-    RowMask settled{};
-    if (task.settled != nullptr) {
-      settled = settles(task, b, force);
-      rows(task.settled)[k] = open & settled ? Rows::fill(1.0) : rows(task.settled)[k];
+    own_forces(task, open, first, m, depth, q, local_compliance, force);
+    RowMask converged{};
+    if (task.converged != nullptr) {
+      converged = would_converge(task, b, force);
+      rows(task.converged)[k] = open & converged ? Rows::fill(1.0) : rows(task.converged)[k];
     }
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
       const Row change = Rows::magnitude(force[j] - rows(task.normal)[i]) * rows(task.per_scale)[i];
-      most = (change <= most) | settled ? most : change;  // one that is not a number stays
-      const auto take = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
-      take(task.normal, force[j]);
-      take(task.force_up, force[j] * rows(task.normal_up)[i]);
-      // The element's inner shape drives the wheel on: f^2/2 ds/dx (wheel_on_track.hpp).
-      take(task.force_along, force[j] * (rows(task.normal_along)[i] + 0.5 * seat_by_x[j] * force[j]));
-      take(task.penetration, depth[j]);
-      take(task.seat, seat[j]);
+      most = (change <= most) | converged ? most : change;  // a NaN is kept
+      const auto store = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
+      store(task.normal, force[j]);
+      store(task.force_up, force[j] * rows(task.normal_up)[i]);
+      // The work of the local compliance drives the wheel: f^2/2 ds/dx (wheel_on_track.hpp).
+      store(task.force_along, force[j] * (rows(task.normal_along)[i] + 0.5 * local_compliance_by_x[j] * force[j]));
+      store(task.penetration, depth[j]);
+      store(task.local_compliance, local_compliance[j]);
     }
   }
   return {most, fallen};
 }
 
-/// use(row of wheels, patch, directions): of all rows with wheels on elements.
+/// Calls use(row of wheels, patch, directions) for all rows with wheels on elements.
 template <Surface kind, class Use>
 void for_wheels_on_elements(const TrainTask& task, Use use) {
   for (int i = 0; i < task.wheels; ++i)
     for (int patch = 0; patch < (task.second[i] != 0 ? 2 : 1); ++patch) {
       const SurfacePatch& p = task.patch[patch];
-      if (p.together[i] == grounded) continue;
+      if (p.slot_order[i] == all_ground) continue;
       const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) * rows(p.per_length)[i];
       Row direction[most_nodal];
       directions<kind>(task, xi, length, rows(p.shear)[i], task.turn + static_cast<long>(i) * lanes,
@@ -275,7 +280,7 @@ void for_wheels_on_elements(const TrainTask& task, Use use) {
     }
 }
 
-/// use(lane): those of a row whose wheels touch this patch, an element's.
+/// Calls use(lane) for the lanes of a row whose wheels touch this patch of an element.
 template <class Use>
 void for_lanes_on(const TrainTask& task, int i, int patch, Use use) {
   const int* slot = task.patch[patch].slot + static_cast<long>(i) * lanes;
@@ -284,14 +289,14 @@ void for_lanes_on(const TrainTask& task, int i, int patch, Use use) {
     if (active[l] == patch && slot[l] != task.ground) use(l);
 }
 
-/// Adds the contacts' forces to the loads on the elements.
+/// Adds the contact forces to the loads on the elements.
 template <Surface kind>
 void add_loads(const TrainTask& task) {
   const int width = 2 * task.per_node;
   for_wheels_on_elements<kind>(task, [&](int i, int patch, const Row* direction) {
     const SurfacePatch& p = task.patch[patch];
     const int* slot = p.slot + static_cast<long>(i) * lanes;
-    if (p.together[i] == in_line && task.second[i] == 0) {
+    if (p.slot_order[i] == contiguous && task.second[i] == 0) {
       const Row force = rows(task.normal)[i];
       for (int k = 0; k < width; ++k)
         *reinterpret_cast<Rows::Unaligned*>(task.load + slot[0] + task.offset[k]) -= force * direction[k];
@@ -304,11 +309,11 @@ void add_loads(const TrainTask& task) {
   });
 }
 
-/// The accelerations of a stage from its contact forces; with `kinematics` the rates of wheels and contacts too.
+/// The accelerations of a stage from its contact forces; with `kinematics` also the rates of wheels and contacts.
 template <Surface kind>
 void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
   const Row rate = row(task.stage[stage].rate);
-  Row lost{}, given{};
+  Row dissipated{}, drive_power{};
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
     if (*b.active == 0) continue;
@@ -320,14 +325,14 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
       for (int j = 0; j < m; ++j) sum += rows(b.Y)[i * m + j] * up[j] + rows(b.Y_along)[i * m + j] * along[j];
       a[i] = sum;
     }
-    if (task.lost == nullptr) continue;
+    if (task.dissipated == nullptr) continue;
     for (int i = 0; i < f; ++i) {
       w[i] += rate * a[i];
-      given += rows(b.driven)[i] * a[i];
+      drive_power += rows(b.driven)[i] * a[i];
     }
     const Row* value = rows(b.C.value);
-    for (int e = 0; e < b.C.count; ++e) lost += value[e] * w[b.C.row[e]] * w[b.C.column[e]];
-    for (int j = 0; j < m; ++j) given -= row(b.drive) * along[j];
+    for (int e = 0; e < b.C.count; ++e) dissipated += value[e] * w[b.C.row[e]] * w[b.C.column[e]];
+    for (int j = 0; j < m; ++j) drive_power -= row(b.drive) * along[j];
     if (!kinematics) continue;
     Row *up_rate = rows(task.up_rate) + b.first_wheel, *along_rate = rows(task.along_rate) + b.first_wheel;
     for (int j = 0; j < m; ++j) {
@@ -337,9 +342,9 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
     add_product(b.G, 1.0, w, up_rate);
     add_product(b.G_along, 1.0, w, along_rate);
   }
-  if (task.lost != nullptr) {
-    rows(task.lost)[stage + 1] = lost;
-    rows(task.given)[stage + 1] = given;
+  if (task.dissipated != nullptr) {
+    rows(task.dissipated)[stage + 1] = dissipated;
+    rows(task.drive_power)[stage + 1] = drive_power;
   }
   for (int i = 0; i < task.wheels; ++i) {
     const Row force = rows(task.normal)[i], largest = rows(task.largest)[i];

@@ -7,25 +7,25 @@
 namespace traverse::engine {
 namespace {
 
-/// What the contact's geometry takes of an element: general: with unknowns along x, a surface above the axis, shear.
+/// The terms of the contact geometry. general: elements with unknowns along x, with shear, or a surface above the axis.
 enum class Surface { flat, general };
 
-/// The surface under a row of wheels: the deflection's cubic over xi, with what makes it general.
+/// The surface under a row of wheels: the cubic of the deflection over xi, and the terms of the general case.
 template <Surface kind>
 struct SurfaceRows {
   Row xi_start, per_length;              // xi = (x - element's x)/length = xi_start + per_length s at s from `origin`
   Row c[4];                              // of the deflection by powers of xi, m
-  Row strain{}, axial{}, axial_slope{};  // v' - theta; displacement along x at xi = 0, and its rise to xi = 1
+  Row strain{}, axial{}, axial_slope{};  // v' - theta; displacement along x at xi = 0, and its increase to xi = 1
   Row h, h_x, h_xx;                      // the profile about `origin`
   double height = 0.0;
 };
 
-/// Unknown k of the element of every lane, whose slots are these.
-TRAVERSE_INLINE Row gather(const TrainTask& task, const int* slot, int together, int k) {
+/// Unknown k of the element in every lane, with these slots.
+TRAVERSE_INLINE Row gather(const TrainTask& task, const int* slot, int slot_order, int k) {
   const double* nodal = task.nodal + task.offset[k];
-  if (together == in_line) return *reinterpret_cast<const Rows::Unaligned*>(nodal + slot[0]);
+  if (slot_order == contiguous) return *reinterpret_cast<const Rows::Unaligned*>(nodal + slot[0]);
   Row value{};
-  if (together == grounded) return value;
+  if (slot_order == all_ground) return value;
   for (int l = 0; l < lanes; ++l) Rows::numbers(value)[l] = nodal[slot[l]];
   return value;
 }
@@ -33,13 +33,13 @@ TRAVERSE_INLINE Row gather(const TrainTask& task, const int* slot, int together,
 template <Surface kind>
 TRAVERSE_INLINE SurfaceRows<kind> surface_under(const TrainTask& task, const SurfacePatch& p, int i, Row origin) {
   SurfaceRows<kind> s;
-  const int *slot = p.slot + static_cast<long>(i) * lanes, o = task.per_node - 2, together = p.together[i];
+  const int *slot = p.slot + static_cast<long>(i) * lanes, o = task.per_node - 2, slot_order = p.slot_order[i];
   const Row length = rows(p.length)[i];
   s.per_length = rows(p.per_length)[i];
   s.xi_start = (origin - rows(p.x)[i]) * s.per_length;
-  const Row v0 = gather(task, slot, together, o), v1 = gather(task, slot, together, o + task.per_node);
-  Row left = length * gather(task, slot, together, o + 1);
-  Row right = length * gather(task, slot, together, o + 1 + task.per_node);
+  const Row v0 = gather(task, slot, slot_order, o), v1 = gather(task, slot, slot_order, o + task.per_node);
+  Row left = length * gather(task, slot, slot_order, o + 1);
+  Row right = length * gather(task, slot, slot_order, o + 1 + task.per_node);
   const Row difference = v1 - v0;
   if constexpr (kind == Surface::general) {
     const Row shear = rows(p.shear)[i], sheared = shear / (1.0 + shear) * (difference - 0.5 * (left + right));
@@ -47,8 +47,8 @@ TRAVERSE_INLINE SurfaceRows<kind> surface_under(const TrainTask& task, const Sur
     left += sheared;
     right += sheared;
     if (task.per_node == 3) {
-      s.axial = gather(task, slot, together, 0);
-      s.axial_slope = gather(task, slot, together, 3) - s.axial;
+      s.axial = gather(task, slot, slot_order, 0);
+      s.axial_slope = gather(task, slot, slot_order, 3) - s.axial;
     }
     s.height = task.surface_height;
   }
@@ -56,14 +56,14 @@ TRAVERSE_INLINE SurfaceRows<kind> surface_under(const TrainTask& task, const Sur
   s.c[1] = left;
   s.c[2] = 3.0 * difference - 2.0 * left - right;
   s.c[3] = left + right - 2.0 * difference;
-  const Row moved = origin - rows(task.looked_up)[i], h_x = rows(task.h_x)[i], h_xx = rows(task.h_xx)[i];
+  const Row moved = origin - rows(task.profile_station)[i], h_x = rows(task.h_x)[i], h_xx = rows(task.h_xx)[i];
   s.h = rows(task.h)[i] + moved * (h_x + 0.5 * moved * h_xx);
   s.h_x = h_x + moved * h_xx;
   s.h_xx = h_xx;
   return s;
 }
 
-/// A material point `s` from the origin: where it is against the origin, and its derivatives over s.
+/// A material point at `s` from the origin: its position relative to the origin, and the derivatives over s.
 struct SurfacePoint {
   Row x, y, x_x, y_x, x_xx, y_xx, turn, xi;
 };
@@ -103,18 +103,18 @@ struct Shapes {
 
 template <Surface kind>
 TRAVERSE_INLINE Shapes shapes_at(Row xi, Row length, Row shear) {
-  const Row rest = 1.0 - xi, rise = xi * xi * (3.0 - 2.0 * xi);
+  const Row eta = 1.0 - xi, rise = xi * xi * (3.0 - 2.0 * xi);
   Shapes s;
   s.value[0] = 1.0 - rise;
-  s.value[1] = length * xi * rest * rest;
+  s.value[1] = length * xi * eta * eta;
   s.value[2] = rise;
-  s.value[3] = -(length * xi * xi * rest);
+  s.value[3] = -(length * xi * xi * eta);
   if constexpr (kind == Surface::general) {
-    const Row share = shear / (1.0 + shear), odd = xi * rest * (rest - xi), odd_slope = 1.0 - 6.0 * xi * rest;
-    const Row turned = (6.0 * xi * rest + share * (odd_slope - 1.0)) / length;
+    const Row share = shear / (1.0 + shear), odd = xi * eta * (eta - xi), odd_slope = 1.0 - 6.0 * xi * eta;
+    const Row turned = (6.0 * xi * eta + share * (odd_slope - 1.0)) / length;
     s.turn[0] = -turned;
     s.turn[2] = turned;
-    s.turn[1] = rest * (1.0 - 3.0 * xi) - 0.5 * share * (odd_slope - 1.0);
+    s.turn[1] = eta * (1.0 - 3.0 * xi) - 0.5 * share * (odd_slope - 1.0);
     s.turn[3] = xi * (3.0 * xi - 2.0) - 0.5 * share * (odd_slope - 1.0);
     s.value[0] -= share * odd;
     s.value[2] += share * odd;
@@ -124,8 +124,8 @@ TRAVERSE_INLINE Shapes shapes_at(Row xi, Row length, Row shear) {
   return s;
 }
 
-/// How the penetration grows with an element's unknowns, in their order (wheel_on_track.hpp: normal_on_beam), from the
-/// normal's parts.
+/// The derivatives of the penetration by an element's unknowns, in their order (wheel_on_track.hpp: normal_on_beam),
+/// from the components of the normal.
 template <Surface kind>
 TRAVERSE_INLINE void directions(const TrainTask& task, Row xi, Row length, Row shear, const double* turned, Row up,
                                 Row along, Row* to) {
@@ -145,23 +145,21 @@ TRAVERSE_INLINE void directions(const TrainTask& task, Row xi, Row length, Row s
   }
 }
 
-/// What an element clamped at its nodes yields to a force in it, m/N, and its rise over x (wheel_on_track.cpp:
-/// seat_of).
-struct Seat {
+/// The compliance of an element clamped at its nodes for a force between them, m/N, and its derivative over x
+/// (wheel_on_track.cpp: local_compliance_of).
+struct LocalCompliance {
   Row value, by_x;
 };
 
 template <Surface kind>
-TRAVERSE_INLINE Seat seat_at(Row xi, Row length, Row shear, Row flexibility) {
-  const Row hump = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / length;
-  if constexpr (kind == Surface::flat)
-    return {flexibility * hump * hump * hump, flexibility * 3.0 * hump * hump * by_x};
+TRAVERSE_INLINE LocalCompliance local_compliance_at(Row xi, Row length, Row shear, Row flexibility) {
+  const Row u = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / length;
+  if constexpr (kind == Surface::flat) return {flexibility * u * u * u, flexibility * 3.0 * u * u * by_x};
   const Row quarter = 0.25 * flexibility, s = shear;
-  const Row sheared = quarter * hump * ((4.0 * hump + s) * hump / (1.0 + s) + s);
-  const Row sheared_by_x = quarter * ((12.0 * hump + 2.0 * s) * hump / (1.0 + s) + s) * by_x;
+  const Row sheared = quarter * u * ((4.0 * u + s) * u / (1.0 + s) + s);
+  const Row sheared_by_x = quarter * ((12.0 * u + 2.0 * s) * u / (1.0 + s) + s) * by_x;
   const RowMask stiff = s == 0.0;
-  return {stiff ? flexibility * hump * hump * hump : sheared,
-          stiff ? flexibility * 3.0 * hump * hump * by_x : sheared_by_x};
+  return {stiff ? flexibility * u * u * u : sheared, stiff ? flexibility * 3.0 * u * u * by_x : sheared_by_x};
 }
 }  // namespace
 }  // namespace traverse::engine

@@ -1,9 +1,9 @@
-// A train of linear vehicles on its structure as plain arrays: the only thing that the kernel (train_kernel.hpp), which
-// is compiled once for each kind of processor, sees of the rest of the program.
+// A train of linear vehicles on its structure as plain arrays: the whole interface between the kernel
+// (train_kernel.hpp), which is compiled once for each instruction set, and the other parts of the program.
 //
-// Vehicles with as many coordinates and wheels stand in blocks, one in each lane of the processor's vectors; a *row*
-// has a number of each lane (best_width() of processor.hpp). A lane without a vehicle has the mass 1 and wheels that
-// touch nothing.
+// Vehicles with equal numbers of coordinates and wheels form blocks, one vehicle in each SIMD lane; a *row* has one
+// number for each lane (best_width() of processor.hpp). A lane without a vehicle has the mass 1 and wheels without
+// contact.
 #pragma once
 
 namespace traverse::engine {
@@ -13,15 +13,15 @@ inline constexpr int most_stages = 5, most_kept = 6;  // implicit stages of a me
 inline constexpr int most_nodal = 6;                  // unknowns of an element
 inline constexpr int most_wheels = 64;                // of a vehicle
 
-/// A sparse matrix: entry i stands in row[i] and column[i], its value is a row.
+/// A sparse matrix: entry i has the indices row[i] and column[i], its value is a row.
 struct SparseRows {
   int count = 0;
   const int *row = nullptr, *column = nullptr;
   const double* value = nullptr;
 };
 
-/// Two sparse matrices with as many entries in each row, which stand in the same columns: [row][width]. What a row has
-/// fewer is 0 in column 0, so that no loop ends sooner or later than the one before.
+/// Two sparse matrices with the same columns and the same number of entries in each row: [row][width]. Missing entries
+/// of a row are 0 in column 0, so that all loops have the same length.
 struct PairedRows {
   int width = 0;
   const int* column = nullptr;
@@ -34,95 +34,97 @@ struct VehicleBlock {
   int freedom = 0, wheels = 0;
   int first_coordinate = 0, first_wheel = 0;  // among all rows of coordinates, of wheels
   const double *M = nullptr, *r0 = nullptr;
-  SparseRows C, K, G, G_along;       // G, G_along: row: the wheel, column: the coordinate
-  PairedRows K_and_C, both_G;        // the same again: K and C; G and G_along
-  const double* driven = nullptr;    // row by coordinate: driven x'' is the power that holds the masses' speed, N s
-  const double* speed = nullptr;     // a row: m/s, of the steady motion
-  const double* drive = nullptr;     // a row: the same where the speed is prescribed, else 0
-  const double* distance = nullptr;  // a row: m, travelled at the stage's time
-  int alike = -1;                    // an earlier block of the same numbers, whose matrices below are used; -1: none
-  const char* active = nullptr;      // whether it moves: else it stands still, and nothing of it is computed
+  SparseRows C, K, G, G_along;     // G, G_along: row: the wheel, column: the coordinate
+  PairedRows K_and_C, both_G;      // the same matrices: K and C; G and G_along
+  const double* driven = nullptr;  // row by coordinate: driven x'' is the power to drive the masses at their speed, N s
+  const double* speed = nullptr;   // a row: m/s, of the steady motion
+  const double* drive = nullptr;   // a row: the same if the speed is prescribed, otherwise 0
+  const double* distance = nullptr;  // a row: m travelled at the stage's time
+  int same_as = -1;                  // an earlier block with equal matrices, whose arrays below are used; -1: none
+  const char* active = nullptr;      // whether the block moves: if not, it is at rest and is not computed
   double* inverse = nullptr;         // (M + rate C + displacement K)^-1
   double *Y = nullptr, *Y_along = nullptr;  // freedom x wheels: inverse G^T, inverse G_along^T
   double* H =
       nullptr;  // 4 x wheels x wheels: displacement of wheels per force: up by up, up by along, along by up, ...
 };
 
-/// How the slots of a row are: somewhere, one behind the other, or all of rigid ground.
-enum Together { apart = 0, in_line = 1, grounded = 2 };
+/// The slots of a row: in any order, contiguous, or all of rigid ground.
+enum SlotOrder { scattered = 0, contiguous = 1, all_ground = 2 };
 
-/// The piece of surface under a wheel, a row each: an element of the structure, or rigid ground.
+/// The piece of surface under a wheel, in rows: an element of the structure, or rigid ground.
 struct SurfacePatch {
-  int* slot = nullptr;                                            // where the element's values are in TrainTask::nodal
-  int* together = nullptr;                                        // one a row: Together
+  int* slot = nullptr;        // position of the element's values in TrainTask::nodal
+  int* slot_order = nullptr;  // one for each row: SlotOrder
   double *x = nullptr, *length = nullptr, *per_length = nullptr;  // of the element, m, m, 1/m
   double* shear = nullptr;                                        // 12 EI/(GA length^2)
-  double* flexibility = nullptr;           // length^3/(3 EI), m/N, where the element bends between its nodes
-  double *low = nullptr, *high = nullptr;  // m: stations between which the piece reaches
+  double* flexibility = nullptr;           // length^3/(3 EI), m/N, if the local compliance is included
+  double *low = nullptr, *high = nullptr;  // m: first and last station of the piece
   // Displacement of (v, theta) of the element's nodes per force and moment on them: the upper half of a symmetric
-  // matrix, row by row; those beside the diagonal twice.
+  // matrix, row by row; off-diagonal entries twice.
   double* compliance[10] = {};
 };
 
-/// Scaled to the length of a step, a row each.
+/// The coefficients of a stage, scaled to the length of a step, in rows.
 struct alignas(8 * most_lanes) StageRows {
   double w_in_v[most_lanes], a_in_v[most_kept][most_lanes], a_in_w[most_kept][most_lanes];
   double rate[most_lanes], displacement[most_lanes];
-  double guess[most_stages + 2][most_lanes];  // weights of the contact forces at the stages before and at two ends
+  double guess[most_stages + 2]
+              [most_lanes];  // weights of the contact forces at the previous stages and at two starts of steps
 };
 
 struct TrainTask {
   int stages = 0, known = 0;
-  double extrapolation = 0.0;  // of the time between the last two stages: from the last one to the coming one
+  double extrapolation = 0.0;  // time to the next stage over that between the last two stages
   StageRows stage[most_stages], end;
   double a_next[most_kept] = {};
 
   int blocks = 0, coordinates = 0, wheels = 0;  // rows of coordinates, of wheels
   const VehicleBlock* block = nullptr;
 
-  // Of every coordinate.
+  // For every coordinate.
   double *x = nullptr, *w = nullptr, *a[most_kept] = {}, *w_predicted = nullptr, *a_free = nullptr;
 
-  // Of every wheel, constant.
-  const double *place = nullptr, *height = nullptr;      // m: x of its centre, y of its lowest point, at the start
+  // For every wheel, constant.
+  const double *place = nullptr, *height = nullptr;      // m: initial x of its centre and y of its lowest point
   const double *radius = nullptr, *stiffness = nullptr;  // m; N/m^1.5 or N/m
-  const double* per_scale = nullptr;                     // 1/N: one over what errors of forces count by
-  const char* hertz = nullptr;                           // one a row: the former
-  // Of every wheel, in a stage.
-  double *up = nullptr, *along = nullptr;  // m: the same without contact forces
-  double *from = nullptr, *to = nullptr;   // m: stations between which its patches are the ones that it has
-  const char* second = nullptr;            // one a row: a wheel of it may touch the second patch
-  const char* level = nullptr;             // one a row: its wheels' track is level
-  // The track's profile, its slope and curvature at `looked_up`, m.
-  double *h = nullptr, *h_x = nullptr, *h_xx = nullptr, *looked_up = nullptr;
-  double *normal = nullptr, *root = nullptr;             // N; the Hertz law's square root of the penetration
+  const double* per_scale = nullptr;                     // 1/N: one over the scale of its force
+  const char* hertz = nullptr;                           // one for each row: Hertz law, with stiffness in N/m^1.5
+  // For every wheel, in a stage.
+  double *up = nullptr, *along = nullptr;  // m: positions as above, without contact forces
+  double *from = nullptr, *to = nullptr;   // m: stations between which its patches are valid
+  const char* second = nullptr;            // one for each row: a wheel of it may touch the second patch
+  const char* level = nullptr;             // one for each row: the track of its wheels is level
+  // The track's profile, its slope and curvature at `profile_station`, m.
+  double *h = nullptr, *h_x = nullptr, *h_xx = nullptr, *profile_station = nullptr;
+  double *normal = nullptr, *root = nullptr;             // N; square root of the penetration by Hertz's law
   double *normal_up = nullptr, *normal_along = nullptr;  // the direction from the surface to the centre
   double *force_up = nullptr, *force_along = nullptr;    // N, on the wheel
-  double *turn = nullptr, *seat = nullptr;               // rotation of the section under it; m/N of the element inside
-  double *ahead = nullptr, *station = nullptr;           // m: of the contact before the centre; x of it
-  double* ahead_before = nullptr;                        // m: at the stage before the last one
+  double *turn = nullptr, *local_compliance = nullptr;   // rotation of the section; m/N
+  double *ahead = nullptr, *station = nullptr;           // m: distance of the contact ahead of the centre; x of it
+  double* ahead_before = nullptr;                        // m: at the second last stage
   double *penetration = nullptr, *penetration_rate = nullptr;  // m, m/s
   double *up_rate = nullptr, *along_rate = nullptr;            // m/s, of the centre
-  double* largest = nullptr;                                   // N: of the stages of the step
-  double* history[most_stages + 2] = {};  // N: normal forces of the stages, of the step's start and of the one before
-  int* active = nullptr;                  // the patch that is touched
+  double* largest = nullptr;                                   // N: largest normal force in the stages of the step
+  double* history[most_stages + 2] =
+      {};                 // N: normal forces of the stages, at the start of the step and of the previous one
+  int* active = nullptr;  // index of the touched patch
   SurfacePatch patch[2];
 
-  // The structure where wheels may be. Unknown k of an element is at its slot and offset[k].
-  int per_node = 2;                                      // unknowns of a node that an element sees
+  // The structure under the wheels. The index of unknown k of an element is its slot plus offset[k].
+  int per_node = 2;                                      // unknowns at a node of the wheels' line
   int offset[most_nodal] = {}, ground = 0;               // the slot of rigid ground, whose values are 0
   double surface_height = 0.0;                           // m, of the surface above the axis
-  bool shears = false;                                   // some of its elements do
+  bool shears = false;                                   // some of its elements have shear
   const double *nodal = nullptr, *nodal_rate = nullptr;  // m, rad and their rates
   double* load = nullptr;                                // N, N m
 
-  // A row of every block: 1 in lanes where another pass would change no force by more than `tolerance` of its scale, as
-  // the vehicle stands on rigid ground alone; null: nobody asks.
-  double* settled = nullptr;
+  // A row for each block: 1 in lanes where another pass would change no force by more than `tolerance` of its scale, if
+  // the vehicle is on rigid ground only; null: not used.
+  double* converged = nullptr;
   double tolerance = 0.0;
 
-  // Of every stage, a row: W lost in dampers, and what the drives give; null: nobody asks.
-  double *lost = nullptr, *given = nullptr;
+  // For every stage a row: power lost in dampers, power of the drives, W; null: not used.
+  double *dissipated = nullptr, *drive_power = nullptr;
 };
 
 }  // namespace traverse::engine

@@ -1,5 +1,5 @@
-// The vehicles' part of the kernel (train_kernel.hpp): where they are without contact forces, how their wheels yield to
-// these, and the end of a step.
+// The vehicles' part of the kernel (train_kernel.hpp): their motion without contact forces, their compliance at the
+// wheels, and the end of a step.
 #pragma once
 
 #include "engine/lane.hpp"
@@ -17,7 +17,7 @@ inline const Row* rows(const double* numbers) { return Rows::lanes(numbers); }
 inline Row* rows(double* numbers) { return Rows::lanes(numbers); }
 inline const Row& row(const double* numbers) { return *rows(numbers); }
 
-/// The inverse of a matrix whose symmetric part is positive, in place, without pivots.
+/// The inverse of a matrix with positive definite symmetric part, in place, without pivoting.
 inline void invert(Row* A, int n) {
   for (int k = 0; k < n; ++k) {
     const Row pivot = 1.0 / A[k * n + k];
@@ -32,7 +32,7 @@ inline void invert(Row* A, int n) {
   }
 }
 
-/// y[row] += sign A[row, column] x[column]; entries of a row follow each other.
+/// y[row] += sign A[row, column] x[column]; the entries of a row are contiguous.
 inline void add_product(const SparseRows& A, double sign, const Row* x, Row* y) {
   const Row* value = rows(A.value);
   for (int e = 0; e < A.count;) {
@@ -43,7 +43,7 @@ inline void add_product(const SparseRows& A, double sign, const Row* x, Row* y) 
   }
 }
 
-/// n rows of the first matrix times x and of the second times y: use(row, both products).
+/// n rows of the first matrix times x and of the second one times y: calls use(row, both products).
 template <class Use>
 void products(const PairedRows& A, int n, const Row* x, const Row* y, Use use) {
   const Row *first = rows(A.first), *second = rows(A.second);
@@ -74,12 +74,12 @@ inline void compliance_of(const VehicleBlock& b, const SparseRows& G, const Row*
       to[G.row[e] * b.wheels + j] += displacement * value[e] * Y[G.column[e] * b.wheels + j];
 }
 
-/// Of the stages' common rate and displacement.
+/// Computes inverses and compliances for the common rate and displacement of the stages.
 inline void set_step(const TrainTask& task) {
   const Row rate = row(task.stage[0].rate), displacement = row(task.stage[0].displacement);
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
-    if (b.alike >= 0) continue;
+    if (b.same_as >= 0) continue;
     const int f = b.freedom, m = b.wheels;
     Row* J = rows(b.inverse);
     for (int i = 0; i < f * f; ++i) J[i] = rows(b.M)[i];
@@ -96,7 +96,7 @@ inline void set_step(const TrainTask& task) {
   }
 }
 
-/// Positions and rates that a stage's rule makes of n coordinates x, their rates w and `Known` accelerations.
+/// Positions and rates by a stage's rule, from n coordinates x, their rates w and `Known` accelerations.
 template <int Known>
 void combine(const StageRows& rule, int n, const Row* x, const Row* w, const Row* const* a, Row* position, Row* rate) {
   const Row w_in_v = row(rule.w_in_v);
@@ -118,7 +118,7 @@ void combine(const StageRows& rule, int n, const Row* x, const Row* w, const Row
     rate[i] = moving;
   }
 }
-/// The same of coordinates from the first one on.
+/// The same for coordinates from `first` on.
 inline void combine(int known, const StageRows& rule, int first, int n, const double* x, const double* w,
                     const double* const* accelerations, Row* position, Row* rate) {
   const Row* a[most_kept];
@@ -163,7 +163,7 @@ inline void end_step(const TrainTask& task, int n, double* x, double* w, double*
   }
 }
 
-/// y = A x for a square matrix by rows; four rows at a time keep the processor busy.
+/// y = A x for a square matrix by rows; four rows at a time use the processor better.
 inline void multiply(const Row* A, int n, const Row* x, Row* y) {
   int i = 0;
   for (; i + 4 <= n; i += 4) {
@@ -187,7 +187,7 @@ inline void multiply(const Row* A, int n, const Row* x, Row* y) {
   }
 }
 
-/// A first guess of the contact forces, and where they act.
+/// The initial guess of the contact forces and of the contact points.
 inline void guess_forces(const TrainTask& task, const StageRows& rule, int stage, int first, int past) {
   for (int i = first; i < past; ++i) {
     Row guess{};
@@ -195,7 +195,7 @@ inline void guess_forces(const TrainTask& task, const StageRows& rule, int stage
     for (int j = most_stages; j < most_stages + 2; ++j) guess += row(rule.guess[j]) * rows(task.history[j])[i];
     guess = guess > 0.0 ? guess : Row{};
     const Row before = rows(task.normal)[i], ratio = before > 0.0 ? guess / before : Row{};
-    rows(task.root)[i] *= ratio > 0.5 ? (2.0 + ratio) * (1.0 / 3.0) : Rows::fill(1.0);  // about its third root
+    rows(task.root)[i] *= ratio > 0.5 ? (2.0 + ratio) * (1.0 / 3.0) : Rows::fill(1.0);  // approximates the cube root
     rows(task.force_along)[i] *= ratio;
     rows(task.force_up)[i] = before > 0.0 ? rows(task.force_up)[i] * ratio : guess;
     rows(task.normal)[i] = guess;
@@ -205,7 +205,8 @@ inline void guess_forces(const TrainTask& task, const StageRows& rule, int stage
   }
 }
 
-/// Where wheels are without contact forces, and a first guess of these. `work`: three rows a coordinate.
+/// The wheels' positions without contact forces, and the initial guess of these. `work`: three rows for each
+/// coordinate.
 inline void predict(const TrainTask& task, int stage, double* work) {
   const StageRows& rule = task.stage[stage];
   const Row displacement = row(rule.displacement);
@@ -229,7 +230,7 @@ inline void predict(const TrainTask& task, int stage, double* work) {
   }
 }
 
-/// Whether all wheels are between the stations where their patches are known.
+/// Whether all wheels are between the stations where their patches are valid.
 inline bool in_place(const TrainTask& task) {
   RowMask out{};
   for (int i = 0; i < task.wheels; ++i) {

@@ -1,4 +1,4 @@
-// What of a scene keeps its runs from going side by side.
+// Conditions of a scene that prevent batched runs.
 #include "ensemble/batch_obstacle.hpp"
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace traverse::app {
 std::string batch_obstacle(const Scene& scene, const SharedBeam& shared) {
-  if (scene.vehicles.empty()) return "no vehicles run";
-  if (!scene.load.forces.empty()) return "forces move beside the vehicles";
+  if (scene.vehicles.empty()) return "the scene has no vehicles";
+  if (!scene.load.forces.empty()) return "forces move in addition to the vehicles";
   if (scene.model.vehicles != VehicleModel::linear) return "vehicles are mechanisms, not linear";
   if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
   if (!scene.train.courses.empty()) return "several trains run, or one whose speed changes or is below 0";

@@ -1,4 +1,4 @@
-// Which scenes run side by side (engine/batch.hpp): linear vehicles over a bridge by its elements.
+// Decides which scenes can run in batches (engine/batch.hpp): linear vehicles over a bridge by its elements.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace traverse::app {
 
-/// Why a scene's runs cannot go side by side, in words; empty: as far as the scene itself tells, they can.
+/// The reason why a scene's runs cannot be batched, in words; empty: the scene itself does not prevent it.
 std::string batch_obstacle(const Scene& scene, const SharedBeam& shared);
 
 }  // namespace traverse::app

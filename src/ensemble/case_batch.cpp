@@ -1,4 +1,4 @@
-// What runs side by side are set up from: the train at its start, the stretches of equal steps, tracks.
+// Sets up batched runs: the train at its start, the stretches of equal steps, and the tracks.
 #include "ensemble/case_batch.hpp"
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 namespace traverse::app {
 namespace {
 
-constexpr double one_place = 1e-9;         // m: events nearer than that are one
-constexpr double beside_track = 1.0;       // m: wheels touch it before and behind their centres
-constexpr double most_of_tracks = 2.56e8;  // bytes, of tracks that are kept
+constexpr double same_position = 1e-9;      // m: events at a smaller distance are one event
+constexpr double track_margin = 1.0;        // m: range of contact before and behind the centres of wheels
+constexpr double max_track_bytes = 2.56e8;  // bytes, of stored tracks
 
-/// The structure, and in `rest` its displacements without vehicles.
-std::unique_ptr<structure::Structure> with_rest(std::unique_ptr<structure::Structure> structure,
-                                                std::vector<double>& rest) {
-  rest = structure->rest();
+/// Returns the structure and sets `unloaded` to its displacements without vehicles.
+std::unique_ptr<structure::Structure> with_unloaded(std::unique_ptr<structure::Structure> structure,
+                                                    std::vector<double>& unloaded) {
+  unloaded = structure->displacements_without_traffic();
   return structure;
 }
 
@@ -30,7 +30,7 @@ CaseBatch::CaseBatch(const Scene& scene, const SharedBeam& shared)
     : scene_(scene),
       shared_(shared),
       input_(system_input(scene, false)),
-      system_(PETSC_COMM_SELF, with_rest(carrier(scene, shared, input_), rest_), input_),
+      system_(PETSC_COMM_SELF, with_unloaded(carrier(scene, shared, input_), unloaded_), input_),
       state_(static_cast<std::size_t>(system_.local_size())) {
   system_.start(true, state_.data());
   system_.linearise_vehicles(state_.data());
@@ -41,60 +41,61 @@ CaseBatch::CaseBatch(const Scene& scene, const SharedBeam& shared)
   for (const train::WheelContact& c : fleet_.wheels) wheels_.push_back(fleet_.coordinates(c).x());
   state_.resize(2 * static_cast<std::size_t>(system_.structure()->unknowns()));
   const double gravity = scene.self_weight ? scene.gravity : 0.0;
-  structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, modal(), fleet_, rest_, scene.output.probes,
-                                                              gravity);
+  structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, modal(), fleet_, unloaded_,
+                                                              scene.output.probes, gravity);
   plan_.structure = structure_.get();
-  plan_.level_until =
-      scene.profile.level() && !system_.structure()->bent_at_rest() ? shared.beam->running().mesh.start() : -1e300;
-  kinks_ = system_.corners();
+  plan_.level_until = scene.profile.level() && !system_.structure()->deformed_without_traffic()
+                          ? shared.beam->running().mesh.start()
+                          : -1e300;
+  kinks_ = system_.surface_kinks();
 }
 
-/// Distances at which a wheel meets a corner of the surface or passes a probe.
-std::vector<double> CaseBatch::events(double past) const {
+/// Distances at which a wheel reaches a kink of the surface or passes a probe.
+std::vector<double> CaseBatch::events(double distance) const {
   std::vector<double> events;
   for (const std::vector<double>& stations : {kinks_, scene_.output.probes})
     for (const double station : stations)
       for (const double x : wheels_)
-        if (station - x > one_place && station - x < past) events.push_back(station - x);
+        if (station - x > same_position && station - x < distance) events.push_back(station - x);
   std::sort(events.begin(), events.end());
-  events.erase(std::unique(events.begin(), events.end(), [](double a, double b) { return b - a < one_place; }),
+  events.erase(std::unique(events.begin(), events.end(), [](double a, double b) { return b - a < same_position; }),
                events.end());
   return events;
 }
 
-std::string CaseBatch::expect(double past) {
+std::string CaseBatch::prepare_tracks(double distance) {
   tracks_.clear();
-  track_past_ = past;
-  const auto [rear, front] = track_reach();
+  track_range_ = distance;
+  const auto [rear, front] = touched_range();
   for (const double step : shared_.beam->running().mesh.steps())
     if (step > rear && step < front)
-      return "wheels meet steps of the surface, where ends or joints of what carries them yield";
-  const std::optional<double> distance = track::table_distance(scene_.profile, rear, front);
-  if (!distance) return "the track has corners that batched runs cannot follow";
-  track_distance_ = *distance;
+      return "wheels cross steps of the surface, at flexible ends or joints of the carrying structure";
+  const std::optional<double> table_distance = track::table_distance(scene_.profile, rear, front);
+  if (!table_distance) return "the track has corners that batched runs cannot follow";
+  track_distance_ = *table_distance;
   return {};
 }
 
-/// What wheels may touch of it, m.
-std::pair<double, double> CaseBatch::track_reach() const {
+/// The range of the track that wheels may touch, m.
+std::pair<double, double> CaseBatch::touched_range() const {
   const auto [rear, front] = std::minmax_element(wheels_.begin(), wheels_.end());
-  return {*rear - beside_track, *front + track_past_ + beside_track};
+  return {*rear - track_margin, *front + track_range_ + track_margin};
 }
 
-/// All tracks of a spectrum have their stations where the scene's own has.
-CaseBatch::Track CaseBatch::track(const std::optional<std::uint64_t>& seed, double past) {
-  if (past > track_past_)
-    if (const std::string why = expect(past); !why.empty()) throw InputError(why);
+/// All tracks of a spectrum have the same stations as the scene's own track.
+CaseBatch::Track CaseBatch::track(const std::optional<std::uint64_t>& seed, double distance) {
+  if (distance > track_range_)
+    if (const std::string why = prepare_tracks(distance); !why.empty()) throw InputError(why);
   const auto known = std::find_if(tracks_.begin(), tracks_.end(), [&](const auto& one) { return one.first == seed; });
   if (known != tracks_.end()) return known->second;
   const track::Profile other = seed ? scene_.roughness->profile(*seed) : track::Profile();
-  const auto [rear, front] = track_reach();
-  auto made = std::make_shared<const track::HeightTable>(
+  const auto [rear, front] = touched_range();
+  auto table = std::make_shared<const track::HeightTable>(
       track::height_table(seed ? other : scene_.profile, rear, front, track_distance_));
-  if (static_cast<double>((tracks_.size() + 1) * made->values.size() * sizeof(double)) > most_of_tracks &&
+  if (static_cast<double>((tracks_.size() + 1) * table->values.size() * sizeof(double)) > max_track_bytes &&
       !tracks_.empty())
     tracks_.pop_front();
-  return tracks_.emplace_back(seed, std::move(made)).second;
+  return tracks_.emplace_back(seed, std::move(table)).second;
 }
 
 structure::Method method_of(const Scene& scene) {
@@ -108,30 +109,32 @@ double CaseBatch::spacing(const Steps& steps, double speed) {
   return steps.longest * engine::speed_of_class(engine::speed_class(speed));
 }
 
-void CaseBatch::Ready::stretch(const std::vector<double>& events, double ds, double past, const Steps& steps) {
+void CaseBatch::Ready::add_stretches(const std::vector<double>& events, double ds, double distance,
+                                     const Steps& steps) {
   std::vector<engine::BatchStretch>& stretches = plan_.stretches;
   double from = 0.0;
-  long kept = 0;
-  const auto add = [&](double to, bool kink, bool keeps) {
-    stretches.push_back({to, std::max(1L, static_cast<long>(std::ceil((to - from) / ds - one_place))), kink, keeps});
+  long stored = 0;
+  const auto add = [&](double to, bool kink, bool stores) {
+    stretches.push_back(
+        {to, std::max(1L, static_cast<long>(std::ceil((to - from) / ds - same_position))), kink, stores});
     from = to;
   };
-  const auto keep_until = [&](double to) {  // and leaves out what is there
-    if (!steps.keeps) return;
-    for (double next = static_cast<double>(kept + 1) * ds; next < to - one_place;
-         next = static_cast<double>(++kept + 1) * ds)
+  const auto store_until = [&](double to) {  // also adds the stretches up to there
+    if (!steps.stores) return;
+    for (double next = static_cast<double>(stored + 1) * ds; next < to - same_position;
+         next = static_cast<double>(++stored + 1) * ds)
       add(next, false, true);
   };
   for (const double event : events) {
-    keep_until(event);
-    const bool keeps = steps.keeps && static_cast<double>(kept + 1) * ds < event + one_place;
-    add(event, true, keeps);
-    kept += keeps ? 1 : 0;
+    store_until(event);
+    const bool stores = steps.stores && static_cast<double>(stored + 1) * ds < event + same_position;
+    add(event, true, stores);
+    stored += stores ? 1 : 0;
   }
-  keep_until(past);
-  const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
-  // Runs that end elsewhere must not shape each other's steps.
-  if (last > 0) stretches.push_back({steps.trial ? past : from + static_cast<double>(last) * ds, last});
+  store_until(distance);
+  const auto last = static_cast<long>(std::ceil((distance - from) / ds - same_position));
+  // The ends of other runs must not influence the steps of a run.
+  if (last > 0) stretches.push_back({steps.trial ? distance : from + static_cast<double>(last) * ds, last});
 }
 
 CaseBatch::Ready CaseBatch::ready(std::span<const LaneRun> runs, const Steps& steps) {
@@ -146,17 +149,17 @@ CaseBatch::Ready CaseBatch::ready(std::span<const Member> members, const Steps& 
   ready.plan_ = first.plan_;
   ready.plan_.method = steps.method;
   const double ds = spacing(steps, members.front().run.speed);
-  double past = 0.0;
-  for (const Member& member : members) past = std::max(past, member.run.speed * member.run.end);
-  ready.stretch(first.events(past), ds, past, steps);
+  double distance = 0.0;
+  for (const Member& member : members) distance = std::max(distance, member.run.speed * member.run.end);
+  ready.add_stretches(first.events(distance), ds, distance, steps);
   for (const auto& [lanes, run] : members) {
-    ready.tracks_.push_back(lanes->track(run.seed, past + ds));
+    ready.tracks_.push_back(lanes->track(run.seed, distance + ds));
     ready.runs_.push_back({&lanes->fleet_, ready.tracks_.back().get(), &lanes->state_, run.speed, run.end});
   }
   return ready;
 }
 
-// As many at a time as the processor's vectors have numbers.
+// The runs are computed in groups as large as the processor's vectors.
 std::vector<engine::BatchResult> CaseBatch::Ready::run() const {
   std::vector<engine::BatchResult> all;
   const std::span<const engine::BatchRun> runs(runs_);
@@ -175,12 +178,12 @@ bool CaseBatch::merge(const CaseBatch& other) {
     return a.freedom() == b.freedom() &&
            std::equal(a.wheels.begin(), a.wheels.end(), b.wheels.begin(), b.wheels.end(), same_wheel);
   };
-  const auto near = [](double a, double b) { return std::abs(a - b) < one_place; };
-  const std::vector<train::MovingVehicle>&own = fleet_.vehicles, &its = other.fleet_.vehicles;
-  if (!std::equal(own.begin(), own.end(), its.begin(), its.end(), same_vehicle) ||
-      !std::equal(wheels_.begin(), wheels_.end(), other.wheels_.begin(), other.wheels_.end(), near) ||
+  const auto same_distance = [](double a, double b) { return std::abs(a - b) < same_position; };
+  const std::vector<train::MovingVehicle>&own = fleet_.vehicles, &others = other.fleet_.vehicles;
+  if (!std::equal(own.begin(), own.end(), others.begin(), others.end(), same_vehicle) ||
+      !std::equal(wheels_.begin(), wheels_.end(), other.wheels_.begin(), other.wheels_.end(), same_distance) ||
       &shared_ != &other.shared_ || kinks_ != other.kinks_ || plan_.level_until != other.plan_.level_until ||
-      scene_.output.probes != other.scene_.output.probes || track_past_ != other.track_past_ ||
+      scene_.output.probes != other.scene_.output.probes || track_range_ != other.track_range_ ||
       track_distance_ != other.track_distance_)
     return false;
   structure_ = other.structure_;
@@ -188,7 +191,7 @@ bool CaseBatch::merge(const CaseBatch& other) {
   return true;
 }
 
-double CaseBatch::defect(const engine::BatchResult& result) {
+double CaseBatch::residual(const engine::BatchResult& result) {
   double largest = 0.0;
   for (train::MovingVehicle& vehicle : fleet_.vehicles)
     largest = std::max(largest, train::linearisation_residual_at(vehicle, result.farthest.data() + vehicle.offset));

@@ -1,5 +1,5 @@
 // Computes the runs of a study by the fastest admissible way: exact modal solutions, vectorised batches by elements, or
-// single runs, also with full mechanisms where linear vehicles are not accurate enough.
+// single runs, also with mechanisms if linear vehicles are not accurate enough.
 #include "case_runner.hpp"
 
 #include <algorithm>
@@ -21,11 +21,11 @@
 namespace traverse::app {
 namespace {
 
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Of a run by the kernel of batches that goes alone, times what it takes beside others.
-constexpr double alone_over_beside = 20.0;
-constexpr double seconds_a_look = 1e-7;  // of limits at a run by modes
+// The cost of a single run by the batch kernel, relative to a run in a full batch.
+constexpr double single_run_factor = 20.0;
+constexpr double seconds_per_sample = 1e-7;  // s, for the check of limits at one sample of a run by modes
 
 }  // namespace
 
@@ -41,40 +41,42 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std:
   }
   set_up_limits(notes);
   if (scene_.exact_in_time()) beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
-  if (scene_.exact_in_time() && scene_.judges_runs() && !beam_->modal->dampers_couple())
-    force_findings_.emplace(scene_, *beam_, counting_);
+  if (scene_.exact_in_time() && scene_.has_run_limits() && !beam_->modal->dampers_couple())
+    moving_force_limits_.emplace(scene_, *beam_, cutoff_frequency_);
   std::vector<std::string> ignored;
   for (std::size_t train = 0; train < trains(); ++train) {
     for (const double speed : std::set{speeds_.front(), speeds_.back()})
-      const Passage checked(scene_of(train, {speed, {}}), *beam_,
-                            train == 0 && speed == speeds_.front() ? notes : ignored);
+      const Passage check_of_input(scene_of(train, {speed, {}}), *beam_,
+                                   train == 0 && speed == speeds_.front() ? notes : ignored);
   }
-  set_up_lanes();
+  set_up_batches();
 }
 
 void CaseRunner::set_up_limits(std::vector<std::string>& notes) {
   if (filters_wheels(scene_)) scene_.sampling_interval = spacing_for(scene_.output.wheel_low_pass);
   if (!scene_.limits_deck_acceleration()) return;
-  counting_ = frequency_that_counts(scene_, *beam_, true, notes);
-  if (counting_ > 0.0) scene_.sampling_interval = std::min(scene_.sampling_interval, spacing_for(counting_));
+  cutoff_frequency_ = cutoff_frequency(scene_, *beam_, true, notes);
+  if (cutoff_frequency_ > 0.0)
+    scene_.sampling_interval = std::min(scene_.sampling_interval, spacing_for(cutoff_frequency_));
 }
 
-void CaseRunner::set_up_lanes() {
+void CaseRunner::set_up_batches() {
   if (scene_.exact_in_time()) return;
-  why_no_lanes_ = batch_obstacle(scene_, *beam_);
-  by_kernel_ = why_no_lanes_.empty();
-  if (scene_.judges_runs()) why_no_lanes_ = "limits are judged by whole runs";
-  if (scene_.sweep->lanes == 0) why_no_lanes_ = "sweep_lanes 0 asks for that";
-  if (!why_no_lanes_.empty()) return;
+  lane_obstacle_ = batch_obstacle(scene_, *beam_);
+  by_batch_kernel_ = lane_obstacle_.empty();
+  if (scene_.has_run_limits()) lane_obstacle_ = "the check of limits needs single runs";
+  if (scene_.sweep->lanes == 0) lane_obstacle_ = "sweep_lanes is 0";
+  if (!lane_obstacle_.empty()) return;
   scene_of(0, {speeds_.front(), {}});
   lanes_.emplace(scene_, *beam_);
-  why_no_lanes_ = lanes_->obstacle();
-  if (!why_no_lanes_.empty()) return lanes_.reset();
+  lane_obstacle_ = lanes_->obstacle();
+  if (!lane_obstacle_.empty()) return lanes_.reset();
   static_deflection_[0] = lanes_->static_deflection();
-  double past = 0.0;
-  for (const double speed : speeds_) past = std::max(past, speed * (duration(0, speed) + lanes_->steps().longest));
-  why_no_lanes_ = lanes_->expect(past);
-  if (!why_no_lanes_.empty()) lanes_.reset();
+  double distance = 0.0;
+  for (const double speed : speeds_)
+    distance = std::max(distance, speed * (duration(0, speed) + lanes_->steps().longest));
+  lane_obstacle_ = lanes_->prepare_tracks(distance);
+  if (!lane_obstacle_.empty()) lanes_.reset();
 }
 
 std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& runs, std::size_t most) {
@@ -86,16 +88,16 @@ std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& run
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
   std::vector<std::vector<std::size_t>> groups;
   for (const std::size_t i : order) {
-    const bool joins = !groups.empty() && groups.back().size() < most &&
-                       engine::speed_class(runs[groups.back().front()].speed) == engine::speed_class(runs[i].speed);
-    if (!joins) groups.emplace_back();
+    const bool fits = !groups.empty() && groups.back().size() < most &&
+                      engine::speed_class(runs[groups.back().front()].speed) == engine::speed_class(runs[i].speed);
+    if (!fits) groups.emplace_back();
     groups.back().push_back(i);
   }
   return groups;
 }
 
 std::size_t CaseRunner::width() const {
-  if (by_modes_alone() && !beam_->modal->dampers_couple())
+  if (by_modes_only() && !beam_->modal->dampers_couple())
     return std::clamp<std::size_t>(scene_.sweep->lanes, 1, engine::best_width());
   return lanes_ ? scene_.sweep->lanes : 1;
 }
@@ -104,34 +106,34 @@ std::vector<CaseResult> CaseRunner::run_together(std::size_t train, std::span<co
                                                  const std::function<void(double)>& reached) {
   CaseRunner& first = *members.front().runner;
   std::vector<CaseResult> results;
-  if (first.by_modes_alone()) {
+  if (first.by_modes_only()) {
     std::vector<CaseRun> runs;
     for (const Member& member : members) runs.push_back(member.run);
     results = first.run_by_modes(train, runs);
   } else if (first.lanes_) {
-    results = run_in_lanes(train, members, reached);
+    results = run_batch(train, members, reached);
   } else {
     for (const auto& [runner, one] : members) results.push_back(runner->run(train, one, reached));
   }
   if (first.scene_.by_given_modes())
     for (CaseResult& result : results)
-      for (base::ProbePeaks& peak : result.peaks) peak.moment = {not_known, not_known};
-  for (CaseResult& result : results) result.findings.resize(first.scene_.limits.size());  // unknown where not judged
+      for (base::ProbePeaks& peak : result.peaks) peak.moment = {unknown, unknown};
+  for (CaseResult& result : results) result.evaluated.resize(first.scene_.limits.size());  // unknown if not evaluated
   return results;
 }
 
-std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<const Member> members,
-                                                 const std::function<void(double)>& reached) {
-  std::vector<CaseBatch::Member> beside;
+std::vector<CaseResult> CaseRunner::run_batch(std::size_t train, std::span<const Member> members,
+                                              const std::function<void(double)>& reached) {
+  std::vector<CaseBatch::Member> batch;
   for (const auto& [runner, one] : members)
-    beside.push_back({&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed}});
+    batch.push_back({&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed}});
   std::vector<CaseResult> results;
   for (const engine::BatchResult& crossing :
-       CaseBatch::ready(std::span<const CaseBatch::Member>(beside), beside.front().lanes->steps()).run()) {
+       CaseBatch::ready(std::span<const CaseBatch::Member>(batch), batch.front().lanes->steps()).run()) {
     if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const auto& [runner, one] = members[results.size()];
-    if (crossing.trouble != engine::none || runner->lanes_->defect(crossing) > runner->scene_.model.most_residual) {
-      ++runner->alone_;
+    if (crossing.trouble != engine::none || runner->lanes_->residual(crossing) > runner->scene_.model.residual_limit) {
+      ++runner->separate_runs_;
       results.push_back(runner->run(train, one, reached));
     } else {
       results.push_back(runner->result_of(crossing, train));
@@ -144,7 +146,7 @@ CaseResult CaseRunner::result_of(const engine::BatchResult& crossing, std::size_
   CaseResult result;
   static_cast<base::PassagePeaks&>(result) = crossing;
   result.static_deflection = static_deflection_.at(train);
-  result.unseen = crossing.contact_losses > 0.0 && !scene_.model.trials_lost_contact;
+  result.outside_trials = crossing.contact_losses > 0.0 && !scene_.model.trials_lost_contact;
   result.ended = true;
   return result;
 }
@@ -169,14 +171,15 @@ double CaseRunner::cost() const {
   if (scene_.exact_in_time()) {
     const std::vector<double>& omega = beam_->modal->omega();
     const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
-    const double sampling_interval =
-        force_findings_ && std::isfinite(scene_.sampling_interval) ? seconds_a_look / scene_.sampling_interval : 0.0;
+    const double sampling_interval = moving_force_limits_ && std::isfinite(scene_.sampling_interval)
+                                         ? seconds_per_sample / scene_.sampling_interval
+                                         : 0.0;
     return instants * modal_instant_seconds(scene_, static_cast<double>(omega.size()), beam_->modal->dampers_couple()) +
            sampling_interval;
   }
   const double step = scene_.model.step.value_or(1.0);
-  if (!by_kernel_) return step_seconds(scene_, scene_.model.method) / step;
-  return (lanes_ ? 1.0 : alone_over_beside) * batch_stage_seconds(scene_, beam_->beam->mesh().elements()) *
+  if (!by_batch_kernel_) return step_seconds(scene_, scene_.model.method) / step;
+  return (lanes_ ? 1.0 : single_run_factor) * batch_stage_seconds(scene_, beam_->beam->mesh().elements()) *
          static_cast<double>(method_of(scene_).stages.size()) / step;
 }
 
@@ -188,43 +191,44 @@ double CaseRunner::cost_of_all() const {
 }
 
 CaseResult CaseRunner::run(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached) {
-  return by_modes_alone() ? run_by_modes(train, {&run, 1}).front() : run_by_elements(train, run, reached);
+  return by_modes_only() ? run_by_modes(train, {&run, 1}).front() : run_by_elements(train, run, reached);
 }
 
 CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
                                        const std::function<void(double)>& reached) {
   std::vector<std::string> ignored;
   const Scene& scene = scene_of(train, run);
-  // Factorisations of other runs would serve shifts that are equal but for rounding: results would depend on which runs
-  // this rank has had.
-  beam_->statics->forget_steps();
+  // Stored factorisations of other runs have shifts that are equal except for rounding: results would depend on the
+  // earlier runs of this rank.
+  beam_->statics->delete_step_factors();
   Passage passage(scene, *beam_, ignored);
   passage.start(ignored);
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
-  RunObserver watch(scene, passage.system(), beam_->bridge(), none);
-  if (counting_ > 0.0 && no_filter(counting_, passage.plan(), scene.output.probes.size()).empty())
-    watch.keep_accelerations({counting_, passage.plan(), scene.output.probes});
+  RunObserver observer(scene, passage.system(), beam_->bridge(), none);
+  if (cutoff_frequency_ > 0.0 && filter_obstacle(cutoff_frequency_, passage.plan(), scene.output.probes.size()).empty())
+    observer.keep_accelerations({cutoff_frequency_, passage.plan(), scene.output.probes});
   const Output& out = scene.output;
   const std::size_t wheels = wheels_at_start(scene).size();
-  if (filters_wheels(scene) && no_filter(out.wheel_low_pass, passage.plan(), wheels, "wheels").empty())
-    watch.keep_wheel_forces({out.wheel_low_pass, out.unloading_level, passage.plan(), wheels});
-  if (scene.judges_runs()) watch.judge();
-  const double seen_until = run.speed > 0.0 ? scene.model.trials_reach / run.speed : scene.model.trials_reach;
-  watch.tell_beyond_trials(seen_until);
+  if (filters_wheels(scene) && filter_obstacle(out.wheel_low_pass, passage.plan(), wheels, "wheels").empty())
+    observer.keep_wheel_forces({out.wheel_low_pass, out.unloading_level, passage.plan(), wheels});
+  if (scene.has_run_limits()) observer.check_limits();
+  const double covered_until = run.speed > 0.0 ? scene.model.trial_distance / run.speed : scene.model.trial_distance;
+  observer.check_extrapolation(covered_until);
   CaseResult result;
   result.peaks.resize(scene.output.probes.size());
-  const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
+  const auto sample = [&](const integrate::Instant& instant) { observer.sample(instant); };
   const auto step = [&](double t, long) {
-    watch.step(t);
+    observer.step(t);
     if (reached) reached(t);
     return caught_signal() == 0;
   };
   passage.run(sample, step);
   result.ended = caught_signal() == 0;
   if (!result.ended) return result;
-  if (passage.system().defect() > scene.model.most_residual) return run_with_mechanisms(train, run, reached);
-  check_balance(scene, watch.extremes());
-  const ResponseExtremes& peaks = watch.finished_peaks();
+  if (passage.system().linearisation_residual() > scene.model.residual_limit)
+    return run_with_mechanisms(train, run, reached);
+  check_balance(scene, observer.extremes());
+  const ResponseExtremes& peaks = observer.finished_peaks();
   for (std::size_t p = 0; p < result.peaks.size(); ++p) {
     const auto peak = [&](Quantity q) {
       const Extreme& found = peaks.largest_of_each(q)[p];
@@ -232,28 +236,29 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
     };
     result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
   }
-  if (scene.judges_runs())
-    for (const results::Verdict& verdict : watch.verdicts(watch.finish())) result.findings.push_back(verdict.found);
-  const results::Summary& extremes = watch.finished_extremes();
+  if (scene.has_run_limits())
+    for (const results::Verdict& verdict : observer.verdicts(observer.finish()))
+      result.evaluated.push_back(verdict.found);
+  const results::Summary& extremes = observer.finished_extremes();
   result.least_wheel_force = extremes.least_wheel_force;
   result.greatest_wheel_force = extremes.greatest_wheel_force;
   result.contact_losses = extremes.contact_losses;
   result.longest_loss = extremes.longest_loss;
-  result.unseen = watch.met_unseen(scene.model.trials_lost_contact ? seen_until : 0.0);
-  std::vector<double>& at_rest = static_deflection_[train];
-  if (at_rest.empty() || !passage.system().weights().pass_together(watch.paths())) {
-    at_rest.clear();
+  result.outside_trials = observer.has_uncovered_event(scene.model.trials_lost_contact ? covered_until : 0.0);
+  std::vector<double>& static_deflection = static_deflection_[train];
+  if (static_deflection.empty() || !passage.system().weights().pass_together(observer.paths())) {
+    static_deflection.clear();
     for (const double x : scene.output.probes) {
       if (caught_signal() != 0) break;
-      at_rest.push_back(passage.system().weights().static_peak(x, watch.paths(), watch.last_time()));
+      static_deflection.push_back(passage.system().weights().static_peak(x, observer.paths(), observer.last_time()));
     }
   }
   result.ended = caught_signal() == 0;
-  result.static_deflection = at_rest;
+  result.static_deflection = static_deflection;
   return result;
 }
 
-// Linear vehicles have left out too much.
+// The linearisation residual exceeds its limit.
 CaseResult CaseRunner::run_with_mechanisms(std::size_t train, const CaseRun& run,
                                            const std::function<void(double)>& reached) {
   scene_.model.vehicles = VehicleModel::full;
@@ -263,11 +268,11 @@ CaseResult CaseRunner::run_with_mechanisms(std::size_t train, const CaseRun& run
 }
 
 std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<const CaseRun> runs) {
-  auto place = passages_.find(train);
-  if (place == passages_.end()) {
+  auto passage = passages_.find(train);
+  if (passage == passages_.end()) {
     const train::MovingLoad& load = scene_of(train, runs.front()).load;
-    place = passages_.try_emplace(train, *beam_->modal, load, scene_.start == Start::equilibrium).first;
-    static_deflection_[train] = place->second.static_peaks();
+    passage = passages_.try_emplace(train, *beam_->modal, load, scene_.start == Start::equilibrium).first;
+    static_deflection_[train] = passage->second.static_peaks();
   }
   std::vector<double> speeds, ends;
   for (const CaseRun& one : runs) {
@@ -275,22 +280,23 @@ std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<co
     ends.push_back(duration(train, one.speed));
   }
   std::vector<CaseResult> results(speeds.size());
-  const auto going = [] { return caught_signal() == 0; };
+  const auto no_signal = [] { return caught_signal() == 0; };
   std::vector<std::vector<base::ProbePeaks>> peaks;
   if (beam_->modal->dampers_couple())
     for (std::size_t i = 0; i < speeds.size(); ++i)
-      peaks.push_back(integrate::modal_peaks(*beam_->modal, place->second.history(), speeds[i],
+      peaks.push_back(integrate::modal_peaks(*beam_->modal, passage->second.history(), speeds[i],
                                              scene_.start == Start::equilibrium, ends[i], scene_.sweep->instants,
-                                             going));
+                                             no_signal));
   else
-    peaks = place->second.peaks(speeds, ends, scene_.sweep->instants, going);
+    peaks = passage->second.peaks(speeds, ends, scene_.sweep->instants, no_signal);
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     results[i].peaks = peaks[i];
     results[i].static_deflection = static_deflection_[train];
     results[i].ended = caught_signal() == 0;
-    if (!force_findings_ || !results[i].ended) continue;
+    if (!moving_force_limits_ || !results[i].ended) continue;
     scene_of(train, runs[i]);
-    results[i].findings = force_findings_->of(train, ends[i], results[i].peaks, results[i].static_deflection);
+    results[i].evaluated =
+        moving_force_limits_->evaluate(train, ends[i], results[i].peaks, results[i].static_deflection);
   }
   return results;
 }

@@ -1,5 +1,5 @@
 // Evaluates the exact modal solution at equal intervals, filters the accelerations, and determines rotations,
-// amplification and the other quantities of limits.
+// amplification and the other limited quantities.
 #include "ensemble/moving_force_limits.hpp"
 
 #include <algorithm>
@@ -11,56 +11,57 @@
 
 namespace traverse::app {
 
-MovingForceLimits::MovingForceLimits(const Scene& scene, SharedBeam& shared, double counting)
+MovingForceLimits::MovingForceLimits(const Scene& scene, SharedBeam& shared, double cutoff_frequency)
     : scene_(scene),
       shared_(shared),
-      counting_(counting),
+      cutoff_frequency_(cutoff_frequency),
       by_modes_(shared.modal->modes() < shared.modal->probes().count),
       count_(by_modes_ ? shared.modal->modes() : shared.modal->probes().count),
       slopes_(shared.modal->slopes(DeckRotations(*shared.beam).unknowns(), scene.self_weight ? scene.gravity : 0.0)) {}
 
-std::vector<results::EvaluatedQuantity> MovingForceLimits::of(std::size_t train, double end_time,
-                                                              std::span<const base::ProbePeaks> peaks,
-                                                              std::span<const double> static_deflection) {
+std::vector<results::EvaluatedQuantity> MovingForceLimits::evaluate(std::size_t train, double end_time,
+                                                                    std::span<const base::ProbePeaks> peaks,
+                                                                    std::span<const double> static_deflection) {
   std::vector<std::string> ignored;
   const Plan plan = plan_exact_in_time(scene_, end_time, shared_.first_period(), ignored);
-  LimitCheck judge(scene_, no_fleet_, &*shared_.beam);
-  pass(train, plan, judge);
+  LimitCheck check(scene_, no_fleet_, &*shared_.beam);
+  sample_run(train, plan, check);
 
   results::Summary summary;
   summary.probes = !peaks.empty();
   std::vector<Extreme> deflections;
   for (std::size_t p = 0; p < peaks.size(); ++p) {
-    const auto note = [&](const base::Extreme& peak, results::Extreme& largest) {
+    const auto record_largest = [&](const base::Extreme& peak, results::Extreme& largest) {
       if (peak.value <= largest.value) return false;
       largest = {peak.value, peak.time, scene_.output.probes[p]};
       return true;
     };
     deflections.push_back({peaks[p].deflection.value, peaks[p].deflection.time, p});
-    note(peaks[p].acceleration, summary.acceleration);
-    if (note(peaks[p].deflection, summary.deflection))
+    record_largest(peaks[p].acceleration, summary.acceleration);
+    if (record_largest(peaks[p].deflection, summary.deflection))
       summary.amplification = static_deflection[p] > 0.0 ? peaks[p].deflection.value / static_deflection[p] : 0.0;
   }
-  if (counting_ > 0.0 && no_filter(counting_, plan, peaks.size()).empty()) summary.low_passed = filtered(plan.interval);
-  std::vector<results::EvaluatedQuantity> findings;
-  for (const results::Verdict& verdict : judge.verdicts(summary, deflections)) findings.push_back(verdict.found);
-  return findings;
+  if (cutoff_frequency_ > 0.0 && filter_obstacle(cutoff_frequency_, plan, peaks.size()).empty())
+    summary.low_passed = filtered(plan.interval);
+  std::vector<results::EvaluatedQuantity> evaluated;
+  for (const results::Verdict& verdict : check.verdicts(summary, deflections)) evaluated.push_back(verdict.found);
+  return evaluated;
 }
 
-/// Looks at the run as a run by itself is looked at.
-void MovingForceLimits::pass(std::size_t train, const Plan& plan, LimitCheck& judge) {
+/// Samples the run at the same instants as a single run.
+void MovingForceLimits::sample_run(std::size_t train, const Plan& plan, LimitCheck& check) {
   const integrate::ForceHistory& history = histories_.try_emplace(train, slopes_.influence, scene_.load).first->second;
   const structure::ModalBridge& bridge = *shared_.modal;
   integrate::ModalMotion motion(bridge, history, scene_.load.speed, scene_.start == Start::equilibrium);
-  motion.expect(plan.interval);
+  motion.prepare(plan.interval);
   const std::size_t modes = bridge.modes();
   std::vector<double> slopes(slopes_.count);
-  const auto look = [&] {
+  const auto sample = [&] {
     std::copy(slopes_.weight.begin(), slopes_.weight.end(), slopes.begin());
     motion.add_channels(modes, slopes_.count, slopes.data());
     for (std::size_t i = 0; i < modes; ++i)
       for (std::size_t k = 0; k < slopes_.count; ++k) slopes[k] += slopes_.of_q[i * slopes_.count + k] * motion.q()[i];
-    judge.rotations(motion.time(), slopes);
+    check.rotations(motion.time(), slopes);
   };
   const double slack = 1e-3 * std::min(plan.interval, plan.end_time);
   const auto instants = static_cast<std::size_t>(std::floor((plan.end_time + slack) / plan.interval)) + 1;
@@ -68,7 +69,7 @@ void MovingForceLimits::pass(std::size_t train, const Plan& plan, LimitCheck& ju
   for (std::size_t k = 0; k < instants; ++k) {
     const double t = static_cast<double>(k) * plan.interval;
     motion.advance(t > plan.end_time - slack ? plan.end_time : t);
-    look();
+    sample();
     double* row = &series_[k * count_];
     if (by_modes_)
       std::copy_n(motion.acceleration().data(), modes, row);
@@ -77,7 +78,7 @@ void MovingForceLimits::pass(std::size_t train, const Plan& plan, LimitCheck& ju
   }
   if (motion.time() >= plan.end_time) return;
   motion.advance(plan.end_time);
-  look();
+  sample();
 }
 
 void MovingForceLimits::at_probes(const double* of_modes, double* row) const {
@@ -92,13 +93,13 @@ void MovingForceLimits::at_probes(const double* of_modes, double* row) const {
 }
 
 results::LowPassed MovingForceLimits::filtered(double interval) {
-  const LowPass filter(counting_, interval);
+  const LowPass filter(cutoff_frequency_, interval);
   filter.apply(series_, count_);
-  if (!by_modes_) return peak_of(series_, scene_.output.probes, counting_, interval);
+  if (!by_modes_) return peak_of(series_, scene_.output.probes, cutoff_frequency_, interval);
   const std::size_t probes = shared_.modal->probes().count, instants = series_.size() / count_;
   rows_.resize(instants * probes);
   for (std::size_t k = 0; k < instants; ++k) at_probes(&series_[k * count_], &rows_[k * probes]);
-  return peak_of(rows_, scene_.output.probes, counting_, interval);
+  return peak_of(rows_, scene_.output.probes, cutoff_frequency_, interval);
 }
 
 }  // namespace traverse::app

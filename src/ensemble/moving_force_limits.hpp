@@ -1,6 +1,6 @@
-// What limits ask of passages of moving forces by modes that are exact in time, where peaks alone are not enough:
-// filtered accelerations and rotations. The probes' accelerations are filtered, or those of the modes where there are
-// fewer of these.
+// Evaluates limited quantities of moving forces by modes that are exact in time, where peaks are not sufficient:
+// filtered accelerations and rotations. The accelerations of the probes are filtered, or those of the modes if there
+// are fewer modes.
 #pragma once
 
 #include <map>
@@ -19,31 +19,31 @@ namespace traverse::app {
 
 class MovingForceLimits {
  public:
-  /// Of a scene whose dampers couple no modes. counting: Hz, up to which accelerations count; 0: they are not filtered.
-  /// Both must outlive it.
-  MovingForceLimits(const Scene& scene, SharedBeam& shared, double counting);
+  /// For a scene whose dampers do not couple modes. cutoff_frequency: Hz, of accelerations; 0: they are not filtered.
+  /// Both objects must outlive this one.
+  MovingForceLimits(const Scene& scene, SharedBeam& shared, double cutoff_frequency);
 
-  /// One for each limit of the scene as it is now, with its train of forces, which is number `train`, and its speed.
-  /// peaks, static_deflection (m): of each probe.
-  std::vector<results::EvaluatedQuantity> of(std::size_t train, double end_time,
-                                             std::span<const base::ProbePeaks> peaks,
-                                             std::span<const double> static_deflection);
+  /// The quantity of each limit of the scene with its present speed and force train number `train`. peaks,
+  /// static_deflection (m): at each probe.
+  std::vector<results::EvaluatedQuantity> evaluate(std::size_t train, double end_time,
+                                                   std::span<const base::ProbePeaks> peaks,
+                                                   std::span<const double> static_deflection);
 
  private:
-  void pass(std::size_t train, const Plan& plan, LimitCheck& judge);
+  void sample_run(std::size_t train, const Plan& plan, LimitCheck& check);
   results::LowPassed filtered(double interval);
-  /// From the modes' accelerations to those of the probes.
+  /// Converts the modes' accelerations to those of the probes.
   void at_probes(const double* of_modes, double* row) const;
 
   const Scene& scene_;
   const SharedBeam& shared_;
-  double counting_;
-  bool by_modes_;      // the modes' accelerations are filtered, not the probes', as there are fewer of them
-  std::size_t count_;  // of either
+  double cutoff_frequency_;
+  bool by_modes_;      // the modes' accelerations are filtered, because there are fewer modes than probes
+  std::size_t count_;  // number of filtered series
   train::Fleet no_fleet_;
   structure::ModalSlopes slopes_;
-  std::map<std::size_t, integrate::ForceHistory> histories_;  // of each train
-  std::vector<double> series_, rows_;                         // accelerations at every instant, those of the probes
+  std::map<std::size_t, integrate::ForceHistory> histories_;  // the key is the train
+  std::vector<double> series_, rows_;                         // accelerations at every instant; those of the probes
 };
 
 }  // namespace traverse::app

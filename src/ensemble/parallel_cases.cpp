@@ -1,4 +1,4 @@
-// Executes dealt pieces until none is left, an error occurs or a signal arrives, and estimates progress from the
+// Computes pieces of work until none remains, an error occurs or a signal arrives, and estimates progress from the
 // durations of the runs.
 #include "ensemble/parallel_cases.hpp"
 
@@ -13,32 +13,34 @@
 namespace traverse::app {
 namespace {
 
-/// How far all are, by the time that the runs' motions last: the longest ones are dealt first.
-class Course {
+/// Progress of all ranks by the simulated time of the runs; the longest pieces are distributed first.
+class ProgressEstimate {
  public:
-  Course(const std::vector<RunPiece>& pieces, int ranks, bool quiet)
+  ProgressEstimate(const std::vector<RunPiece>& pieces, int ranks, bool quiet)
       : ranks_(static_cast<std::size_t>(ranks)), progress_(0.0, 1.0, quiet) {
     for (const RunPiece& piece : pieces) {
       duration_.push_back(piece.duration);
-      until_.push_back(until_.back() + piece.duration);
-      runs_.push_back(runs_.back() + piece.runs);
+      duration_before_.push_back(duration_before_.back() + piece.duration);
+      runs_before_.push_back(runs_before_.back() + piece.runs);
     }
   }
 
-  /// So many pieces are taken; this rank's own has `left` s to go, those of the others half of theirs.
-  void show(std::size_t taken, double left) {
+  /// `taken` pieces were distributed; this rank's piece has `remaining` s to run, those of the others half of their
+  /// duration.
+  void show(std::size_t taken, double remaining) {
     if (taken == 0) return;
     const double others = 0.5 * static_cast<double>(ranks_ - 1) * duration_[taken - 1];
-    const double done = std::max(until_[taken] - left - others, 0.0);
-    progress_.runs(done / until_.back(), runs_[taken > ranks_ ? taken - ranks_ : 0], runs_.back());
+    const double done = std::max(duration_before_[taken] - remaining - others, 0.0);
+    progress_.runs(done / duration_before_.back(), runs_before_[taken > ranks_ ? taken - ranks_ : 0],
+                   runs_before_.back());
   }
   void done() { progress_.done(); }
 
  private:
   std::size_t ranks_;
   results::Progress progress_;
-  std::vector<double> duration_, until_{0.0};  // s, of the runs of each piece, and of all pieces before it
-  std::vector<std::size_t> runs_{0};           // in the pieces before each
+  std::vector<double> duration_, duration_before_{0.0};  // s, of the runs of each piece, and of all pieces before it
+  std::vector<std::size_t> runs_before_{0};              // in the pieces before each
 };
 
 }  // namespace
@@ -47,27 +49,27 @@ RunFailure run_cases_in_parallel(MPI_Comm comm, const SharedWork& work, bool qui
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  Course course(work.pieces, ranks, quiet || rank != 0);
-  WorkQueue deal(comm, work.pieces.size());
+  ProgressEstimate progress(work.pieces, ranks, quiet || rank != 0);
+  WorkQueue queue(comm, work.pieces.size());
   RunFailure failure;
-  while (const auto piece = deal.next()) {
+  while (const auto piece = queue.next()) {
     const auto fail = [&](const Error& error) {
       failure = {static_cast<int>(*piece), error.status(), work.name(*piece) + " failed: " + error.what()};
-      deal.stop();
+      queue.stop();
     };
     const double duration = work.pieces[*piece].duration;
     try {
-      work.take(*piece, [&](double t) { course.show(deal.taken(), std::max(duration - t, 0.0)); });
+      work.compute(*piece, [&](double t) { progress.show(queue.taken(), std::max(duration - t, 0.0)); });
     } catch (const Error& error) {
       fail(error);
     } catch (const std::exception& failed) {
       fail(as_error(failed));
     }
-    if (caught_signal() != 0) deal.stop();
-    course.show(deal.taken(), 0.0);
-    results::Stage::advance(static_cast<double>(deal.taken()) / static_cast<double>(work.pieces.size()));
+    if (caught_signal() != 0) queue.stop();
+    progress.show(queue.taken(), 0.0);
+    results::Stage::advance(static_cast<double>(queue.taken()) / static_cast<double>(work.pieces.size()));
   }
-  course.done();
+  progress.done();
   return failure;
 }
 
@@ -75,14 +77,14 @@ RunFailure first_of(MPI_Comm comm, RunFailure mine) {
   int ranks = 1, rank = 0;
   MPI_Comm_size(comm, &ranks);
   MPI_Comm_rank(comm, &rank);
-  int place[2] = {mine.piece, rank};
-  MPI_Allreduce(MPI_IN_PLACE, place, 1, MPI_2INT, MPI_MINLOC, comm);
-  if (place[0] == RunFailure::nobody) return {};
+  int earliest[2] = {mine.piece, rank};
+  MPI_Allreduce(MPI_IN_PLACE, earliest, 1, MPI_2INT, MPI_MINLOC, comm);
+  if (earliest[0] == RunFailure::none) return {};
   int sizes[2] = {static_cast<int>(mine.message.size()), mine.status};
-  MPI_Bcast(sizes, 2, MPI_INT, place[1], comm);
+  MPI_Bcast(sizes, 2, MPI_INT, earliest[1], comm);
   mine.message.resize(static_cast<std::size_t>(sizes[0]));
-  MPI_Bcast(mine.message.data(), sizes[0], MPI_CHAR, place[1], comm);
-  return {place[0], sizes[1], mine.message};
+  MPI_Bcast(mine.message.data(), sizes[0], MPI_CHAR, earliest[1], comm);
+  return {earliest[0], sizes[1], mine.message};
 }
 
 }  // namespace traverse::app

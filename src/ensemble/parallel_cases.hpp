@@ -1,4 +1,4 @@
-// The runs of a sweep or a study, shared among the ranks: who takes what, how far all are, and what went wrong.
+// Distributes the runs of a sweep or a study over the ranks, with progress and failures.
 #pragma once
 
 #include <mpi.h>
@@ -10,32 +10,32 @@
 
 namespace traverse::app {
 
-/// Runs that one rank takes together.
+/// Runs that one rank computes together.
 struct RunPiece {
   std::size_t runs = 0;
-  double duration = 0.0;  // s of motion, of all of them
+  double duration = 0.0;  // simulated time of all its runs, s
 };
 
 struct SharedWork {
-  std::vector<RunPiece> pieces;  // in the order in which they are dealt
-  /// Computes a piece; `reached` wants to hear the time of the motion that is stepped, s.
-  std::function<void(std::size_t piece, const std::function<void(double)>& reached)> take;
-  /// A piece in words, for the message of a failure.
+  std::vector<RunPiece> pieces;  // in the order of distribution
+  /// Computes a piece; `reached` is called with the simulated time, s.
+  std::function<void(std::size_t piece, const std::function<void(double)>& reached)> compute;
+  /// The name of a piece in the message of a failure.
   std::function<std::string(std::size_t piece)> name;
 };
 
-/// What went wrong, if anything.
+/// The failure of a piece, if any.
 struct RunFailure {
-  static constexpr int nobody = std::numeric_limits<int>::max();
-  int piece = nobody;  // in the order of dealing
+  static constexpr int none = std::numeric_limits<int>::max();
+  int piece = none;  // in the order of distribution
   int status = 0;
   std::string message;
 
-  bool failed() const { return piece != nobody; }
+  bool failed() const { return piece != none; }
 };
 
-/// Collective. Each rank takes the next piece when it is free, until all are taken, one has failed or a signal has
-/// come. Returns the failure of this rank.
+/// Collective. Each rank computes the next piece when it is free, until no piece remains, one has failed or a signal
+/// arrived. Returns the failure of this rank.
 RunFailure run_cases_in_parallel(MPI_Comm comm, const SharedWork& work, bool quiet);
 
 /// Collective. The failure of the earliest piece, the same on every rank.

@@ -24,12 +24,12 @@ void ResultGather::send(std::vector<double> row) {
   MPI_Isend(sent.row.data(), static_cast<int>(sent.row.size()), MPI_DOUBLE, 0, tag_row, comm_, &sent.request);
 }
 
-void ResultGather::take(const MPI_Status& coming) {
+void ResultGather::receive(const MPI_Status& status) {
   int size = 0;
-  MPI_Get_count(&coming, MPI_DOUBLE, &size);
+  MPI_Get_count(&status, MPI_DOUBLE, &size);
   std::vector<double> row(static_cast<std::size_t>(size));
-  MPI_Recv(row.data(), size, MPI_DOUBLE, coming.MPI_SOURCE, coming.MPI_TAG, comm_, MPI_STATUS_IGNORE);
-  if (coming.MPI_TAG == tag_end)
+  MPI_Recv(row.data(), size, MPI_DOUBLE, status.MPI_SOURCE, status.MPI_TAG, comm_, MPI_STATUS_IGNORE);
+  if (status.MPI_TAG == tag_end)
     ++ended_;
   else
     store_(row);
@@ -44,10 +44,10 @@ void ResultGather::collect() {
     }
     return;
   }
-  for (int there = 1; there != 0;) {
-    MPI_Status coming;
-    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &there, &coming);
-    if (there != 0) take(coming);
+  for (int pending = 1; pending != 0;) {
+    MPI_Status status;
+    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &pending, &status);
+    if (pending != 0) receive(status);
   }
 }
 
@@ -59,9 +59,9 @@ void ResultGather::finish() {
     return;
   }
   while (ended_ < ranks_) {
-    MPI_Status coming;
-    MPI_Probe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &coming);
-    take(coming);
+    MPI_Status status;
+    MPI_Probe(MPI_ANY_SOURCE, MPI_ANY_TAG, comm_, &status);
+    receive(status);
   }
 }
 

@@ -1,4 +1,4 @@
-// Who computes what: pieces of work dealt among ranks, each to the next rank that is free.
+// Dynamic distribution of pieces of work: each rank gets the next piece when it is free.
 #pragma once
 
 #include <mpi.h>
@@ -8,8 +8,8 @@
 
 namespace traverse::app {
 
-/// Ranks of one computer take from a common counter in shared memory, which costs nothing and waits for nobody; among
-/// computers the pieces go round in turn.
+/// Ranks of one computer use a common counter in shared memory, without communication or waiting; the computers get the
+/// pieces in turn.
 class WorkQueue {
  public:
   /// Collective.
@@ -18,19 +18,19 @@ class WorkQueue {
   WorkQueue& operator=(const WorkQueue&) = delete;
   ~WorkQueue();
 
-  /// The next piece for this rank, the first ones first.
+  /// The next piece for this rank, in ascending order; empty: none remains.
   std::optional<std::size_t> next();
-  /// Nothing more is dealt on this computer.
+  /// Ends the distribution on this computer.
   void stop();
-  /// How many pieces all ranks have taken, about.
+  /// The approximate number of pieces that all ranks have taken.
   std::size_t taken() const;
 
  private:
   std::size_t pieces_;
   int computer_ = 0, computers_ = 1;
-  MPI_Comm together_ = MPI_COMM_NULL;  // ranks of this computer
+  MPI_Comm local_comm_ = MPI_COMM_NULL;  // ranks of this computer
   MPI_Win window_ = MPI_WIN_NULL;
-  long* taken_ = nullptr;  // in it: rounds taken on this computer
+  long* taken_ = nullptr;  // in the window: rounds taken on this computer
 };
 
 }  // namespace traverse::app

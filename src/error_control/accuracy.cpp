@@ -1,5 +1,5 @@
 // Chooses mesh and time step for a wanted error of the peaks: prepares beam, damping and filter frequency, runs the
-// error search, and repeats it with full mechanisms where linear vehicles are not accurate enough.
+// error search, and repeats it with the mechanisms if linear vehicles are not accurate enough.
 #include "error_control/accuracy.hpp"
 
 #include <fmt/format.h>
@@ -22,32 +22,32 @@
 namespace traverse::app {
 namespace {
 
-constexpr double some_step = 1e-6;             // s, to look at a scene before it has a step
-constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
+constexpr double placeholder_step = 1e-6;          // s: placeholder before a step is chosen
+constexpr std::size_t min_continuous_spans = 200;  // from this number of continuous spans the active window is used
 
 void limit_to_active_window(const Scene& scene, NumericalModel& model) {
   const beam::BeamModel& beam = *scene.beam;
-  if (model.rest_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= continuous_spans)
-    model.rest_tolerance = search::share_of_rest * scene.accuracy;
+  if (model.window_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= min_continuous_spans)
+    model.window_tolerance = search::share_of_active_window * scene.accuracy;
 }
 
-void say(const Scene& scene, const ModelSearch& search, const Choice& choice, std::vector<std::string>& notes) {
+void describe(const Scene& scene, const ModelSearch& search, const Choice& choice, std::vector<std::string>& notes) {
   const Accuracy& result = choice.accuracy;
   const std::string mesh = scene.by_given_modes() ? ""
                                                   : fmt::format("{} elements a {}, ", choice.model.elements,
                                                                 scene.beam->track ? "sleeper bay" : "span");
   notes.push_back(fmt::format("accuracy {:g}: {}{}steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
                               scene.accuracy, mesh, choice.model.method.empty() ? "" : choice.model.method + " with ",
-                              *choice.model.step, search.trials(), search.horizon(), result.seconds));
+                              *choice.model.step, search.trials(), search.window(), result.seconds));
   std::string expected;
   for (std::size_t q = 0; q < quantities; ++q)
-    if (result.estimates[q].present && result.estimates[q].kept)
+    if (result.estimates[q].present && result.estimates[q].accepted)
       expected +=
           fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity_names[q], result.estimates[q].expected);
   if (!expected.empty()) notes.push_back("estimated errors of the peaks: " + expected);
   for (std::size_t q = 0; q < quantities; ++q)
-    if (result.estimates[q].present && !result.estimates[q].kept)
-      notes.push_back(not_promised(static_cast<Quantity>(q), result.estimates[q]));
+    if (result.estimates[q].present && !result.estimates[q].accepted)
+      notes.push_back(not_estimated(static_cast<Quantity>(q), result.estimates[q]));
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ void set_first_mesh(Scene& scene) {
   set_mesh(scene, 2 * half > elements ? 2 * half : aligned_mesh(scene, elements, 2.0));
 }
 
-void fix_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+void set_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   if (!filters_deck(scene) || scene.output.low_pass) return;
   Scene known = scene;
   set_first_mesh(known);
@@ -74,10 +74,10 @@ void fix_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) 
   shared.damp(known, false, ignored);
   if (known.model.modes > 0) shared.prepare(known, ignored);
   const bool affordable = scene.limits_deck_acceleration() || frequencies_are_cheap(*shared.beam);
-  scene.output.low_pass = frequency_that_counts(known, shared, affordable, notes);
+  scene.output.low_pass = cutoff_frequency(known, shared, affordable, notes);
 }
 
-const options::Entry* own_measure() {
+const options::Entry* adaptive_step_option() {
   const options::Entry* control = options::in_force().find("ts_adapt_type");
   if (control != nullptr && control->value != "none") return control;
   return options::in_force().find("ts_arkimex_fully_implicit");
@@ -85,31 +85,31 @@ const options::Entry* own_measure() {
 
 namespace {
 
-/// Whether the whole acceleration, for which far more modes and shorter steps are needed, is judged by nothing.
-bool judged_low_passed(const Scene& scene) { return scene.limits_deck_acceleration() && filters_deck(scene); }
+/// Whether no limit applies to the unfiltered acceleration, which needs far more modes and shorter steps.
+bool limits_filtered_only(const Scene& scene) { return scene.limits_deck_acceleration() && filters_deck(scene); }
 
 }  // namespace
 
-bool asks_for(const Scene& scene, std::size_t quantity) {
+bool is_controlled(const Scene& scene, std::size_t quantity) {
   if (quantity == low_passed && !filters_deck(scene)) return false;
-  const std::vector<std::string>& asked = scene.accuracy_of;
-  if (!asked.empty()) return std::find(asked.begin(), asked.end(), stored_names[quantity]) != asked.end();
-  if (quantity == acceleration) return !judged_low_passed(scene);
-  return !by_elements_alone(quantity) || (quantity != shear_force && pushes_along(scene));
+  const std::vector<std::string>& given = scene.accuracy_of;
+  if (!given.empty()) return std::find(given.begin(), given.end(), stored_names[quantity]) != given.end();
+  if (quantity == acceleration) return !limits_filtered_only(scene);
+  return !by_elements_only(quantity) || (quantity != shear_force && pushes_along(scene));
 }
 
-bool is_welcome(const Scene& scene, std::size_t quantity) {
+bool is_optional(const Scene& scene, std::size_t quantity) {
   return scene.accuracy_of.empty() && quantity == shear_force;
 }
 
-std::string why_not_asked(const Scene& scene, std::size_t quantity) {
+std::string why_not_controlled(const Scene& scene, std::size_t quantity) {
   return quantity == acceleration && scene.accuracy_of.empty()
-             ? "limits judge the low-passed one; accuracy_of asks for both"
-             : "accuracy_of does not ask for it";
+             ? "the limits apply to the low-passed acceleration; accuracy_of can include both"
+             : "accuracy_of does not include it";
 }
 
-bool asks_for_forces_alone(const Scene& scene) {
-  return asks_for(scene, wheel_force) && !asks_for(scene, acceleration);
+bool controls_forces_only(const Scene& scene) {
+  return is_controlled(scene, wheel_force) && !is_controlled(scene, acceleration);
 }
 
 bool damps_high_modes(const Scene& scene) {
@@ -129,15 +129,15 @@ bool damps_all_modes(const Scene& scene) {
 
 Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
   Choice none{scene.model, {}, {}};
-  const bool alone = chooses_step_alone(scene);
-  if (!alone && !chooses(scene)) return none;
-  if (const options::Entry* option = own_measure()) {
+  const bool without_bridge = chooses_multibody_step(scene);
+  if (!without_bridge && !chooses(scene)) return none;
+  if (const options::Entry* option = adaptive_step_option()) {
     notes.push_back(fmt::format(
         "accuracy {:g} has no effect: trial runs do not choose mesh and step, and errors are not estimated: {}",
         scene.accuracy, option->given()));
     return none;
   }
-  if (alone) return choose_step_alone(comm, scene, notes);
+  if (without_bridge) return choose_multibody_step(comm, scene, notes);
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
@@ -149,16 +149,16 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   shared.prepare(known, ignored);
   known.damping.ratios.reset();
   known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
-  fix_low_pass(comm, known, ignored);
+  set_low_pass(comm, known, ignored);
   Scene timed = known;
-  if (!timed.model.step) timed.model.step = some_step;
+  if (!timed.model.step) timed.model.step = placeholder_step;
   const double end = Passage(timed, shared, ignored).plan().end_time;
   std::optional<ModelSearch> search(std::in_place, comm, known, shared, end);
   try {
     search->run();
-  } catch (const NotLinear& linear) {
+  } catch (const ResidualTooLarge& linear) {
     notes.push_back(
-        fmt::format("vehicles are not linearised: the residual would be {:.1g} of their weights", linear.defect));
+        fmt::format("vehicles are not linearised: the residual would be {:.1g} of their weights", linear.residual));
     known.model.vehicles = VehicleModel::full;
     search.emplace(comm, known, shared, end);
     search->run();
@@ -166,11 +166,11 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   Choice choice = search->choice();
   if (choice.model.vehicles == VehicleModel::automatic) {
     choice.model.vehicles = VehicleModel::linear;
-    choice.model.most_residual = search->most_residual();
+    choice.model.residual_limit = search->residual_limit();
   }
   limit_to_active_window(scene, choice.model);
   choice.accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  say(scene, *search, choice, notes);
+  describe(scene, *search, choice, notes);
   return choice;
 }
 

@@ -1,5 +1,4 @@
-// The choice of what passages in lanes are computed with (batch_model.hpp): a search on their beginnings, checked on
-// whole ones.
+// Chooses the model of batched passages (batch_model.hpp): a search on their first part and a check on whole passages.
 #pragma once
 
 #include <cstddef>
@@ -13,41 +12,41 @@
 
 namespace traverse::app {
 
-/// Where trains have their trials: groups of speeds, m/s.
+/// Speeds of the trial passages in groups, m/s.
 struct TrialSpeeds {
-  std::vector<std::vector<double>> beginnings, mixed, wholes;  // mixed: none where the beginnings serve for them
+  std::vector<std::vector<double>> first_parts, mixed, whole_passages;  // mixed: empty if first_parts are used instead
 };
 
 class BatchChoice {
  public:
-  /// Of a scene with a sweep, which must outlive it.
+  /// For a scene with a sweep, which must outlive this object.
   BatchChoice(const Scene& scene, const TrialSpeeds& speeds);
 
-  /// Why nothing is chosen; unsettled: a search for less may settle.
+  /// The reason why nothing was chosen. not_converged: a search with a smaller accuracy may succeed.
   struct NotChosen {
     std::string why;
-    bool unsettled = false;
+    bool not_converged = false;
   };
-  /// Throws NotChosen, and BatchTrialRuns::Refused where passages cannot go in lanes.
+  /// Throws NotChosen, and BatchTrialRuns::Refused if passages cannot be computed in batches.
   Choice choose();
 
  private:
-  void take(const std::optional<NumericalModel>& found);
-  Scene tried() const;
-  /// Whole passages: errors add up while the train crosses. Against a finer mesh and half the step, by esdirk4:
-  /// genalpha takes all vibration out of wheels in time, and two of its steps may agree on that.
+  void accept(const std::optional<NumericalModel>& model);
+  Scene trial_scene() const;
+  /// Compares whole passages, because errors accumulate while the train crosses, with a finer mesh and half the step by
+  /// esdirk4. genalpha damps the vibration of wheels completely in time, and two of its steps may agree on that.
   PeakErrors check_wholes(BatchSearch& search);
-  /// By a finer mesh where it is that what the other one differs by, else by shorter steps.
+  /// Refines the mesh if it causes the difference to `other`, otherwise the step.
   void refine(const NumericalModel& other);
 
   const Scene& scene_;
   Scene fastest_;
-  double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
-  std::optional<BatchTrialRuns> beginnings_, mixed_, wholes_;
-  NumericalModel model_;  // what was chosen
+  double passage_length_ = 0.0, distance_ = 0.0;  // m: distance of a passage, of its first part
+  std::optional<BatchTrialRuns> first_parts_, mixed_, whole_passages_;
+  NumericalModel model_;  // the choice
 };
 
-/// The errors that a scene asks for, by their names.
-std::string words_of(const Scene& scene, const PeakErrors& errors);
+/// The errors of the controlled quantities with their names.
+std::string text_of(const Scene& scene, const PeakErrors& errors);
 
 }  // namespace traverse::app

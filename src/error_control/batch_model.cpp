@@ -1,4 +1,4 @@
-// Selects the speeds of trial passages, and repeats the search with half the accuracy where the errors of the first one
+// Selects the speeds of trial passages, and repeats the search with half the accuracy if the errors of the first search
 // were too large.
 #include "error_control/batch_model.hpp"
 
@@ -18,8 +18,8 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
-// Of the accuracy, that is searched for: a second search settles where the first one just did not.
+constexpr std::size_t min_runs = 4, trial_lanes = 4;
+// Share of the accuracy in the first and the second search.
 constexpr std::array shares = {1.0, 0.5};
 
 bool open(const Scene& scene) {
@@ -28,9 +28,10 @@ bool open(const Scene& scene) {
          options::in_force().find("ts_type") == nullptr;
 }
 
-/// Neighbouring speeds of one class around each of the given places among all.
-std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, std::initializer_list<double> places,
-                                             std::size_t most) {
+/// Groups of at most `most` neighbouring speeds of one step group, around each of the given relative positions in
+/// `speeds`.
+std::vector<std::vector<double>> speeds_around(const std::vector<double>& speeds, std::initializer_list<double> places,
+                                               std::size_t most) {
   std::vector<std::vector<double>> groups;
   for (const double place : places) {
     const auto at = static_cast<std::size_t>(place * static_cast<double>(speeds.size() - 1));
@@ -46,15 +47,16 @@ std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, 
   return groups;
 }
 
-std::string words_of(const Scene& scene, const std::array<ErrorEstimate, quantities>& estimates) {
+std::string text_of(const Scene& scene, const std::array<ErrorEstimate, quantities>& estimates) {
   PeakErrors errors{};
   for (std::size_t q = 0; q < quantities; ++q) errors[q] = estimates[q].expected;
-  return words_of(scene, errors);
+  return text_of(scene, errors);
 }
 
 TrialSpeeds trial_speeds(const std::vector<double>& speeds) {
   const std::size_t n = speeds.size() - 1;
-  TrialSpeeds trials = {some_speeds(speeds, {0.0, 1.0}, trial_lanes), {}, some_speeds(speeds, {0.5}, engine::widest)};
+  TrialSpeeds trials = {
+      speeds_around(speeds, {0.0, 1.0}, trial_lanes), {}, speeds_around(speeds, {0.5}, engine::widest)};
   if (n > 0) trials.mixed = {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}};
   return trials;
 }
@@ -63,32 +65,32 @@ TrialSpeeds trial_speeds(const std::vector<double>& speeds) {
 
 std::optional<Choice> choose_batch_model(const Scene& given, std::vector<std::string>& notes) {
   const std::vector<double>& speeds = given.sweep->speeds;
-  if (!open(given) || given.sweep->lanes == 0 || std::max(given.sweep->runs, speeds.size()) < fewest_runs)
+  if (!open(given) || given.sweep->lanes == 0 || std::max(given.sweep->runs, speeds.size()) < min_runs)
     return std::nullopt;
   const results::Stage stage("batched trial runs");
   const options::WithoutMonitors without_monitors;
-  const auto refuse = [&](const std::string& why) {
+  const auto reject = [&](const std::string& why) {
     notes.push_back("batched trial runs found no common mesh and step: " + why);
   };
   Scene scene = given;
   for (const double share : shares) {
     scene.accuracy = share * given.accuracy;
-    if (share < 1.0) notes.push_back(fmt::format("once more, with an accuracy of {:g}:", scene.accuracy));
+    if (share < 1.0) notes.push_back(fmt::format("second search, with an accuracy of {:g}:", scene.accuracy));
     try {
       BatchChoice chooser(scene, trial_speeds(speeds));
       Choice choice = chooser.choose();
       notes.push_back(fmt::format("batched runs: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
                                   choice.model.elements, choice.model.method, *choice.model.step));
-      notes.push_back("estimated errors of the peaks: " + words_of(given, choice.accuracy.estimates));
+      notes.push_back("estimated errors of the peaks: " + text_of(given, choice.accuracy.estimates));
       return choice;
     } catch (const BatchChoice::NotChosen& none) {
-      refuse(none.why);
-      if (!none.unsettled) return std::nullopt;
+      reject(none.why);
+      if (!none.not_converged) return std::nullopt;
     } catch (const BatchTrialRuns::Refused& refused) {
-      refuse(refused.why);
+      reject(refused.why);
       return std::nullopt;
     } catch (const Error& failed) {
-      refuse(failed.what());  // the runs one by one will say so too, if it is theirs
+      reject(failed.what());  // the single runs will report this error too, if it is their own
       return std::nullopt;
     }
   }

@@ -1,4 +1,4 @@
-// How the runs of a sweep of trains go side by side: mesh, method and step, chosen from the accuracy.
+// Chooses mesh, method and step for the batched runs of a sweep of trains from the accuracy.
 #pragma once
 
 #include <optional>
@@ -10,9 +10,9 @@
 
 namespace traverse::app {
 
-/// Where the scene leaves them open: tries meshes, steps and methods on the beginning of the passages at slow and at
-/// fast speeds, each until a finer one changes the peaks by a part of the accuracy, and checks the choice on whole
-/// passages. `notes` says what was chosen, or why not. The same on every rank.
+/// Varies open meshes, steps and methods on the first part of passages at slow and at fast speeds until a finer one
+/// changes the peaks by a part of the accuracy only, and checks the choice on whole passages. Appends the choice, or
+/// the reason against it, to `notes`. The result is the same on every rank.
 std::optional<Choice> choose_batch_model(const Scene& given, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// Halves steps and elements until what that changes is within the accuracy, then looks for what costs less.
+// Halves steps and elements until the changes are within the accuracy, then searches cheaper models.
 #include "error_control/batch_search.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace traverse::app {
 namespace {
 
 constexpr std::array methods = {"genalpha", "esdirk4"};
-constexpr double least_finer = 1.25, most_finer = 2.0;  // times the elements, from mesh to mesh
+constexpr double min_refinement = 1.25, max_refinement = 2.0;  // ratio of the elements of successive meshes
 
 PeakErrors change(BatchTrialRuns& trials, const NumericalModel& from, const NumericalModel& to, double factor = 1.0) {
   trials.run_at_once(std::array{to, from});
@@ -24,8 +24,9 @@ PeakErrors change(BatchTrialRuns& trials, const NumericalModel& from, const Nume
   return errors;
 }
 
-/// The error that half the step leaves, by what halving it has changed now and the time before, which tell the order.
-double left_of(double change, double before, double most) {
+/// The error of half the step from the changes of the last two halvings, which determine the order. most: largest
+/// order.
+double remaining_error(double change, double before, double most) {
   const double order = std::clamp(before > change ? std::log2(before / change) : 0.0, search::least_order, most);
   return change / (std::exp2(order) - 1.0);
 }
@@ -37,12 +38,13 @@ NumericalModel with_step(const NumericalModel& model, double factor, const char*
   return other;
 }
 
-/// Whether not even the shortest step of a method will do, where this one leaves so many times what it may.
-bool hopeless(double over, const structure::MethodRow& method, double factor) {
-  return over > std::pow(factor / search::batch_steps.back(), method.order);
+/// Whether even the shortest step of a method cannot reach the accuracy if the error is `error_ratio` times the allowed
+/// one at this step.
+bool unreachable(double error_ratio, const structure::MethodRow& method, double factor) {
+  return error_ratio > std::pow(factor / search::batch_steps.back(), method.order);
 }
 
-/// Solves that a second of motion takes.
+/// Stage solves for one second of motion.
 const structure::MethodRow& row_of(const NumericalModel& model) { return *structure::find_method(model.method); }
 double solves(const NumericalModel& model) { return row_of(model).solves() / *model.step; }
 
@@ -55,18 +57,18 @@ NumericalModel BatchSearch::first(double duration) {
   model.modes = 0;
   model.method = "esdirk4";
   model.vehicles = VehicleModel::linear;
-  model.step = 1.0;  // until the first frequency is known
+  model.step = 1.0;  // placeholder, until the first frequency is known
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
   longest_ = steps.longest;
   model.step = std::min(search::first_batch_step * steps.first, longest_);
   return model;
 }
 
-// Steps first, as meshes are told apart by what the contacts do to them; and again where a finer mesh wants shorter
-// ones.
+// The step is estimated first, because meshes differ mainly by what the contacts cause; it is halved again if the finer
+// mesh requires shorter steps.
 std::optional<NumericalModel> BatchSearch::run(NumericalModel model) {
   if (!predict_step(model) || !refine_mesh(model) || !halve_step(model)) return std::nullopt;
-  return cheaper(model);
+  return find_cheaper(model);
 }
 
 NumericalModel BatchSearch::on_finer_mesh(NumericalModel model) const {
@@ -74,28 +76,28 @@ NumericalModel BatchSearch::on_finer_mesh(NumericalModel model) const {
   return model;
 }
 
-/// The step that the first mesh asks for, which the one that does is to confirm, and whether methods of one solve a
-/// step are worth a trial.
+/// Determines the step with the first mesh, to be confirmed on the final mesh, and whether methods with one solve in
+/// each step are worth a trial.
 bool BatchSearch::predict_step(NumericalModel& model) {
-  for (int i = 0; i < search::most_halvings; ++i, *model.step *= 0.5) {
+  for (int i = 0; i < search::max_halvings; ++i, *model.step *= 0.5) {
     measure_steps(model);
-    const bool does = over(steps_) <= 1.0;
-    if (!does && over(halved_) > search::surely_within) continue;
-    // With one solve a step wheel forces are off where steps change their length.
+    const bool accurate = error_ratio(steps_) <= 1.0;
+    if (!accurate && error_ratio(halved_) > search::surely_within) continue;
+    // With one solve in each step wheel forces have errors where the step length changes.
     const NumericalModel one_solve =
-        with_step(model, does ? search::batch_steps.front() : 0.5 * search::batch_steps.front(), methods.front());
-    one_solve_ = !asks_for_forces_alone(trials_.scene()) &&
-                 !hopeless(over(left_by(one_solve, model)), row_of(one_solve), search::batch_steps.front());
-    if (!does) *model.step *= 0.5;
+        with_step(model, accurate ? search::batch_steps.front() : 0.5 * search::batch_steps.front(), methods.front());
+    one_solve_ = !controls_forces_only(trials_.scene()) &&
+                 !unreachable(error_ratio(errors_of(one_solve, model)), row_of(one_solve), search::batch_steps.front());
+    if (!accurate) *model.step *= 0.5;
     return true;
   }
   return false;
 }
 
 bool BatchSearch::halve_step(NumericalModel& model) {
-  for (int i = 0; i < search::most_halvings; ++i) {
+  for (int i = 0; i < search::max_halvings; ++i) {
     measure_steps(model);
-    if (over(steps_) <= 1.0) return true;
+    if (error_ratio(steps_) <= 1.0) return true;
     *model.step *= 0.5;
   }
   return false;
@@ -106,60 +108,63 @@ void BatchSearch::measure_steps(const NumericalModel& model) {
   const PeakErrors before = change(trials_, with_step(model, 2.0), model);
   const PeakErrors now = change(trials_, model, with_step(model, 0.5));
   for (std::size_t q = 0; q < quantities; ++q) {
-    // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
-    const bool follows = q != moment || damps_high_modes(trials_.scene());
-    halved_[q] = left_of(now[q], before[q], follows ? search::full_order : 1.0);
+    // Without damping a moment is a sum of 1/n^2 over all modes, of which a step resolves those below a frequency.
+    const bool resolved = q != moment || damps_high_modes(trials_.scene());
+    halved_[q] = remaining_error(now[q], before[q], resolved ? search::full_order : 1.0);
     steps_[q] = now[q] + halved_[q];
   }
 }
 
-/// As what twice the elements change tells.
+/// Refines the mesh until the change by twice the elements is within the accuracy.
 bool BatchSearch::refine_mesh(NumericalModel& model) {
   const Scene& scene = trials_.scene();
   if (!scene.mesh_open) return true;
-  for (int i = 0; i < search::most_halvings && model.elements <= search::most_in_a_span; ++i) {
+  for (int i = 0; i < search::max_halvings && model.elements <= search::max_in_a_span; ++i) {
     mesh_ = change(mixed_, model, on_finer_mesh(model), search::finer_mesh);
     if (!damps_high_modes(scene)) mesh_[moment] *= search::undamped_sum / search::finer_mesh;
-    const double times = greatest(mesh_) / (search::share * accuracy_);
-    if (times <= 1.0) return true;
-    const double finer = std::clamp(std::pow(times, 1.0 / search::mesh_order), least_finer, most_finer);
+    const double ratio = greatest(mesh_) / (search::share * accuracy_);
+    if (ratio <= 1.0) return true;
+    const double finer = std::clamp(std::pow(ratio, 1.0 / search::mesh_order), min_refinement, max_refinement);
     model.elements = aligned_mesh(scene, 2 * static_cast<int>(std::ceil(0.5 * finer * model.elements)));
   }
   return false;
 }
 
-/// A longer step, or the method of one solve a step, where that costs less.
-NumericalModel BatchSearch::cheaper(const NumericalModel& model) {
+/// A longer step, or the method with one solve in each step, if that costs less.
+NumericalModel BatchSearch::find_cheaper(const NumericalModel& model) {
   NumericalModel best = model;
-  const double of_model = over(steps_);
+  const double ratio_of_model = error_ratio(steps_);
   for (const char* method : std::span(methods).subspan(one_solve_ ? 0 : 1)) {
-    double of_longer = 0.0;
+    double ratio_of_longer = 0.0;
     for (const double factor : search::batch_steps) {
-      const NumericalModel tried = with_step(model, factor, method);
-      if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
-      // Between two steps of one method that are known: about the root of both.
-      if (tried.method == model.method && std::sqrt(of_model * of_longer) > search::surely_beyond) continue;
-      const PeakErrors own = left_by(tried, model);
-      of_longer = over(own);
-      if (hopeless(of_longer, row_of(tried), factor)) break;
-      if (of_longer > 1.0) continue;
-      steps_ = own;
-      best = tried;
+      const NumericalModel candidate = with_step(model, factor, method);
+      if (candidate.step > longest_ || solves(candidate) >= solves(best)) continue;
+      // The error of a step between two known steps of one method is about the geometric mean of their errors.
+      if (candidate.method == model.method && std::sqrt(ratio_of_model * ratio_of_longer) > search::surely_above)
+        continue;
+      const PeakErrors errors = errors_of(candidate, model);
+      ratio_of_longer = error_ratio(errors);
+      if (unreachable(ratio_of_longer, row_of(candidate), factor)) break;
+      if (ratio_of_longer > 1.0) continue;
+      steps_ = errors;
+      best = candidate;
     }
   }
   return best;
 }
 
-/// The errors of such steps, told by half those of the model.
-PeakErrors BatchSearch::left_by(const NumericalModel& tried, const NumericalModel& model) {
-  PeakErrors own = change(trials_, tried, with_step(model, 0.5));
-  const double times = row_of(tried).solves() > 1.0 ? 1.0 : search::one_solve;
-  if (times > 1.0) own[wheel_force] *= search::one_solve_force;
-  for (std::size_t q = 0; q < quantities; ++q) own[q] = times * own[q] + halved_[q];
-  return own;
+/// The errors of the steps of `candidate`, by comparison with half the model's step.
+PeakErrors BatchSearch::errors_of(const NumericalModel& candidate, const NumericalModel& model) {
+  PeakErrors errors = change(trials_, candidate, with_step(model, 0.5));
+  const double ratio = row_of(candidate).solves() > 1.0 ? 1.0 : search::one_solve;
+  if (ratio > 1.0) errors[wheel_force] *= search::one_solve_force;
+  for (std::size_t q = 0; q < quantities; ++q) errors[q] = ratio * errors[q] + halved_[q];
+  return errors;
 }
 
-/// Times what steps may leave.
-double BatchSearch::over(const PeakErrors& errors) const { return greatest(errors) / (search::share * accuracy_); }
+/// The ratio of the largest error to its allowed value.
+double BatchSearch::error_ratio(const PeakErrors& errors) const {
+  return greatest(errors) / (search::share * accuracy_);
+}
 
 }  // namespace traverse::app

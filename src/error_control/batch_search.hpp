@@ -1,4 +1,4 @@
-// The search for mesh, method and step of runs side by side.
+// Searches mesh, method and step of batched runs.
 #pragma once
 
 #include <optional>
@@ -9,18 +9,18 @@ namespace traverse::app {
 
 class BatchSearch {
  public:
-  /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what the mesh
-  /// changes is seen there as well. accuracy: the error that all of it may leave.
+  /// mixed: the same passages at slow and fast speeds in one group with the steps of the slowest, which reveal further
+  /// errors of the mesh. accuracy: limit of the total error.
   BatchSearch(BatchTrialRuns& trials, BatchTrialRuns& mixed, double accuracy)
       : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
-  /// The model that the search begins with, for passages that last so long, s.
+  /// The initial model for passages of `duration`, s.
   NumericalModel first(double duration);
   /// The cheapest model within the accuracy; empty: none.
   std::optional<NumericalModel> run(NumericalModel model);
   double error_of_mesh(std::size_t q) const { return mesh_[q]; }
   double error_of_steps(std::size_t q) const { return steps_[q]; }
-  /// What a mesh is compared with: one twice as fine.
+  /// The mesh of comparison, with twice the elements.
   NumericalModel on_finer_mesh(NumericalModel model) const;
 
  private:
@@ -28,16 +28,16 @@ class BatchSearch {
   bool halve_step(NumericalModel& model);
   void measure_steps(const NumericalModel& model);
   bool refine_mesh(NumericalModel& model);
-  NumericalModel cheaper(const NumericalModel& model);
-  PeakErrors left_by(const NumericalModel& tried, const NumericalModel& model);
-  double over(const PeakErrors& errors) const;
+  NumericalModel find_cheaper(const NumericalModel& model);
+  PeakErrors errors_of(const NumericalModel& candidate, const NumericalModel& model);
+  double error_ratio(const PeakErrors& errors) const;
 
   BatchTrialRuns &trials_, &mixed_;
   double accuracy_;
-  double longest_ = 0.0;    // s: no step is longer
-  bool one_solve_ = false;  // methods of one solve a step are tried
+  double longest_ = 0.0;    // s: largest allowed step
+  bool one_solve_ = false;  // methods with one solve in each step are tried
   PeakErrors mesh_{}, steps_{};
-  PeakErrors halved_{};  // what half the step leaves
+  PeakErrors halved_{};  // the error of half the step
 };
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// Trial passages side by side, by several models: what meshes, methods and steps change.
+// Batched trial passages with several models.
 #pragma once
 
 #include <array>
@@ -18,31 +18,31 @@
 
 namespace traverse::app {
 
-/// The largest of all runs; 1 where one of them has found no end.
+/// The largest differences of all runs; 1 if one of them has failed.
 PeakErrors difference(const Scene& scene, const std::vector<engine::BatchResult>& rough,
                       const std::vector<engine::BatchResult>& fine);
-bool lose_contact(const std::vector<engine::BatchResult>& runs);
+bool any_contact_loss(const std::vector<engine::BatchResult>& runs);
 
 /// Passages of one scene at some speeds.
 class BatchTrialRuns {
  public:
-  /// Groups of speeds, those of a group in one class, or the slowest one first; distance: of every passage, m. A group
-  /// of one speed goes over the tracks of the scene's sweep too, its own track last, as many as there are lanes.
-  /// before: trials whose damping serves for these too, where the bridge is the same; it must outlive these.
+  /// speeds: groups of one step group each, or with the slowest speed first. distance: of every passage, m. A group of
+  /// one speed also runs over the tracks of the scene's sweep, as many as there are lanes, with its own track last.
+  /// previous: trial runs whose damping is used here too if the bridge is the same; they must outlive this object.
   BatchTrialRuns(Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
-                 const BatchTrialRuns* before = nullptr);
+                 const BatchTrialRuns* previous = nullptr);
 
-  /// Kept. Refused where runs cannot go side by side.
+  /// The results of a model's runs, which are stored. Throws Refused if the runs cannot be computed in batches.
   const std::vector<engine::BatchResult>& run(const NumericalModel& model);
-  /// Those of several models that are not known yet, each in a thread of its own.
+  /// Computes the models that are not stored yet, each in its own thread.
   void run_at_once(std::span<const NumericalModel> models);
-  /// rad/s, of the bridge by that model or another one.
+  /// The first frequency of the bridge, rad/s, with the mesh of this model or an earlier one.
   double first_omega(const NumericalModel& model) {
     setup(model);
     return first_omega_;
   }
-  /// The largest CaseBatch::defect of a model's runs, which are known.
-  double defect(const NumericalModel& model) const;
+  /// The largest CaseBatch::residual of a model's stored runs.
+  double residual(const NumericalModel& model) const;
   const Scene& scene() const { return scene_; }
 
   struct Refused {
@@ -55,27 +55,27 @@ class BatchTrialRuns {
     std::optional<SharedBeam> shared;
     std::optional<CaseBatch> lanes;
   };
-  struct Kept {
+  struct StoredRuns {
     NumericalModel model;
     std::vector<engine::BatchResult> results;
-    double defect = 0.0;
+    double residual = 0.0;
   };
-  const Kept* known(const NumericalModel& model) const;
+  const StoredRuns* find(const NumericalModel& model) const;
   void check_memory(const NumericalModel& model) const;
   CaseBatch::Steps steps_of(const NumericalModel& model) const;
   std::vector<engine::BatchResult> run_all(const std::vector<CaseBatch::Ready>& groups,
                                            const CaseBatch::Steps& steps) const;
   Setup& setup(const NumericalModel& model);
-  /// That of the first mesh, for all of them.
+  /// The damping of the first mesh, used for all meshes.
   std::optional<beam::Rayleigh> damping() const {
-    return !damping_ && before_ != nullptr ? before_->damping_ : damping_;
+    return !damping_ && previous_ != nullptr ? previous_->damping_ : damping_;
   }
 
   Scene scene_;
-  const BatchTrialRuns* before_;
+  const BatchTrialRuns* previous_;
   std::vector<std::vector<LaneRun>> groups_;
-  std::map<int, std::unique_ptr<Setup>> setups_;  // by elements
-  std::deque<Kept> kept_;                         // references to its entries stay
+  std::map<int, std::unique_ptr<Setup>> setups_;  // the key is the number of elements
+  std::deque<StoredRuns> stored_;                 // a deque, because references to entries must remain valid
   std::optional<beam::Rayleigh> damping_;
   double first_omega_ = 0.0;
 };

@@ -1,5 +1,5 @@
-// Cache of chosen models: one file per scene in the folder .traverse_choices, named by a digest of options, input files
-// and program build, and checked against a digest of its own when it is read.
+// Cache of chosen models: one file per scene in the folder .traverse_choices. Its name is a digest of options, input
+// files and program build; its content is checked by a digest of its own.
 #include "error_control/choice_cache.hpp"
 
 #include <dlfcn.h>
@@ -29,18 +29,18 @@ namespace traverse::app {
 namespace {
 
 constexpr const char* folder_name = ".traverse_choices";
-constexpr std::string_view mark = "Traverse choice\n";  // then a digest, then what it is of
-constexpr std::size_t most_bytes = 1 << 20;
-constexpr int most_in_a_bay = 1600;  // sixteen times what track_elements_per_bay allows
+constexpr std::string_view signature = "Traverse choice\n";  // followed by a digest and the content
+constexpr std::size_t max_bytes = 1 << 20;
+constexpr int max_in_a_bay = 1600;  // sixteen times the largest track_elements_per_bay
 constexpr std::array<std::string_view, 10> free_options = {
     "scene_name",   "restart",      "checkpoint_interval", "checkpoint_file", "output_file",
     "output_quiet", "options_file", "ts_max_steps",        "study_resume",    "accuracy_report"};
 
-/// The file that this code is in, as it was built.
+/// Size and time of the file that contains this code; it identifies the build.
 std::string build() {
   Dl_info self{};
   if (dladdr(reinterpret_cast<const void*>(&build), &self) == 0) return {};
-  struct stat file {};  // a program's own name may be one that the shell has found
+  struct stat file {};  // the shell may have found a program without a path by PATH
   if (stat(self.dli_fname[0] == '/' ? self.dli_fname : "/proc/self/exe", &file) != 0) return {};
   return fmt::format("{} {}.{}", file.st_size, file.st_mtim.tv_sec, file.st_mtim.tv_nsec);
 }
@@ -51,10 +51,10 @@ bool is_integrator(const std::string& name) {
   return name.empty() || structure::find_method(name) != nullptr || integrate::find_petsc_type(name) != nullptr;
 }
 
-/// Whether a file is one that was kept, or was to be when a kill or a full disk came before its first byte.
-bool is_ours(const std::string& path) {
+/// Whether a file is a cache file, or an empty one that an interrupted write left.
+bool is_cache_file(const std::string& path) {
   std::error_code none;
-  return results::begins_with(path, mark) ||
+  return results::begins_with(path, signature) ||
          (results::open_ordinary(path, false).open() && std::filesystem::file_size(path, none) == 0);
 }
 
@@ -64,29 +64,29 @@ bool is_possible(const Choice& choice, const Scene& scene) {
   constexpr double largest = std::numeric_limits<double>::max(), endless = std::numeric_limits<double>::infinity();
   const NumericalModel& model = choice.model;
   const double most = !scene.beam         ? 0.0
-                      : scene.beam->track ? most_in_a_bay
+                      : scene.beam->track ? max_in_a_bay
                                           : most_elements / static_cast<double>(scene.beam->spans.size());
   return within(model.elements, scene.beam ? 1.0 : 0.0, most) && within(model.modes, 0, most_elements) &&
          (!model.step || within(*model.step, options::least_quantity, scene.end_time.value_or(largest))) &&
          is_integrator(model.method) && model.vehicles <= VehicleModel::automatic &&
-         within(model.most_residual, 0.0, endless) && within(model.trials_reach, 0.0, endless) &&
-         within(model.rest_tolerance, -1.0, largest) && within(choice.low_pass.value_or(0.0), 0.0, largest);
+         within(model.residual_limit, 0.0, endless) && within(model.trial_distance, 0.0, endless) &&
+         within(model.window_tolerance, -1.0, largest) && within(choice.low_pass.value_or(0.0), 0.0, largest);
 }
 
 bool ChoiceCache::read(const Scene& scene, std::vector<std::string>& notes, Choice& choice) const {
-  if (known_.empty()) return false;
+  if (content_.empty()) return false;
   Choice found;
-  std::vector<std::string> said;
+  std::vector<std::string> stored_notes;
   try {
-    base::Bytes bytes{std::span<const char>(known_)};
-    bytes(found, said);
+    base::Bytes bytes{std::span<const char>(content_)};
+    bytes(found, stored_notes);
     if (!bytes.at_end() || !is_possible(found, scene)) return false;
-  } catch (const FileError&) {  // not what was written
+  } catch (const FileError&) {  // damaged content
     return false;
   }
   choice = std::move(found);
-  notes = {"chosen as before for this scene; -accuracy_cache false tries again"};
-  for (const std::string& note : said) notes.push_back(printable(note));
+  notes = {"stored choice for the same scene; -accuracy_cache false repeats the trial runs"};
+  for (const std::string& note : stored_notes) notes.push_back(printable(note));
   return true;
 }
 
@@ -100,24 +100,24 @@ ChoiceCache::ChoiceCache(MPI_Comm comm, const Scene& scene) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   writes_ = rank == 0;
-  if (scene.output.file.empty() || !scene.accuracy_cache) return;
+  if (scene.output.file.empty() || !scene.accuracy_cache || has_own_contact_law(scene)) return;
   const std::string own_build = build();
   if (own_build.empty()) return;  // the same on all ranks
   const std::string key = digest_of(scene, free_options, options::inputs_read(), own_build);
   const std::filesystem::path folder = std::filesystem::path(scene.output.file).parent_path() / folder_name;
   std::error_code ignored;
   if (!std::filesystem::is_symlink(folder, ignored)) path_ = (folder / key).string();
-  bound_ = fmt::format("{} {:.17g} {} ", TRAVERSE_VERSION, scene.accuracy, key);
-  if (writes_ && !path_.empty()) known_ = read_file();
-  auto size = static_cast<int>(known_.size());
+  key_ = fmt::format("{} {:.17g} {} ", TRAVERSE_VERSION, scene.accuracy, key);
+  if (writes_ && !path_.empty()) content_ = read_file();
+  auto size = static_cast<int>(content_.size());
   MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-  known_.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(known_.data(), size, MPI_CHAR, 0, comm);
+  content_.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(content_.data(), size, MPI_CHAR, 0, comm);
 }
 
 std::string ChoiceCache::digest_of_choice(std::string_view bytes) const {
   base::Digest digest;
-  digest.add(bound_);
+  digest.add(key_);
   digest.add(bytes);
   return fmt::format("{:016x}", digest.value());
 }
@@ -125,24 +125,25 @@ std::string ChoiceCache::digest_of_choice(std::string_view bytes) const {
 std::string ChoiceCache::read_file() const {
   const results::Descriptor found = results::open_ordinary(path_, false);
   std::string text;
-  const std::size_t head = mark.size() + digest_of_choice({}).size();
-  if (!base::read_regular_file(found.path(), most_bytes, text).empty() || text.size() <= head) return {};
+  const std::size_t head = signature.size() + digest_of_choice({}).size();
+  if (!base::read_regular_file(found.path(), max_bytes, text).empty() || text.size() <= head) return {};
   const std::string bytes = text.substr(head);
-  return text.substr(0, head) == std::string(mark) + digest_of_choice(bytes) ? bytes : "";
+  return text.substr(0, head) == std::string(signature) + digest_of_choice(bytes) ? bytes : "";
 }
 
-// Aside and renamed: others may read or write the same. One of ours that is there could not be read, and is replaced.
+// Writes a temporary file and renames it, because other processes may read or write the same entry. An existing cache
+// file was not readable and is replaced.
 void ChoiceCache::write_file(const std::string& bytes) const {
   if (!writes_ || path_.empty()) return;
   std::error_code ignored;
   std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), ignored);
-  const std::string aside = fmt::format("{}.{}", path_, getpid());
-  const results::Descriptor file = results::make_file(aside);
+  const std::string temporary = fmt::format("{}.{}", path_, getpid());
+  const results::Descriptor file = results::make_file(temporary);
   if (!file.open()) return;
-  const bool whole = results::write_all(file, std::string(mark) + digest_of_choice(bytes) + bytes);
-  const bool moved = whole && (is_ours(path_) ? std::rename(aside.c_str(), path_.c_str()) == 0
-                                              : results::move_to_free_name(aside, path_));
-  if (!moved) (void)unlink(aside.c_str());
+  const bool written = results::write_all(file, std::string(signature) + digest_of_choice(bytes) + bytes);
+  const bool renamed = written && (is_cache_file(path_) ? std::rename(temporary.c_str(), path_.c_str()) == 0
+                                                        : results::move_to_free_name(temporary, path_));
+  if (!renamed) (void)unlink(temporary.c_str());
 }
 
 }  // namespace traverse::app

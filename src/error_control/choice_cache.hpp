@@ -1,4 +1,4 @@
-// What was chosen for a scene, in a small file beside its results, so that the same scene need not be tried again.
+// Stores the choice for a scene in a small file beside its results, so that the same scene needs no new trial runs.
 #pragma once
 
 #include <mpi.h>
@@ -12,31 +12,31 @@
 
 namespace traverse::app {
 
-/// Whether what was chosen is within the ranges that choosing itself keeps to.
+/// Whether a choice is within the ranges that the search itself respects.
 bool is_possible(const Choice& choice, const Scene& scene);
 
 class ChoiceCache {
  public:
-  /// Collective. Of this scene as it was read, by this program as it was built. Nothing is kept of scenes whose results
-  /// go to no file, or where `accuracy_cache` is false.
+  /// Collective. The cache entry of this scene for this build of the program. Scenes without a results file, or with
+  /// `accuracy_cache` false, have none.
   ChoiceCache(MPI_Comm comm, const Scene& scene);
 
-  /// Whether a choice was kept that the scene can have; then it is read, and `notes` says so.
+  /// Reads the stored choice with its notes. False if there is none, or if it is not possible for the scene.
   bool read(const Scene& scene, std::vector<std::string>& notes, Choice& choice) const;
-  /// Keeps it with its notes; what cannot be written is not kept.
+  /// Stores the choice with its notes. Failures to write are ignored.
   void write(std::vector<std::string>& notes, Choice& choice);
 
  private:
   void write_file(const std::string& bytes) const;
-  /// Of what is kept, of this scene, by this version, for its accuracy.
+  /// Digest of the content, this scene, this version and its accuracy.
   std::string digest_of_choice(std::string_view bytes) const;
-  /// What is kept in the file at path_; empty where it is not there, or not whole.
+  /// The content of the file at path_; empty if it does not exist or is damaged.
   std::string read_file() const;
 
-  std::string path_;   // empty: nothing is kept
-  std::string bound_;  // what the digest binds a choice to
-  bool writes_;        // on this rank
-  std::string known_;  // what was kept; empty: nothing
+  std::string path_;     // empty: no cache entry
+  std::string key_;      // part of the digest: version, accuracy and scene
+  bool writes_;          // this rank writes the file
+  std::string content_;  // stored content; empty: none
 };
 
 }  // namespace traverse::app

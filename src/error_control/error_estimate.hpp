@@ -1,4 +1,4 @@
-// What is promised of a run's peaks, and when that is withdrawn.
+// Error estimates of a run's peaks, and the conditions that invalidate them.
 #pragma once
 
 #include <array>
@@ -12,58 +12,62 @@
 
 namespace traverse::app {
 
-/// What is said of one quantity's peak.
+/// The error estimate of one quantity's peak.
 struct ErrorEstimate {
-  bool present = false;   // in this scene
-  bool kept = false;      // promised: the expected error is not above the wanted one
+  bool present = false;   // the quantity exists in this scene
+  bool accepted = false;  // the expected error is not above the wanted one
   double expected = 0.0;  // relative to the peak
-  std::string why_not;    // where it is not promised
+  std::string why_not;    // the reason if it is not accepted
 
-  void keep(base::Bytes& bytes) { bytes(present, kept, expected, why_not); }
+  void keep(base::Bytes& bytes) { bytes(present, accepted, expected, why_not); }
 };
 
-/// A row of -accuracy_report, printed or not. wanted, error: relative. Whether the promise is not broken.
-bool report_row(const std::string& name, const ErrorEstimate& promise, double wanted, double error, bool prints);
-/// Its head. against: what the run is compared with; of: what the rows are.
+/// Prints a row of -accuracy_report if `prints` is set. wanted, error: relative. False if an accepted estimate is
+/// exceeded.
+bool report_row(const std::string& name, const ErrorEstimate& estimate, double wanted, double error, bool prints);
+/// Prints the head of the report. against: the run of comparison; of: the heading of the names.
 void report_head(const std::string& against, const std::string& of);
 
-/// The note that a quantity's peak is not promised, and why.
-std::string not_promised(Quantity quantity, const ErrorEstimate& promise);
+/// The note that a quantity has no accepted error estimate, with the reason.
+std::string not_estimated(Quantity quantity, const ErrorEstimate& estimate);
 
-/// What is promised where there is no bridge: largest errors at any instant, over the largest way from the start or the
-/// largest force.
-enum AloneQuantity : std::size_t { position, joint_force, contact_force, alone_quantities };
-inline constexpr std::array<const char*, alone_quantities> alone_names = {"position", "joint force", "contact force"};
+/// Quantities of a scene without a bridge: largest errors at any instant, relative to the largest displacement from the
+/// start or the largest force.
+enum MultibodyQuantity : std::size_t { position, joint_force, contact_force, multibody_quantities };
+inline constexpr std::array<const char*, multibody_quantities> multibody_names = {"position", "joint force",
+                                                                                  "contact force"};
 
 struct Accuracy {
-  bool measured = false;  // false: nothing was open, or there is nothing to measure
+  bool measured = false;  // false: neither mesh nor step was open, or the scene has no measurable quantity
   std::array<ErrorEstimate, quantities> estimates;
-  std::array<ErrorEstimate, alone_quantities> alone;  // where there is no bridge
-  ErrorEstimate frequencies;                          // of natural modes
-  bool lost_contact = false;                          // wheels did in trial runs
-  static constexpr double the_end = std::numeric_limits<double>::infinity();
-  double seen_until = the_end;  // s of the run, until which trial runs went
-  /// After the run, in which wheels lost contact at these times, s: where no trial run has seen some of them, nothing
-  /// is promised any more. Says so, or "".
-  std::string withdrawn(const std::vector<double>& losses);
-  /// After the run, in which something touched or let go that trial runs have not seen, in words: nothing is promised
-  /// any more. Says so, or "".
+  std::array<ErrorEstimate, multibody_quantities> multibody;  // without a bridge
+  ErrorEstimate frequencies;                                  // estimate for natural frequencies
+  bool lost_contact = false;                                  // wheels lost contact in trial runs
+  static constexpr double end_of_run = std::numeric_limits<double>::infinity();
+  double covered_until = end_of_run;  // s of the run, covered by trial runs
+  /// After a run with contact losses at these times, s: rejects all estimates if trial runs did not cover some of them.
+  /// Returns the note, or "".
+  std::string invalidate_by_contact_loss(const std::vector<double>& losses);
+  /// After a run with a contact event that trial runs did not cover, in words: rejects all estimates. Returns the note,
+  /// or "".
   std::string invalidate_by_new_event(const std::string& what);
-  /// After the run, in which curves bend within steps so many times as much as trial runs have seen: errors are larger,
-  /// by the square of that, and what is above `wanted` then is not promised any more. Says so, or "".
+  /// After a run whose curves change within steps `times` as much as in trial runs: multiplies the errors by times^2
+  /// and rejects estimates that exceed `wanted`. Returns the note, or "".
   std::string invalidate_if_rougher(double times, double wanted);
-  /// After a run to its end: the same of low-passed accelerations, where their peak is within the unsettled end of the
-  /// run.
+  /// After a complete run: rejects the estimate of low-passed accelerations if their peak is within the unsettled end.
+  /// Returns the note, or "".
   std::string invalidate_at_end(bool unsettled);
-  void promise_nothing();
-  /// Promises no more than both do, with the larger error.
+  void reject_all();
+  /// Accepts an estimate only if both do, with the larger error.
   void merge(const Accuracy& other);
-  bool promises_something() const;  // of a bridge
-  /// Name in the results file and expected error of each quantity that is promised.
+  bool has_estimates() const;  // for a scene with a bridge
+  /// Name in the results file and expected error of each accepted estimate.
   std::vector<std::pair<std::string, double>> expected() const;
-  double seconds = 0.0;  // wall time that choosing took
+  double seconds = 0.0;  // wall time of the choice
 
-  void keep(base::Bytes& bytes) { bytes(measured, estimates, alone, frequencies, lost_contact, seen_until, seconds); }
+  void keep(base::Bytes& bytes) {
+    bytes(measured, estimates, multibody, frequencies, lost_contact, covered_until, seconds);
+  }
 };
 
 }  // namespace traverse::app

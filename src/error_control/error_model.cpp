@@ -1,5 +1,5 @@
-// Richardson extrapolation: order and size of a discretisation error from the changes that two successive halvings of
-// step or element have caused.
+// Richardson extrapolation: order and size of a discretisation error from the changes by two successive halvings of
+// step or element length.
 #include "error_control/error_model.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr double no_limit = 1e3;
+constexpr double max_ratio = 1e3;
 
 }  // namespace
 
@@ -18,15 +18,15 @@ double ErrorModel::power() const { return std::clamp(order, 1.0, search::full_or
 
 double ErrorModel::power_refining() const { return std::min(power(), search::refining_order); }
 
-double ErrorModel::room(double wanted) const {
-  if (value <= 0.0) return no_limit;
-  const double times = wanted / value;
-  return std::pow(times, 1.0 / (times < 1.0 ? power_refining() : power()));
+double ErrorModel::allowed_ratio(double wanted) const {
+  if (value <= 0.0) return max_ratio;
+  const double ratio = wanted / value;
+  return std::pow(ratio, 1.0 / (ratio < 1.0 ? power_refining() : power()));
 }
 
-double ErrorModel::at(double times) const { return value * std::pow(times, times < 1.0 ? power_refining() : power()); }
+double ErrorModel::at(double ratio) const { return value * std::pow(ratio, ratio < 1.0 ? power_refining() : power()); }
 
-ErrorModel error_from(double change, double size, const ErrorModel& before, double most) {
+ErrorModel error_from(double change, double size, const ErrorModel& before, double max_order) {
   ErrorModel error{change, before.order, before.known, before.known, change, size};
   if (before.size > 1.5 * size) {
     const double halvings = std::log2(before.size / size);
@@ -35,7 +35,7 @@ ErrorModel error_from(double change, double size, const ErrorModel& before, doub
     if (before.known && before.order < search::least_order) error.order = std::min(error.order, 1.0);
     change = std::max(change, before.change / std::exp2((search::refining_order + 1.0) * halvings));
   }
-  error.order = std::min(error.order, most);
+  error.order = std::min(error.order, max_order);
   error.value = change / (std::exp2(error.power_refining()) - 1.0);
   return error;
 }

@@ -1,4 +1,4 @@
-// How the error of a peak depends on the step or on the length of elements, from what halving them changed.
+// Model of a peak's error over the step or element length, e = c h^p, from successive halvings.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,25 @@ namespace traverse::app {
 /// The error of a run, relative to the peak: value * (size/size_of_run)^power.
 struct ErrorModel {
   double value = 0.0;
-  double order = 2.0;  // measured where `known`, else supposed
+  double order = 2.0;  // measured if `known`, otherwise assumed
   bool known = false;
-  bool confirmed = false;  // known before as well
-  double change = 0.0;     // what halving changed
-  double size = 0.0;       // the step (s), or the length of elements (in spans)
+  bool confirmed = false;  // was known before the last halving too
+  double change = 0.0;     // change by the last halving
+  double size = 0.0;       // step (s) or element length (spans)
 
-  /// The power law to go by towards longer steps or elements.
+  /// The exponent for longer steps or elements.
   double power() const;
-  /// Towards shorter ones, and from a change to the error: errors are not supposed to fall as fast as integrators
-  /// promise.
+  /// The exponent for shorter ones, and for the error from a change. It is limited, because errors may decrease more
+  /// slowly than the order of the method.
   double power_refining() const;
-  /// Times the size that would leave the error `wanted`.
-  double room(double wanted) const;
-  /// Of a size `times` as large.
-  double at(double times) const;
+  /// The ratio of sizes at which the error is `wanted`.
+  double allowed_ratio(double wanted) const;
+  /// The error at `ratio` times the size.
+  double at(double ratio) const;
 };
 
-/// From what halving the size to `size` changed, and what was known before of another size. Where the change is so much
-/// smaller than before that it must be chance, less is believed. most: the highest order there can be.
-ErrorModel error_from(double change, double size, const ErrorModel& before, double most = search::full_order);
+/// The model from the change by halving the size to `size`, and the model `before` of another size. A change that is so
+/// much smaller than before that it must be accidental is corrected. max_order: the largest possible order.
+ErrorModel error_from(double change, double size, const ErrorModel& before, double max_order = search::full_order);
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// Mesh and step that trial runs begin with: from the periods, waves and contacts of the scene.
+// Mesh and step of the first trial run, from the periods, waves and contacts of the scene.
 #pragma once
 
 #include <string>
@@ -7,33 +7,33 @@
 
 namespace traverse::app {
 
-/// Elements of the longest span; with a layered track elements of the rail a sleeper bay.
+/// Elements in the longest span; with a layered track rail elements in one sleeper bay.
 int first_mesh(const Scene& scene);
 
-/// The highest frequency at which a wheel vibrates on its contact under its share of the vehicle's weight, rad/s; 0
-/// without wheels. with_springs: between that and its linear springs.
+/// The highest frequency of a wheel on its contact under its share of the vehicle's weight, rad/s; 0 without wheels.
+/// with_springs: with the stiffness of the wheel's linear springs.
 double contact_frequency(const Scene& scene, bool with_springs = false);
 
-/// Whether trains push the beam along as they brake or are driven.
+/// Whether trains exert forces on the beam along x because they brake or are driven.
 bool pushes_along(const Scene& scene);
 
-/// By how much, over what it carries, the force of a wheel swings after it has been pressed down for a moment: 1/(m s)
-/// of that; the most of all wheels.
-double swing_after_a_push(const Scene& scene);
+/// The amplitude of a wheel's contact force after a short impulse, relative to the static force, 1/(m s); the largest
+/// of all wheels.
+double force_rate_after_load(const Scene& scene);
 
-inline constexpr double trial_steps_a_period = 12.0;  // of the beam's first period
+inline constexpr double trial_steps_per_period = 12.0;  // initial steps in the beam's first period
 
-/// s.
+/// Initial steps, s.
 struct FirstSteps {
-  double first = 0.0;      // where the contacts' vibration is resolved as far as the accuracy wants
-  double longest = 0.0;    // where all the rest is, and no stored sample is stepped over
-  std::string why;         // what asks for the first one, in words
-  double of_period = 0.0;  // that follows the first period of the beam, where the first one does not; else 0
+  double first = 0.0;      // resolves the contacts' vibration as far as the accuracy requires
+  double longest = 0.0;    // resolves all other motion, and includes every stored sample
+  std::string why;         // what determines the first step, in words
+  double of_period = 0.0;  // step that resolves the beam's first period, if the first step does not; otherwise 0
 };
-/// omega: the first frequency of the beam, rad/s; 0: not known. duration: of a trial run, s.
+/// omega: the first frequency of the beam, rad/s; 0: unknown. duration: of a trial run, s.
 FirstSteps first_steps(const Scene& scene, double omega, double duration);
 
-/// Whether a step (s) follows the contacts' vibration so far that its forces are told.
-bool follows_contacts(const Scene& scene, double step);
+/// Whether a step (s) resolves the contacts' vibration well enough for the contact forces.
+bool resolves_contacts(const Scene& scene, double step);
 
 }  // namespace traverse::app

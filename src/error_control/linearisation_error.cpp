@@ -1,4 +1,4 @@
-// Peaks of the same run with linear vehicles and with the mechanisms.
+// Compares the peaks of the same run with linear vehicles and with the mechanisms.
 #include "error_control/linearisation_error.hpp"
 
 #include <algorithm>
@@ -12,18 +12,21 @@
 namespace traverse::app {
 namespace {
 
-constexpr double steps_a_sample = 32.0;  // of the energies; peaks are looked for at every step
-constexpr double reach = 3.0;            // steps between peaks of both runs that are the same one
+constexpr double steps_per_sample =
+    32.0;                          // output interval in steps, for the energies; peaks are evaluated at every step
+constexpr double max_shift = 3.0;  // steps: largest time difference between the peaks of both runs
 
 }  // namespace
 
-double most_residual(const Scene& scene) { return search::share_of_linear * scene.accuracy; }
+double default_residual_limit(const Scene& scene) { return search::share_of_linear * scene.accuracy; }
 
-bool may_exceed(double defect, const Scene& scene) { return search::most_growth * defect > most_residual(scene); }
+bool may_exceed(double residual, const Scene& scene) {
+  return search::max_growth * residual > default_residual_limit(scene);
+}
 
-double tolerable_defect(MPI_Comm comm, Scene scene) {
-  scene.output.interval = steps_a_sample * *scene.model.step;
-  scene.model.most_residual = std::numeric_limits<double>::infinity();
+double measured_residual_limit(MPI_Comm comm, Scene scene) {
+  scene.output.interval = steps_per_sample * *scene.model.step;
+  scene.model.residual_limit = std::numeric_limits<double>::infinity();
   const auto run = [&](VehicleModel vehicles) {
     scene.model.vehicles = vehicles;
     return peaks_of(comm, scene);
@@ -32,15 +35,15 @@ double tolerable_defect(MPI_Comm comm, Scene scene) {
     const RunPeaks linear = run(VehicleModel::linear), mechanisms = run(VehicleModel::full);
     double error = 0.0;
     for (std::size_t q = 0; q < quantities; ++q)
-      if (asks_for(scene, q))
+      if (is_controlled(scene, q))
         error = std::max(
-            error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q), reach * *scene.model.step));
-    const double allowed = most_residual(scene);
+            error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q), max_shift * *scene.model.step));
+    const double allowed = default_residual_limit(scene);
     if (error > allowed) return allowed;
     return std::max(allowed,
-                    linear.defect * (search::most_growth * error > allowed ? allowed / error : search::most_growth));
-  } catch (const SolverError&) {  // too long a step, most likely
-    return most_residual(scene);
+                    linear.residual * (search::max_growth * error > allowed ? allowed / error : search::max_growth));
+  } catch (const SolverError&) {  // the step is probably too long
+    return default_residual_limit(scene);
   }
 }
 

@@ -1,4 +1,4 @@
-// What linear vehicles neglect of the peaks, as far as a run with the mechanisms shows it.
+// The error of linear vehicles, measured by comparison with the mechanisms.
 #pragma once
 
 #include <mpi.h>
@@ -7,17 +7,17 @@
 
 namespace traverse::app {
 
-/// What linear vehicles that the scene leaves open may be out of balance by in any case, over their weights
+/// The allowed linearisation residual without a measurement, relative to the vehicles' weights
 /// (train::linearisation_residual): a tenth of the accuracy.
-double most_residual(const Scene& scene);
+double default_residual_limit(const Scene& scene);
 
-/// Whether a run of which a trial run has shown so much may be out of balance by more.
-bool may_exceed(double defect, const Scene& scene);
+/// Whether the residual of the run may exceed this limit, from the residual of a trial run.
+bool may_exceed(double residual, const Scene& scene);
 
-/// Collective. What they may be out of balance by, so that they change no peak that the scene asks for by more than a
-/// tenth of the accuracy: at least most_residual, and more where the scene, whose mesh and step are set, has the same
-/// peaks with linear vehicles and with the mechanisms. What is out of balance grows with the square of the motion, and
-/// the peaks' error with that.
-double tolerable_defect(MPI_Comm comm, Scene scene);
+/// Collective. The allowed linearisation residual, so that linear vehicles change no controlled peak by more than a
+/// tenth of the accuracy. It is at least default_residual_limit, and larger if the scene, whose mesh and step are set,
+/// has the same peaks with linear vehicles and with the mechanisms. Residual and error of the peaks grow with the
+/// square of the motion.
+double measured_residual_limit(MPI_Comm comm, Scene scene);
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
-// Increases the number of modes until the peaks of sample runs agree with those by elements; the modes that EN 1990,
-// A2.4.4.2.1 requires serve for an estimate of the time.
+// Increases the number of modes until the peaks of sample runs agree with those by elements. The cost by modes is
+// estimated with the modes that EN 1990, A2.4.4.2.1 requires.
 #include "error_control/mode_choice.hpp"
 
 #include <fmt/format.h>
@@ -19,40 +19,40 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t runs_a_sample = 10, most_sampled_runs = 9, least_runs = 2 * runs_a_sample;
-constexpr double code_frequency = 30.0, code_factor = 1.5;  // Hz; times the first one
+constexpr std::size_t runs_per_sample = 10, max_samples = 9, min_runs = 2 * runs_per_sample;
+constexpr double code_frequency = 30.0, code_factor = 1.5;  // Hz; factor of the first frequency
 constexpr std::size_t code_modes = 3;
-constexpr int most_counted = 64, nodes_for_a_question = 1000;
+constexpr int max_required = 64, max_nodes = 1000;
 
-/// Of low-passed accelerations, as limits have them.
+/// The largest relative difference of low-passed accelerations with a limit.
 double difference_low_passed(const Scene& scene, const CaseResult& modes, const CaseResult& elements) {
   double worst = 0.0;
   for (std::size_t i = 0; i < scene.limits.size(); ++i) {
-    const double value = elements.findings[i].value;
+    const double value = elements.evaluated[i].value;
     if (scene.limits[i].quantity == "deck_acceleration" && value > 0.0)
-      worst = std::max(worst, std::abs(modes.findings[i].value / value - 1.0));
+      worst = std::max(worst, std::abs(modes.evaluated[i].value / value - 1.0));
   }
   return worst;
 }
 
-/// Of all peaks that the scene asks for.
+/// The largest difference of all controlled peaks.
 double greatest_difference(const Scene& scene, const CaseResult& modes, const CaseResult& elements) {
-  const double filtered = asks_for(scene, low_passed) ? difference_low_passed(scene, modes, elements) : 0.0;
+  const double filtered = is_controlled(scene, low_passed) ? difference_low_passed(scene, modes, elements) : 0.0;
   return std::max(filtered, greatest(difference(scene, modes, elements)));
 }
 
-/// As read_modal has it.
-bool allowed(const Scene& scene) {
+/// The same conditions as in read_modal.
+bool modes_allowed(const Scene& scene) {
   return scene.vehicles.empty() && !scene.load.forces.empty() && scene.load.courses.empty() && !scene.beam->track &&
          !scene.beam->foundation.nonlinear() && !scene.beam->strained() &&
          options::in_force().find("ts_type") == nullptr;
 }
 
-bool worth_trying(const Scene& scene, const Accuracy& accuracy) {
-  if (!scene.modes_open || !accuracy.measured || !allowed(scene)) return false;
+bool is_worth_trying(const Scene& scene, const Accuracy& accuracy) {
+  if (!scene.modes_open || !accuracy.measured || !modes_allowed(scene)) return false;
   for (const Quantity q : {deflection, acceleration, moment, low_passed})
-    if (asks_for(scene, q) && !accuracy.estimates[q].kept) return false;
-  return scene.sweep->speeds.size() * std::max<std::size_t>(1, scene.sweep->loads.size()) >= least_runs;
+    if (is_controlled(scene, q) && !accuracy.estimates[q].accepted) return false;
+  return scene.sweep->speeds.size() * std::max<std::size_t>(1, scene.sweep->loads.size()) >= min_runs;
 }
 
 struct Sample {
@@ -61,10 +61,10 @@ struct Sample {
   CaseResult result;
 };
 
-/// Runs by elements of all trains in turn, from the slowest to the fastest.
-std::vector<Sample> some_runs(CaseRunner& elements) {
+/// Runs by elements at speeds from the slowest to the fastest, over all trains in turn.
+std::vector<Sample> sample_runs(CaseRunner& elements) {
   const std::vector<double>& speeds = elements.speeds();
-  const std::size_t count = std::min(most_sampled_runs, speeds.size() * elements.trains() / runs_a_sample);
+  const std::size_t count = std::min(max_samples, speeds.size() * elements.trains() / runs_per_sample);
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < count; ++i) {
     const double speed = speeds[i * (speeds.size() - 1) / (count - 1)];
@@ -73,29 +73,30 @@ std::vector<Sample> some_runs(CaseRunner& elements) {
   return samples;
 }
 
-/// Those that EN 1990, A2.4.4.2.1 wants.
-QuickerModes counted_modes(const beam::Beam& beam) {
-  std::vector<double> frequencies;  // Hz, of bending
-  const modes::Modes found = modes::natural_modes(beam, most_counted, false);
+/// The modes that EN 1990, A2.4.4.2.1 requires.
+QuickerModes required_modes(const beam::Beam& beam) {
+  std::vector<double> frequencies;  // Hz, bending modes
+  const modes::Modes found = modes::natural_modes(beam, max_required, false);
   for (std::size_t i = 0; i < found.omega.size(); ++i)
     if (found.axial[i] == 0 && found.omega[i] > 0.0) frequencies.push_back(found.omega[i] / (2.0 * std::numbers::pi));
   if (frequencies.empty()) throw SolverError("the bridge has no mode of bending");
   const double wanted = std::max(code_frequency, code_factor * frequencies.front());
-  const auto past = std::upper_bound(frequencies.begin(), frequencies.end(), wanted) - frequencies.begin();
-  const auto count = std::min(std::max<std::size_t>(static_cast<std::size_t>(past), code_modes), frequencies.size());
+  const auto count_below = std::upper_bound(frequencies.begin(), frequencies.end(), wanted) - frequencies.begin();
+  const auto count =
+      std::min(std::max<std::size_t>(static_cast<std::size_t>(count_below), code_modes), frequencies.size());
   return {static_cast<int>(count), frequencies[count - 1], 0.0};
 }
 
 }  // namespace
 
 ModesChoice choose_mode_count(const Scene& scene, const Accuracy& accuracy, std::vector<std::string>& notes) {
-  if (!worth_trying(scene, accuracy)) return {};
+  if (!is_worth_trying(scene, accuracy)) return {};
   const options::WithoutMonitors without_monitors;
   const results::Stage stage("trial runs by modes and by elements");
   try {
     std::vector<std::string> ignored;
     CaseRunner elements(scene, ignored);
-    const std::vector<Sample> samples = some_runs(elements);
+    const std::vector<Sample> samples = sample_runs(elements);
     Scene by_modes = scene;
     for (const int number : {2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
       by_modes.model.modes = number;
@@ -104,32 +105,32 @@ ModesChoice choose_mode_count(const Scene& scene, const Accuracy& accuracy, std:
       double worst = 0.0;
       for (const Sample& s : samples)
         worst = std::max(worst, greatest_difference(scene, modes.run(s.train, {s.speed, {}}), s.result));
-      if (worst > search::share_of_modes * scene.accuracy) continue;
+      if (worst > search::share_of_truncation * scene.accuracy) continue;
       notes.push_back(fmt::format(
-          "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "
-          "-model_modes 0 keeps the elements",
+          "{} modes instead of the elements: the omitted modes change the peaks of {} runs by at most {:.1g}; "
+          "-model_modes 0 selects the elements",
           number, samples.size(), worst));
       return {number, worst};
     }
   } catch (const Error&) {
-    // A bridge that floats, not so many modes, or a run that fails: the sweep itself will say so.
+    // A floating bridge, too few modes, or a failing run: the sweep itself reports the error.
   }
   return {};
 }
 
 std::optional<QuickerModes> quicker_modes(const Scene& scene) {
-  if (!allowed(scene) || scene.model.modes > 0) return std::nullopt;
+  if (!modes_allowed(scene) || scene.model.modes > 0) return std::nullopt;
   try {
     std::vector<std::string> ignored;
     const SharedBeam shared(PETSC_COMM_SELF, scene, ignored);
-    if (shared.beam->mesh().nodes() > nodes_for_a_question) return std::nullopt;
-    const QuickerModes counted = counted_modes(*shared.beam);
+    if (shared.beam->mesh().nodes() > max_nodes) return std::nullopt;
+    const QuickerModes required = required_modes(*shared.beam);
     Scene by_modes = scene;
-    by_modes.model.modes = counted.modes;
+    by_modes.model.modes = required.modes;
     const CaseRunner runner(by_modes, ignored);
-    return QuickerModes{counted.modes, counted.frequency, runner.cost_of_all()};
+    return QuickerModes{required.modes, required.frequency, runner.cost_of_all()};
   } catch (const Error&) {
-    return std::nullopt;  // a bridge that floats, say
+    return std::nullopt;  // for example a floating bridge
   }
 }
 

@@ -1,4 +1,4 @@
-// Whether modes do as well as the elements in a sweep of moving forces, and whether they would be quicker.
+// Compares modes and elements in a sweep of moving forces, and estimates the cost by modes.
 #pragma once
 
 #include <optional>
@@ -11,22 +11,23 @@
 namespace traverse::app {
 
 struct ModesChoice {
-  int modes = 0;       // 0: the elements stay
-  double error = 0.0;  // relative: the most that these modes change the peaks of the runs tried
+  int modes = 0;       // 0: the elements remain
+  double error = 0.0;  // largest relative change of the peaks by these modes in the sample runs
 };
 
-/// Where the scene leaves the modes open and the accuracy that its mesh and step promise lets it: runs at some speeds
-/// of some trains by elements, then by more and more modes until these are as good. `notes` says so.
+/// If the scene leaves the modes open and the errors of mesh and step are within the accuracy: computes sample runs by
+/// elements, then by more and more modes until these are accurate enough. Appends the choice to `notes`.
 ModesChoice choose_mode_count(const Scene& scene, const Accuracy& accuracy, std::vector<std::string>& notes);
 
 struct QuickerModes {
   int modes = 0;
-  double frequency = 0.0;  // Hz, of the highest one
-  double seconds = 0.0;    // of the whole sweep, about
+  double frequency = 0.0;  // Hz, of the highest mode
+  double seconds = 0.0;    // estimated cost of the whole sweep
 };
 
-/// What the sweep would take by the modes that EN 1990, A2.4.4.2.1 counts (up to 30 Hz, up to 1.5 times the first
-/// frequency, three at least), where modes are allowed and the bridge is so small that asking takes no time.
+/// The cost of the sweep by the modes that EN 1990, A2.4.4.2.1 requires (up to 30 Hz, up to 1.5 times the first
+/// frequency, at least three). Empty if modes are not allowed or the estimate itself would be expensive for the
+/// bridge's size.
 std::optional<QuickerModes> quicker_modes(const Scene& scene);
 
 }  // namespace traverse::app

@@ -20,52 +20,52 @@
 namespace traverse::app {
 namespace {
 
-constexpr int first_a_span = 16, first_a_bay = 4, most_a_bay = 16;
-constexpr double most_in_all = 5e4;  // elements: beyond, eigenvalues take minutes, and rounding hides what is left
-constexpr int most_a_span = 1024;
-constexpr double least_order = 1.0;
+constexpr int first_in_span = 16, first_in_bay = 4, max_in_bay = 16;
+constexpr double max_in_all =
+    5e4;  // elements: with more of them eigenvalues take minutes, and rounding errors dominate
+constexpr int max_in_span = 1024;
+constexpr double min_order = 1.0;
 
 class Frequencies {
  public:
   Frequencies(MPI_Comm comm, const Scene& scene) : comm_(comm), scene_(scene) {}
 
-  /// rad/s, of a mesh of so many elements a span (or sleeper bay).
+  /// The frequencies of a mesh with this number of elements in a span (or sleeper bay), rad/s.
   const std::vector<double>& of(int elements) {
-    const auto known = found_.find(elements);
-    if (known != found_.end()) return known->second;
+    const auto known = frequencies_.find(elements);
+    if (known != frequencies_.end()) return known->second;
     Scene scene = scene_;
     set_mesh(scene, elements);
     std::vector<std::string> ignored;
     const SharedBeam shared(comm_, scene, ignored);
-    return found_[elements] = modes::natural_modes(*shared.beam, scene.mode_count, false).omega;
+    return frequencies_[elements] = modes::natural_modes(*shared.beam, scene.mode_count, false).omega;
   }
 
-  /// The largest relative error that a mesh leaves, by what halving its elements twice has changed.
+  /// The largest relative error of a mesh, from the changes by its last two halvings.
   double error(int elements) {
     const std::vector<double>&fine = of(elements), &middle = of(elements / 2), &first = of(elements / 4);
-    double most = 0.0;
+    double largest = 0.0;
     for (std::size_t i = 0; i < fine.size(); ++i) {
       if (fine[i] == 0.0) continue;
       if (i >= middle.size()) return 1.0;
       const double change = std::abs(middle[i] / fine[i] - 1.0);
       double order = search::mesh_order;
       if (i < first.size() && change > 0.0)
-        order =
-            std::clamp(std::log2(std::abs(first[i] / fine[i] - 1.0) / change - 1.0), least_order, search::full_order);
-      most = std::max(most, change / (std::exp2(std::isnan(order) ? least_order : order) - 1.0));
+        order = std::clamp(std::log2(std::abs(first[i] / fine[i] - 1.0) / change - 1.0), min_order, search::full_order);
+      largest = std::max(largest, change / (std::exp2(std::isnan(order) ? min_order : order) - 1.0));
     }
-    return most;
+    return largest;
   }
 
  private:
   MPI_Comm comm_;
   const Scene& scene_;
-  std::map<int, std::vector<double>> found_;
+  std::map<int, std::vector<double>> frequencies_;
 };
 
 bool too_many(const Scene& scene, int elements) {
-  if (scene.beam->track) return elements > most_a_bay;
-  return elements > most_a_span || elements * static_cast<double>(scene.beam->spans.size()) > most_in_all;
+  if (scene.beam->track) return elements > max_in_bay;
+  return elements > max_in_span || elements * static_cast<double>(scene.beam->spans.size()) > max_in_all;
 }
 
 }  // namespace
@@ -80,21 +80,21 @@ Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::stri
   Choice choice{scene.model, {}, {}};
   Accuracy& accuracy = choice.accuracy;
   Frequencies frequencies(comm, scene);
-  int elements = scene.beam->track ? first_a_bay : first_a_span;
+  int elements = scene.beam->track ? first_in_bay : first_in_span;
   while (!too_many(scene, 2 * elements) && frequencies.error(elements) > scene.accuracy) elements *= 2;
   accuracy.measured = true;
-  ErrorEstimate& promise = accuracy.frequencies;
-  promise = {true, true, frequencies.error(elements), {}};
-  promise.kept = promise.expected <= scene.accuracy;
+  ErrorEstimate& estimate = accuracy.frequencies;
+  estimate = {true, true, frequencies.error(elements), {}};
+  estimate.accepted = estimate.expected <= scene.accuracy;
   accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const char* of = scene.beam->track ? "sleeper bay" : "span";
   choice.model.elements = elements;
-  if (promise.kept)
+  if (estimate.accepted)
     notes.push_back(fmt::format("accuracy {:g}: {} elements a {}; expected error of the frequencies {:.1g}",
-                                scene.accuracy, elements, of, promise.expected));
+                                scene.accuracy, elements, of, estimate.expected));
   else
-    notes.push_back(fmt::format("error not estimated: frequencies: {} elements a {} still leave an error of {:.1g}",
-                                elements, of, promise.expected));
+    notes.push_back(fmt::format("error not estimated: frequencies: the error with {} elements a {} is {:.1g}", elements,
+                                of, estimate.expected));
   return choice;
 }
 

@@ -1,4 +1,4 @@
-// The mesh of natural modes, where it is left open.
+// Chooses the mesh for natural modes if it is open.
 #pragma once
 
 #include <mpi.h>
@@ -11,11 +11,11 @@
 
 namespace traverse::app {
 
-/// Whether the scene asks for modes of elements whose number it leaves open.
+/// Whether the scene computes natural modes by elements whose number is open.
 bool chooses_mode_mesh(const Scene& scene);
 
-/// Collective. Halves elements until three meshes tell that every frequency asked for is right to the scene's accuracy,
-/// and says so in `notes`, or that it is not.
+/// Collective. Halves elements until three meshes show that every frequency is within the scene's accuracy. Appends the
+/// mesh to `notes`, or the reason why the accuracy is not reached.
 Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// How a scene takes a model over, how two models are joined, and the meshes that models name by one number.
+// Applies a model to a scene, combines two models, and sets meshes by one number of elements.
 #include "error_control/model_choice.hpp"
 
 #include <algorithm>
@@ -10,14 +10,14 @@ namespace traverse::app {
 namespace {
 
 constexpr double same_node = 1e-9;
-constexpr std::size_t few_stations = 10000;
-constexpr int least_elements = 4;
+constexpr std::size_t max_stations = 10000;
+constexpr int min_elements = 4;
 
 bool is_node(const beam::BeamModel& beam, double x) {
-  double left = 0.0;
-  for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
-    const double node = (x - left) / beam.spans[i] * beam.elements[i];
-    if (x <= left + beam.spans[i] * (1.0 + same_node))
+  double start = 0.0;
+  for (std::size_t i = 0; i < beam.spans.size(); start += beam.spans[i++]) {
+    const double node = (x - start) / beam.spans[i] * beam.elements[i];
+    if (x <= start + beam.spans[i] * (1.0 + same_node))
       return std::abs(node - std::round(node)) < same_node * beam.elements[i];
   }
   return false;
@@ -26,9 +26,9 @@ bool is_node(const beam::BeamModel& beam, double x) {
 }  // namespace
 
 void Choice::keep(base::Bytes& bytes) {
-  bytes(model.modes, model.elements, model.step, model.method, model.vehicles, model.most_residual, model.trials_reach,
-        model.trials_lost_contact, model.rest_tolerance, model.local_compliance, model.step_kinks, model.step_probes,
-        accuracy, low_pass);
+  bytes(model.modes, model.elements, model.step, model.method, model.vehicles, model.residual_limit,
+        model.trial_distance, model.trials_lost_contact, model.window_tolerance, model.local_compliance,
+        model.step_kinks, model.step_probes, accuracy, low_pass);
 }
 
 Scene with(Scene scene, const NumericalModel& model) {
@@ -47,13 +47,14 @@ Scene completed(Scene scene, NumericalModel chosen) {
 
 NumericalModel finer(const NumericalModel& one, const NumericalModel& other) {
   NumericalModel model = one;
-  model.modes = one.modes > 0 && other.modes > 0 ? std::max(one.modes, other.modes) : 0;  // else elements serve both
+  model.modes = one.modes > 0 && other.modes > 0 ? std::max(one.modes, other.modes)
+                                                 : 0;  // otherwise elements, which are valid for both
   model.elements = std::max(one.elements, other.elements);
   if (other.step && (!one.step || *other.step < *one.step)) model.step = other.step;
   if (other.method != one.method) model.method = "esdirk4";
   if (other.vehicles == VehicleModel::full) model.vehicles = VehicleModel::full;
-  model.most_residual = std::min(one.most_residual, other.most_residual);
-  model.trials_reach = std::min(one.trials_reach, other.trials_reach);
+  model.residual_limit = std::min(one.residual_limit, other.residual_limit);
+  model.trial_distance = std::min(one.trial_distance, other.trial_distance);
   model.trials_lost_contact |= other.trials_lost_contact;
   model.local_compliance |= other.local_compliance;
   model.step_probes |= other.step_probes;
@@ -71,7 +72,7 @@ void set_mesh(Scene& scene, int elements) {
   for (std::size_t i = 0; i < beam.spans.size(); ++i)
     beam.elements[i] = elements == 1
                            ? 1
-                           : std::max(std::min(elements, least_elements),
+                           : std::max(std::min(elements, min_elements),
                                       2 * base::whole(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
 }
 
@@ -80,10 +81,10 @@ bool aligned(const Scene& scene, int elements) {
   for_points(scene.beam->foundation, [&](const beam::FoundationKind&, const auto& points) {
     for (const beam::PointFoundation& point : points) stations.push_back(point.x);
   });
-  if (scene.beam->track || stations.size() > few_stations) return false;
-  Scene tried = scene;
-  set_mesh(tried, elements);
-  return std::all_of(stations.begin(), stations.end(), [&](double x) { return is_node(*tried.beam, x); });
+  if (scene.beam->track || stations.size() > max_stations) return false;
+  Scene trial = scene;
+  set_mesh(trial, elements);
+  return std::all_of(stations.begin(), stations.end(), [&](double x) { return is_node(*trial.beam, x); });
 }
 
 int aligned_mesh(const Scene& scene, int elements, double most) {

@@ -1,4 +1,4 @@
-// What was chosen for a scene: a model, and what is promised of it.
+// The numerical model chosen for a scene, with its error estimates.
 #pragma once
 
 #include <optional>
@@ -12,24 +12,26 @@ namespace traverse::app {
 struct Choice {
   NumericalModel model;
   Accuracy accuracy;
-  std::optional<double> low_pass;  // Hz, up to which deck accelerations count, where the scene leaves that open
+  std::optional<double> low_pass;  // Hz, cut-off frequency of deck accelerations, if the scene leaves it open
 
   void keep(base::Bytes& bytes);
 };
 
-/// The scene by a model. A mesh that is given for each span stays where the model has as many elements in the longest.
+/// The scene with this model. A mesh that is given for each span remains if the model has the same number of elements
+/// in the longest one.
 Scene with(Scene scene, const NumericalModel& model);
-/// The same by what was chosen for it or for others like it, as far as it leaves mesh, step and modes open.
+/// As `with`, but only mesh, step and modes that the scene leaves open are set.
 Scene completed(Scene scene, NumericalModel chosen);
-/// What serves where either does.
+/// The model that is accurate enough wherever one of the two is.
 NumericalModel finer(const NumericalModel& one, const NumericalModel& other);
 
-/// Elements of the longest span, the others in proportion and even; with a layered track elements of the rail a bay.
+/// Sets the number of elements in the longest span; other spans get proportional, even numbers. With a layered track:
+/// the number of rail elements in one bay.
 void set_mesh(Scene& scene, int elements);
 int mesh_of(const Scene& scene);
-/// Whether nodes meet probes and the foundation's springs, inside of whose elements errors fall slowly.
+/// Whether all probes and point springs are at nodes. Inside an element errors decrease more slowly.
 bool aligned(const Scene& scene, int elements);
-/// So many elements, or up to `most` times as many where these are aligned.
+/// The first aligned mesh with `elements` to most * elements elements; `elements` if none is aligned.
 int aligned_mesh(const Scene& scene, int elements, double most = 1.5);
 
 }  // namespace traverse::app

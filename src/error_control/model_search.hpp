@@ -1,5 +1,5 @@
-// The search for mesh and step by trial runs: each is halved until what that changes tells the errors and how fast they
-// fall; what lies near enough is extrapolated.
+// Searches mesh and step by trial runs: each is halved until the changes determine the errors and their orders, and
+// small distances are extrapolated.
 #pragma once
 
 #include <algorithm>
@@ -19,85 +19,88 @@ namespace traverse::app {
 
 class ModelSearch {
  public:
-  /// The scene with its Rayleigh damping as a and b; both must outlive it. end: of the run, s.
+  /// The scene with its Rayleigh damping as a and b; both must outlive this object. end: of the run, s.
   ModelSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end);
 
   /// Collective.
   void run();
-  /// Mesh and step of the scene, where they are open, and what they promise.
+  /// Mesh and step of the scene, as far as they are open, with their error estimates.
   Choice choice() const;
 
-  double horizon() const { return horizon_; }  // s, of a trial run
+  double window() const { return window_; }  // s, duration of a trial run
   std::size_t trials() const { return trials_.count(); }
-  double most_residual() const { return trials_.most_residual(); }  // of linear vehicles
+  double residual_limit() const { return trials_.residual_limit(); }  // limit for linear vehicles
 
  private:
   using Errors = std::array<ErrorModel, quantities>;
-  double moved_by() const;
-  double until_all_is_met(const SharedBeam& shared);
+  double trimmed_time() const;
+  double window_end(const SharedBeam& shared);
   void refine();
   void search();
   void accept_damped_vibration();
-  [[noreturn]] void refuse_scene() const;
+  [[noreturn]] void throw_too_expensive() const;
   void coarsen();
   void coarsen_mesh();
   void try_cheaper_methods();
   int predicted_mesh() const;
   void check_predicted_mesh();
   void check_step_on(int mesh);
-  bool misses_when_predicted(std::size_t q) const;
-  /// Between the mesh that is tried and another one, as large as it may have grown by the end of the run.
-  double changed_by_mesh(int other, double step, Quantity q, const std::string& integrator = {});
-  bool costs_next_to_nothing() const;
-  double changed_by_step(double step, double finest, Quantity q);
-  void measure_elsewhere();
+  bool prediction_fails(std::size_t q) const;
+  /// The change of the peaks by another mesh, multiplied by its possible growth until the end of the run.
+  double change_by_mesh(int other, double step, Quantity q, const std::string& integrator = {});
+  bool is_cheap() const;
+  double change_by_step(double step, double finest, Quantity q);
+  void measure_shifted_steps();
   void measure();
-  void count_alike();
-  double effort() const { return std::max(search::refusal * wanted_, search::least_refusal); }
+  void count_agreements();
+  double coarsening_limit() const {
+    return std::max(search::coarsening_factor * allowed_error_, search::min_coarsening_limit);
+  }
   double excess(const Errors& errors, const Errors& finest, const Errors& other) const;
   ErrorModel error_in_time(Quantity q);
   ErrorModel error_in_space(Quantity q);
-  void refuse(std::size_t q, std::string why);
-  void refuse_what_does_not_settle();
-  void refuse_what_is_far();
-  void refuse_what_is_given();
-  bool promised(std::size_t q) const { return promises_[q].present && promises_[q].kept; }
-  bool within_reach(const Errors& errors) const;
-  double guess(const Errors& errors) const;
-  bool worth_it(double step, int mesh) const;
+  void reject(std::size_t q, std::string why);
+  void reject_unconverged();
+  void reject_inaccurate();
+  void reject_given_model();
+  bool has_estimate(std::size_t q) const { return estimates_[q].present && estimates_[q].accepted; }
+  bool can_extrapolate(const Errors& errors) const;
+  double predicted_ratio(const Errors& errors) const;
+  bool is_affordable(double step, int mesh) const;
   double allowed(const Errors& errors, std::size_t q) const;
-  double room(const Errors& errors) const;
-  double room_to_coarsen(const Errors& errors) const;
+  double allowed_ratio(const Errors& errors) const;
+  double coarsening_ratio(const Errors& errors) const;
   double factor_of_step() const;
   double factor_of_elements() const;
   const char* unit_of_mesh() const { return scene_.beam->track ? "sleeper bay" : "span"; }
 
   MPI_Comm comm_;
   const Scene& scene_;
-  double end_;               // of the run, s
-  std::string not_covered_;  // what no trial run sees, in words; empty: nothing
-  double horizon_;           // of trial runs, s
+  double end_;               // end of the run, s
+  std::string not_covered_;  // an event outside the trial runs, in words; empty: none
+  double window_;            // duration of trial runs, s
   TrialRuns trials_;
   bool open_mesh_, open_step_, open_integrator_;
-  bool undamped_ = false;   // no damping grows with the frequency
-  double wanted_;           // error of the step, and of the mesh
-  std::string integrator_;  // chosen; empty: the default
-  int mesh_, most_elements_;
-  double most_coarsening_ = 2.0;  // times the measured elements; 1 where coarser ones have been measured
-  double step_of_period_ = 0.0;   // s, that follows the beam's first period; 0: the first step does
+  bool undamped_ = false;   // damping does not grow with the frequency
+  double allowed_error_;    // relative, for the step and for the mesh each
+  std::string integrator_;  // chosen method; empty: the default
+  int mesh_, max_elements_;
+  double max_coarsening_ = 2.0;  // relative to the measured elements; 1 if coarser ones were measured
+  double step_of_period_ = 0.0;  // s, resolves the beam's first period; 0: the first step does
   double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s
-  double growth_ = 1.0;  // of errors in free oscillations until these have died away, for runs longer than the trials
-  std::array<ErrorEstimate, quantities> promises_{};
-  std::array<bool, quantities> tried_{};   // refused by the search, with an error as small as it could be made
-  std::array<int, quantities> stalled_{};  // halvings of the step in a row that have changed little
-  int impact_agreement_ = 0;  // halvings in a row over which forces and accelerations agree, where wheels strike
+  double growth_ = 1.0;  // growth of errors after the trial runs, until free oscillations have decayed
+  std::array<ErrorEstimate, quantities> estimates_{};
+  std::array<bool, quantities>
+      rejected_by_search_{};               // rejected by the search, with the smallest error that was reached
+  std::array<int, quantities> stalled_{};  // successive halvings of the step with little change
+  int impact_agreement_ = 0;  // successive halvings over which forces and accelerations of impacting wheels agree
   Errors time_{}, space_{};
-  std::array<double, quantities> predicted_errors_{};  // errors of a mesh that was foreseen, measured
-  double finest_step_ = 0.0;                           // s, tried, with its errors
+  std::array<double, quantities> predicted_errors_{};  // measured errors of a predicted mesh
+  double finest_step_ = 0.0;                           // s, with its errors finest_
   Errors finest_{};
-  std::optional<std::pair<double, int>> measured_;  // step and mesh that the errors belong to
-  std::string shortest_;                            // what asks for the shortest steps, in words
-  std::optional<Errors> coarser_;                   // in time, of twice the step, where that is too long
+  std::optional<std::pair<double, int>> measured_;  // step and mesh of the errors
+  std::string step_reason_;                         // what requires the shortest steps, in words
+  std::optional<Errors> coarser_;                   // errors of twice the step, if that is too long
 };
 
 }  // namespace traverse::app

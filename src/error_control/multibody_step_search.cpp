@@ -1,5 +1,5 @@
-// Time step of a mechanism without a bridge: the whole run is repeated with halved steps, and positions, joint
-// reactions and contact forces are compared at equal instants.
+// Chooses the time step of a mechanism without a bridge: the whole run is repeated with halved steps, and positions,
+// joint reactions and contact forces are compared at equal instants.
 #include "error_control/multibody_step_search.hpp"
 
 #include <fmt/format.h>
@@ -20,11 +20,12 @@
 namespace traverse::app {
 namespace {
 
-constexpr double instants = 400.0;  // of a run, at which runs are compared
+constexpr double instants = 400.0;  // instants of a run at which runs are compared
 
-/// What is compared, of all instants: each kind of numbers by its own size.
+/// Kinds of compared values; each kind is relative to its own largest value.
 enum Kind : std::size_t { places, angles, forces, moments, contacts, kinds };
-constexpr std::array<AloneQuantity, kinds> quantity_of = {position, position, joint_force, joint_force, contact_force};
+constexpr std::array<MultibodyQuantity, kinds> quantity_of = {position, position, joint_force, joint_force,
+                                                              contact_force};
 using Curves = std::array<std::vector<double>, kinds>;
 
 void add(const train::Fleet& fleet, Curves& curves) {
@@ -41,7 +42,7 @@ void add(const train::Fleet& fleet, Curves& curves) {
   for (const train::Contact& pair : fleet.pairs) curves[contacts].push_back(pair.force.normal);
 }
 
-/// The largest magnitude of such numbers; of positions the largest way from the start.
+/// The largest magnitude of a kind; for positions the largest displacement from the start.
 double size_of(const Curves& curves, std::size_t kind) {
   const std::vector<double>& x = curves[kind];
   const std::size_t width = std::max<std::size_t>(1, x.size() / static_cast<std::size_t>(instants + 1.0));
@@ -56,46 +57,46 @@ class Runs {
  public:
   Runs(MPI_Comm comm, const Scene& scene) : scene_(scene), shared_(comm, scene, ignored_) {
     scene_.quiet = true;
-    scene_.output.interval = longest_step_alone(scene);
+    scene_.output.interval = first_multibody_step(scene);
   }
 
   double seconds(double step) const { return *scene_.end_time / step * step_seconds(scene_); }
-  std::size_t count() const { return kept_.size(); }
+  std::size_t count() const { return curves_.size(); }
 
-  /// Collective. None where the run failed.
+  /// Collective. Empty if the run failed.
   const std::optional<Curves>& run(double step) {
-    const auto [place, is_new] = kept_.try_emplace(step);
+    const auto [place, is_new] = curves_.try_emplace(step);
     if (!is_new) return place->second;
     scene_.model.step = step;
     try {
       Curves curves;
       Passage passage(scene_, shared_, ignored_);
       passage.start(ignored_);
-      coupling::Observation seen;
+      coupling::Observation observation;
       passage.run(
           [&](const integrate::Instant& now) {
-            passage.system().observe(now.time, now.y, now.acceleration, seen);
+            passage.system().observe(now.time, now.y, now.acceleration, observation);
             add(passage.system().fleet(), curves);
           },
           [](double, long) { return true; });
       for (const train::Separation& loss : passage.system().contacts().separations().list())
         lost_contact_ = lost_contact_ || !loss.from_start;
       place->second = std::move(curves);
-    } catch (const SolverError&) {  // too long a step, most likely
+    } catch (const SolverError&) {  // the step is probably too long
     }
     return place->second;
   }
 
   bool lost_contact() const { return lost_contact_; }  // in one of the runs
-  bool has(AloneQuantity q, double step) {
+  bool has(MultibodyQuantity q, double step) {
     const std::optional<Curves>& curves = run(step);
     for (std::size_t kind = 0; curves && kind < kinds; ++kind)
       if (quantity_of[kind] == q && size_of(*curves, kind) > 0.0) return true;
     return false;
   }
 
-  /// The largest difference of a quantity at any instant, over the largest it comes to; 1 where one of the runs failed.
-  double difference(double rough, double fine, AloneQuantity q) {
+  /// The largest difference of a quantity at any instant, relative to its largest value; 1 if one of the runs failed.
+  double difference(double rough, double fine, MultibodyQuantity q) {
     const std::optional<Curves>&a = run(rough), &b = run(fine);
     if (!a || !b) return 1.0;
     double worst = 0.0;
@@ -111,53 +112,53 @@ class Runs {
   std::vector<std::string> ignored_;
   Scene scene_;
   SharedBeam shared_;
-  std::map<double, std::optional<Curves>> kept_;  // by their steps
+  std::map<double, std::optional<Curves>> curves_;  // the key is the step, s
   bool lost_contact_ = false;
 };
 
-/// One quantity's error as steps are halved.
+/// The error of one quantity as steps are halved.
 struct Search {
-  ErrorModel law;
-  int crawls = 0;  // halvings in a row that have changed little
+  ErrorModel error;
+  int stalls = 0;  // successive halvings with little change
 
   void add(double change, double step, bool both_ended) {
-    law = error_from(change, step, law);
-    crawls = both_ended && law.known && law.order < search::slow_order ? crawls + 1 : 0;
+    error = error_from(change, step, error);
+    stalls = both_ended && error.known && error.order < search::stall_order ? stalls + 1 : 0;
   }
-  bool done(double wanted) const { return crawls >= search::most_crawls || (law.known && law.value <= wanted); }
+  bool done(double wanted) const { return stalls >= search::max_stalls || (error.known && error.value <= wanted); }
 };
 
 }  // namespace
 
-bool chooses_step_alone(const Scene& scene) {
+bool chooses_multibody_step(const Scene& scene) {
   return !scene.beam && !scene.model.step && scene.end_time && !scene.vehicles.empty() && !scene.sweep &&
          scene.analysis == Analysis::transient;
 }
 
-double longest_step_alone(const Scene& scene) { return *scene.end_time / instants; }
+double first_multibody_step(const Scene& scene) { return *scene.end_time / instants; }
 
-Choice choose_step_alone(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
+Choice choose_multibody_step(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
   Runs runs(comm, scene);
-  std::array<Search, alone_quantities> searches;
+  std::array<Search, multibody_quantities> searches;
   const double wanted = search::share * scene.accuracy;
-  const auto refused = [&](std::size_t q) { return q == contact_force && runs.lost_contact(); };
-  const auto done = [&](std::size_t q) { return refused(q) || searches[q].done(wanted); };
-  double step = longest_step_alone(scene), spent = runs.seconds(step);
-  for (int i = 0; i < search::most_halvings && !(done(position) && done(joint_force) && done(contact_force)); ++i) {
+  const auto rejected = [&](std::size_t q) { return q == contact_force && runs.lost_contact(); };
+  const auto done = [&](std::size_t q) { return rejected(q) || searches[q].done(wanted); };
+  double step = first_multibody_step(scene), spent = runs.seconds(step);
+  for (int i = 0; i < search::max_halvings && !(done(position) && done(joint_force) && done(contact_force)); ++i) {
     step *= 0.5;
     spent += runs.seconds(step);
     const bool both_ended = runs.run(2.0 * step) && runs.run(step);
-    for (std::size_t q = 0; q < alone_quantities; ++q)
-      searches[q].add(runs.difference(2.0 * step, step, static_cast<AloneQuantity>(q)), step, both_ended);
-    if (spent + runs.seconds(0.5 * step) > search::most_seconds) break;
+    for (std::size_t q = 0; q < multibody_quantities; ++q)
+      searches[q].add(runs.difference(2.0 * step, step, static_cast<MultibodyQuantity>(q)), step, both_ended);
+    if (spent + runs.seconds(0.5 * step) > search::max_seconds) break;
   }
-  double longer = search::farthest;
-  for (std::size_t q = 0; q < alone_quantities; ++q)
-    if (!refused(q) && searches[q].crawls < search::most_crawls)
-      longer = std::min(longer, std::max(1.0, searches[q].law.room(wanted)));
+  double longer = search::max_extrapolation;
+  for (std::size_t q = 0; q < multibody_quantities; ++q)
+    if (!rejected(q) && searches[q].stalls < search::max_stalls)
+      longer = std::min(longer, std::max(1.0, searches[q].error.allowed_ratio(wanted)));
 
   Choice choice{scene.model, {}, {}};
   Accuracy& result = choice.accuracy;
@@ -167,40 +168,40 @@ Choice choose_step_alone(MPI_Comm comm, const Scene& scene, std::vector<std::str
   notes.push_back(fmt::format("accuracy {:g}: steps of {:.3g} s; {} trial runs of the whole scene took {:.2g} s",
                               scene.accuracy, *choice.model.step, runs.count(), result.seconds));
   std::string expected;
-  for (std::size_t q = 0; q < alone_quantities; ++q) {
-    ErrorEstimate& promise = result.alone[q];
-    promise.present = runs.has(static_cast<AloneQuantity>(q), step);
-    promise.expected = searches[q].law.at(longer);
-    promise.kept = !refused(q) && searches[q].law.known && promise.expected <= scene.accuracy;
-    if (promise.present && promise.kept)
-      expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", alone_names[q], promise.expected);
+  for (std::size_t q = 0; q < multibody_quantities; ++q) {
+    ErrorEstimate& estimate = result.multibody[q];
+    estimate.present = runs.has(static_cast<MultibodyQuantity>(q), step);
+    estimate.expected = searches[q].error.at(longer);
+    estimate.accepted = !rejected(q) && searches[q].error.known && estimate.expected <= scene.accuracy;
+    if (estimate.present && estimate.accepted)
+      expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", multibody_names[q], estimate.expected);
   }
   if (!expected.empty()) notes.push_back("estimated errors: " + expected);
-  for (std::size_t q = 0; q < alone_quantities; ++q)
-    if (result.alone[q].present && !result.alone[q].kept)
+  for (std::size_t q = 0; q < multibody_quantities; ++q)
+    if (result.multibody[q].present && !result.multibody[q].accepted)
       notes.push_back(fmt::format(
-          "error not estimated: {}: {}", alone_names[q],
-          refused(q) ? "contacts are lost and made again, by forces that are pulses"
-                     : fmt::format("steps of {:.2g} s leave an error of {:.1g}{}", step, searches[q].law.value,
-                                   searches[q].crawls > 0 ? ", which does not fall as they are halved" : "")));
+          "error not estimated: {}: {}", multibody_names[q],
+          rejected(q) ? "contacts open and close again, and impact forces are pulses"
+                      : fmt::format("the error with steps of {:.2g} s is {:.1g}{}", step, searches[q].error.value,
+                                    searches[q].stalls > 0 ? ", and it does not decrease when they are halved" : "")));
   return choice;
 }
 
-bool report_alone(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy) {
+bool report_multibody(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy) {
   const results::Stage stage("the refined run of -accuracy_report");
   const options::WithoutMonitors without_monitors;
   Runs runs(comm, scene);
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   if (rank == 0) report_head("half the step", "of");
-  bool all_kept = true;
-  for (std::size_t q = 0; q < alone_quantities; ++q) {
-    const ErrorEstimate& promise = accuracy.alone[q];
-    if (!promise.present) continue;
-    const double error = runs.difference(*scene.model.step, 0.5 * *scene.model.step, static_cast<AloneQuantity>(q));
-    all_kept = report_row(alone_names[q], promise, scene.accuracy, error, rank == 0) && all_kept;
+  bool all_within = true;
+  for (std::size_t q = 0; q < multibody_quantities; ++q) {
+    const ErrorEstimate& estimate = accuracy.multibody[q];
+    if (!estimate.present) continue;
+    const double error = runs.difference(*scene.model.step, 0.5 * *scene.model.step, static_cast<MultibodyQuantity>(q));
+    all_within = report_row(multibody_names[q], estimate, scene.accuracy, error, rank == 0) && all_within;
   }
-  return all_kept;
+  return all_within;
 }
 
 }  // namespace traverse::app

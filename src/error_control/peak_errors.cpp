@@ -1,4 +1,4 @@
-// Relative differences of the peaks of two runs, one a quantity.
+// Relative differences of the peaks of two runs, for each quantity.
 #include "error_control/peak_errors.hpp"
 
 #include <algorithm>
@@ -11,19 +11,19 @@ namespace traverse::app {
 PeakErrors difference(const Scene& scene, const base::PassagePeaks& rough, const base::PassagePeaks& fine) {
   PeakErrors errors{};
   const auto compare = [&](Quantity q, base::Extreme base::ProbePeaks::*peak) {
-    double apart = 0.0, largest = 0.0;
+    double change = 0.0, largest = 0.0;
     for (std::size_t p = 0; p < fine.peaks.size(); ++p) {
       const double value = (fine.peaks[p].*peak).value;
-      apart = std::max(apart, std::abs((rough.peaks[p].*peak).value - value));
+      change = std::max(change, std::abs((rough.peaks[p].*peak).value - value));
       largest = std::max(largest, value);
     }
-    if (asks_for(scene, q) && largest > 0.0) errors[q] = apart / largest;
+    if (is_controlled(scene, q) && largest > 0.0) errors[q] = change / largest;
   };
   compare(deflection, &base::ProbePeaks::deflection);
   compare(acceleration, &base::ProbePeaks::acceleration);
   compare(moment, &base::ProbePeaks::moment);
   compare(low_passed, &base::ProbePeaks::low_passed);
-  if (asks_for(scene, wheel_force) && fine.greatest_wheel_force > 0.0)
+  if (is_controlled(scene, wheel_force) && fine.greatest_wheel_force > 0.0)
     errors[wheel_force] = std::max(std::abs(rough.greatest_wheel_force - fine.greatest_wheel_force),
                                    std::abs(rough.least_wheel_force - fine.least_wheel_force)) /
                           fine.greatest_wheel_force;

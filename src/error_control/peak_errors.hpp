@@ -1,4 +1,4 @@
-// How far the peaks of two runs of the same passage differ.
+// Differences of the peaks of two runs of the same passage.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace traverse::app {
 
-/// Of each quantity's peaks, relative.
+/// Relative error of each quantity's peaks.
 using PeakErrors = std::array<double, quantities>;
 
-/// The largest difference at any probe of each quantity that the scene's accuracy is asked of, over the largest peak of
-/// its kind in `fine`; of others 0.
+/// For each controlled quantity the largest difference at any probe, relative to the largest peak in `fine`; 0 for
+/// other quantities.
 PeakErrors difference(const Scene& scene, const base::PassagePeaks& rough, const base::PassagePeaks& fine);
 double greatest(const PeakErrors& errors);
 

@@ -1,5 +1,5 @@
-// Trial runs at the lowest, the middle and the highest speed, of which the finest mesh and step are used for all runs;
-// also whether low-passed accelerations can be promised.
+// Computes trial runs at the lowest, the middle and the highest speed, and uses the finest mesh and step for all runs;
+// also decides whether low-passed accelerations can have an error estimate.
 #include "error_control/sweep_model.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace traverse::app {
 namespace {
 
-void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
+void describe(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
   const std::string mesh = scene.by_given_modes() ? "given modes"
                                                   : fmt::format("{} elements a {}", mesh_of(scene),
                                                                 scene.beam->track ? "sleeper bay" : "span");
@@ -32,7 +32,7 @@ void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& note
   notes.push_back("estimated errors of the peaks of all runs: " + (expected.empty() ? "none" : expected));
 }
 
-/// The finest of what some speeds need; nothing where no accuracy was to be chosen by.
+/// The finest model of three speeds; empty if mesh and step are not open.
 std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::string>& notes) {
   std::vector<double> speeds = given.sweep->speeds;
   if (speeds.empty()) speeds = {given.vehicles.empty() ? given.load.speed : given.train.speed};
@@ -43,7 +43,7 @@ std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::stri
     if (!one.accuracy.measured) return std::nullopt;
     notes.push_back(fmt::format("at {:g} m/s:", speed));
     notes.insert(notes.end(), own.begin(), own.end());
-    one.model.trials_reach = one.accuracy.seen_until * speed;
+    one.model.trial_distance = one.accuracy.covered_until * speed;
     one.model.trials_lost_contact = one.accuracy.lost_contact;
     if (all) one.accuracy.merge(all->accuracy);
     all = Choice{all ? finer(all->model, one.model) : one.model, one.accuracy, {}};
@@ -51,25 +51,27 @@ std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::stri
   return all;
 }
 
-/// What trials of a sweep judge by. Low-passed accelerations only where no run has its peak within the unsettled end:
-/// it goes on until the last wheel has left and the filter has settled behind it, and the bridge does not ring on.
-Scene judged(const Scene& given, std::vector<std::string>& notes) {
+/// The scene for the trial runs of a sweep. Low-passed accelerations are controlled only if no run can have its peak
+/// within the unsettled end: it continues until the last wheel has left and the filter has settled after that, and the
+/// bridge's vibration is damped.
+Scene trial_scene(const Scene& given, std::vector<std::string>& notes) {
   Scene scene = given;
-  if (!chooses(at_speed(given, 1.0))) return scene;  // nothing is tried, whatever the speed
-  std::vector<std::string> ignored;                  // the runs say so themselves
-  fix_low_pass(PETSC_COMM_SELF, scene, ignored);
-  if (!asks_for(scene, low_passed)) return scene;
+  if (!chooses(at_speed(given, 1.0))) return scene;  // no trial runs at any speed
+  std::vector<std::string> ignored;                  // the runs report these notes themselves
+  set_low_pass(PETSC_COMM_SELF, scene, ignored);
+  if (!is_controlled(scene, low_passed)) return scene;
   const double end = unsettled_end(*scene.output.low_pass);
   if (damps_all_modes(scene) && !scene.end_time && scene.tail.value_or(0.0) >= end) return scene;
   std::vector<std::string> others;
   for (std::size_t q = 0; q < low_passed; ++q)
-    if (asks_for(scene, q) || (q == acceleration && scene.accuracy_of.empty())) others.emplace_back(stored_names[q]);
-  const ErrorEstimate promise{
+    if (is_controlled(scene, q) || (q == acceleration && scene.accuracy_of.empty()))
+      others.emplace_back(stored_names[q]);
+  const ErrorEstimate estimate{
       true, false, 0.0,
-      fmt::format("in sweeps and studies it takes a bridge with damping and scene_tail {:.3g} or more, "
-                  "until the filter has settled behind the train",
+      fmt::format("in sweeps and studies it requires a bridge with damping and a scene_tail of at least {:.3g}, "
+                  "so that the filter settles after the train",
                   end)};
-  const std::string note = not_promised(low_passed, promise);
+  const std::string note = not_estimated(low_passed, estimate);
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   if (!others.empty()) scene.accuracy_of = others;
   if (others.empty()) scene.output.low_pass = 0.0;
@@ -86,25 +88,25 @@ Scene at_speed(const Scene& sweep, double speed) {
   return scene;
 }
 
-std::optional<Choice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes) {
+std::optional<Choice> choose_batched(const Scene& given, std::vector<std::string>& notes) {
   if (given.vehicles.empty()) return {};
-  return choose_batch_model(judged(given, notes), notes);
+  return choose_batch_model(trial_scene(given, notes), notes);
 }
 
-Choice choose_one_by_one(const Scene& given, std::vector<std::string>& notes) {
-  const Scene by = judged(given, notes);
-  std::optional<Choice> all = choose_at_speeds(by, notes);
+Choice choose_unbatched(const Scene& given, std::vector<std::string>& notes) {
+  const Scene scene_of_trials = trial_scene(given, notes);
+  std::optional<Choice> all = choose_at_speeds(scene_of_trials, notes);
   if (!all && given.model.modes > 0 && !given.by_given_modes())
     notes.push_back(fmt::format(
         "errors are not estimated: model_modes = {} is given, and trial runs do not determine the truncation error",
         given.model.modes));
   if (!all) return {given.model, {}, {}};
-  const Scene tried = with(by, all->model);
-  say(tried, all->accuracy, notes);
+  const Scene scene = with(scene_of_trials, all->model);
+  describe(scene, all->accuracy, notes);
   if (given.by_given_modes()) return *all;
-  const ModesChoice modes = choose_mode_count(tried, all->accuracy, notes);
+  const ModesChoice modes = choose_mode_count(scene, all->accuracy, notes);
   all->model.modes = modes.modes;
-  for (ErrorEstimate& promise : all->accuracy.estimates) promise.expected += modes.error;
+  for (ErrorEstimate& estimate : all->accuracy.estimates) estimate.expected += modes.error;
   return *all;
 }
 

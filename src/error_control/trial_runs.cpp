@@ -1,5 +1,5 @@
-// Trial runs of a shortened scene: distant spans and later vehicles are left out, every combination of mesh, step and
-// integrator is computed once, and a limit on the total cost ends the series.
+// Trial runs of a shortened scene without distant spans and later vehicles. Every combination of mesh, step and
+// integrator is computed once, and a limit of the total cost ends the series.
 #include "error_control/trial_runs.hpp"
 
 #include <algorithm>
@@ -16,21 +16,24 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t margin_spans = 8;         // kept beyond what the train reaches: waves run ahead of it
-constexpr std::size_t few_spans = 24;           // are all kept
-constexpr double steps_a_check = 32.0;          // of the energies; peaks are looked for at every step
-constexpr double hopeless = 10.0;               // times what linear vehicles may be out of balance by
-constexpr double twice_as_long = 2.1;           // steps than a run may have, for comparison
-constexpr double solves_a_step = 5.0;           // of the beam, by the default method
-constexpr double steps_a_factorisation = 30.0;  // that would cost as much as a step of a new length
-constexpr double lead = 12.0;                   // bays before the bridge: the start has died away by then
+constexpr std::size_t margin_spans =
+    8;  // spans beyond the train's range that remain, because waves propagate ahead of it
+constexpr std::size_t max_whole_bridge = 24;  // bridges with at most this number of spans remain whole
+constexpr double steps_per_sample =
+    32.0;                            // output interval in steps, for the energies; peaks are evaluated at every step
+constexpr double max_excess = 10.0;  // ratio of a residual to its limit from which linear vehicles are rejected at once
+constexpr double interval_ratio = 2.1;   // ratio to the longest filter interval; includes the step of comparison
+constexpr double solves_per_step = 5.0;  // solves of the beam in a step of the default method
+constexpr double steps_per_factorisation =
+    30.0;                      // number of steps with the cost of a factorisation for a new step length
+constexpr double lead = 12.0;  // bays before the bridge, over which the transient of the start decays
 
 double foremost(const Scene& scene, std::size_t vehicle) {
   const std::vector<double> wheels = wheels_at_start(scene, vehicle);
   return wheels.empty() ? 0.0 : *std::max_element(wheels.begin(), wheels.end());
 }
 
-void leave_out_vehicles(Scene& scene, double end) {
+void remove_late_vehicles(Scene& scene, double end) {
   Train& train = scene.train;
   if (train.drive != train::Drive::constant || !train.couplers.empty() || !train.courses.empty()) return;
   std::size_t count = 1;
@@ -41,12 +44,12 @@ void leave_out_vehicles(Scene& scene, double end) {
   train.positions.resize(count);
 }
 
-void leave_out_spans(Scene& scene, double end) {
+void remove_distant_spans(Scene& scene, double end) {
   beam::BeamModel& beam = *scene.beam;
-  const auto there = [&](const beam::FoundationKind& kind) { return present(beam.foundation, kind); };
-  const bool founded = std::any_of(beam::foundation_kinds.begin(), beam::foundation_kinds.end(), there);
-  const bool plain = !founded && !beam.track && beam.hinges.empty() && beam.cracks.empty() && !beam.strained();
-  if (!plain || beam.spans.size() <= few_spans || scene.train.drive != train::Drive::constant ||
+  const auto is_present = [&](const beam::FoundationKind& kind) { return present(beam.foundation, kind); };
+  const bool has_foundation = std::any_of(beam::foundation_kinds.begin(), beam::foundation_kinds.end(), is_present);
+  const bool plain = !has_foundation && !beam.track && beam.hinges.empty() && beam.cracks.empty() && !beam.strained();
+  if (!plain || beam.spans.size() <= max_whole_bridge || scene.train.drive != train::Drive::constant ||
       !scene.train.courses.empty() || !scene.load.courses.empty())
     return;
   double front = scene.output.probes.empty() ? 0.0 : scene.output.probes.front();
@@ -62,12 +65,12 @@ void leave_out_spans(Scene& scene, double end) {
   std::erase_if(scene.output.probes, [&](double x) { return x > beam.length(); });
 }
 
-/// Whether a run's steps see the frequency at which its accelerations are filtered.
-bool keeps_accelerations(const Scene& scene, const Plan& plan) {
+/// Whether the steps of a run resolve the frequency at which its accelerations are filtered.
+bool stores_accelerations(const Scene& scene, const Plan& plan) {
   const double frequency = filters_deck(scene) ? scene.output.low_pass.value_or(0.0) : 0.0;
   const double numbers = static_cast<double>(scene.output.probes.size()) * plan.end_time / plan.interval;
-  return frequency > 0.0 && plan.interval <= twice_as_long * longest_spacing_for(frequency) &&
-         numbers <= DeckAcceleration::most_kept;
+  return frequency > 0.0 && plan.interval <= interval_ratio * longest_spacing_for(frequency) &&
+         numbers <= DeckAcceleration::max_stored;
 }
 
 }  // namespace
@@ -95,12 +98,12 @@ Scene restrict_to_window(const Scene& scene, double end) {
   part.quiet = true;
   part.model.step_probes = true;
   part.model.local_compliance = true;
-  leave_out_vehicles(part, end);
-  leave_out_spans(part, end);
+  remove_late_vehicles(part, end);
+  remove_distant_spans(part, end);
   return part;
 }
 
-RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
+RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_steps) {
   std::vector<std::string> ignored;
   SharedBeam shared(comm, scene, ignored);
   shared.damp(scene, false, ignored);
@@ -109,34 +112,34 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
   passage.start(ignored);
   shared.beam->release_matrices();
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
-  RunObserver watch(scene, passage.system(), shared.bridge(), none);
-  if (keeps_accelerations(scene, passage.plan()))
-    watch.keep_accelerations({*scene.output.low_pass, passage.plan(), scene.output.probes});
+  RunObserver observer(scene, passage.system(), shared.bridge(), none);
+  if (stores_accelerations(scene, passage.plan()))
+    observer.keep_accelerations({*scene.output.low_pass, passage.plan(), scene.output.probes});
   RunPeaks result;
   const auto steps_so_far = [&] {
-    const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_a_step;
+    const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_per_step;
     return std::max(static_cast<double>(passage.steps()), by_solves) +
-           steps_a_factorisation * static_cast<double>(passage.system().factorisations());
+           steps_per_factorisation * static_cast<double>(passage.system().factorisations());
   };
   const results::Stage stage("time steps");
-  bool balanced = true;
+  bool within_limit = true;
   passage.run(
       [&](const integrate::Instant& instant) {
-        watch.sample(instant);
-        balanced = passage.system().defect() <= scene.model.most_residual;
+        observer.sample(instant);
+        within_limit = passage.system().linearisation_residual() <= scene.model.residual_limit;
       },
       [&](double t, long) {
-        watch.step(t);
+        observer.step(t);
         results::Stage::advance(t / passage.plan().end_time);
-        result.complete = balanced && steps_so_far() <= most_steps;
+        result.complete = within_limit && steps_so_far() <= max_steps;
         return result.complete;
       });
   result.steps = steps_so_far();
-  result.defect = passage.system().defect();
+  result.residual = passage.system().linearisation_residual();
   for (const train::Separation& s : passage.system().contacts().separations().list())
     result.lost_contact = result.lost_contact || !s.from_start;
-  result.peaks = watch.finished_peaks();
-  const results::Summary& energies = watch.extremes();
+  result.peaks = observer.finished_peaks();
+  const results::Summary& energies = observer.extremes();
   if (energies.energy_scale > 0.0) result.energy_missing = energies.energy_residual / energies.energy_scale;
   return result;
 }
@@ -147,62 +150,64 @@ double TrialRuns::seconds(int elements, double step, const std::string& integrat
 
 double TrialRuns::seconds() const {
   double sum = 0.0;
-  for (const Kept& run : kept_) sum += seconds(run.model.elements, *run.model.step, run.model.method);
+  for (const StoredRun& run : stored_) sum += seconds(run.model.elements, *run.model.step, run.model.method);
   return sum;
 }
 
 const ResponseExtremes& TrialRuns::run(int elements, double step, const std::string& integrator) {
-  return kept_run(elements, step, integrator).peaks;
+  return stored_run(elements, step, integrator).peaks;
 }
 
-double TrialRuns::energy_missing(int elements, double step) { return kept_run(elements, step, {}).energy_missing; }
+double TrialRuns::energy_missing(int elements, double step) { return stored_run(elements, step, {}).energy_missing; }
 
-const TrialRuns::Kept& TrialRuns::kept_run(int elements, double step, const std::string& integrator) {
+const TrialRuns::StoredRun& TrialRuns::stored_run(int elements, double step, const std::string& integrator) {
   NumericalModel model = scene_.model;
   model.elements = elements;
   model.step = step;
   model.method = integrator;
-  for (const Kept& known : kept_)
+  for (const StoredRun& known : stored_)
     if (known.model == model) return known;
   Scene scene = with(scene_, model);
-  scene.output.interval = steps_a_check * step;
+  scene.output.interval = steps_per_sample * step;
   if (scene.model.vehicles == VehicleModel::automatic) {
     scene.model.vehicles = VehicleModel::linear;
-    scene.model.most_residual = most_defect_;
+    scene.model.residual_limit = residual_limit_;
   }
-  const double a_step = step_seconds(scene_, {}, elements), most_steps = (search::most_seconds - spent_) / a_step;
+  const double seconds_per_step = step_seconds(scene_, {}, elements),
+               max_steps = (search::max_seconds - spent_) / seconds_per_step;
   RunPeaks result;
   try {
-    if (*scene_.end_time / step > most_steps) throw TooMuchWork();
-    result = peaks_of(comm_, scene, most_steps);
-    if (linear_is_in_doubt(result.defect)) {
-      measure_linear(elements, step);
-      scene.model.most_residual = most_defect_;
-      if (result.defect <= most_defect_) result = peaks_of(comm_, scene, most_steps);
+    if (*scene_.end_time / step > max_steps) throw CostLimitExceeded();
+    result = peaks_of(comm_, scene, max_steps);
+    if (needs_measurement(result.residual)) {
+      measure_linearisation(elements, step);
+      scene.model.residual_limit = residual_limit_;
+      if (result.residual <= residual_limit_) result = peaks_of(comm_, scene, max_steps);
     }
   } catch (const SolverError&) {
-    result.peaks = ResponseExtremes::of_failure();  // too long a step, most likely
+    result.peaks = ResponseExtremes::of_failure();  // the step is probably too long
   }
-  spent_ += result.steps * a_step;
+  spent_ += result.steps * seconds_per_step;
   lost_contact_ = lost_contact_ || result.lost_contact;
-  if (scene_.model.vehicles == VehicleModel::automatic && result.defect > most_defect_) throw NotLinear{result.defect};
-  if (!result.complete) throw TooMuchWork();
-  return kept_.emplace_back(Kept{model, std::move(result.peaks), result.energy_missing});
+  if (scene_.model.vehicles == VehicleModel::automatic && result.residual > residual_limit_)
+    throw ResidualTooLarge{result.residual};
+  if (!result.complete) throw CostLimitExceeded();
+  return stored_.emplace_back(StoredRun{model, std::move(result.peaks), result.energy_missing});
 }
 
-bool TrialRuns::linear_is_in_doubt(double defect) const {
-  return scene_.model.vehicles == VehicleModel::automatic && !measured_linear_ && defect > most_defect_ &&
-         defect < hopeless * most_defect_;
+bool TrialRuns::needs_measurement(double residual) const {
+  return scene_.model.vehicles == VehicleModel::automatic && !measured_linearisation_ && residual > residual_limit_ &&
+         residual < max_excess * residual_limit_;
 }
 
-// By twice the step: what linear vehicles neglect hardly depends on it.
-void TrialRuns::measure_linear(int elements, double step) {
-  measured_linear_ = true;
+// With twice the step: the error of linear vehicles hardly depends on it.
+void TrialRuns::measure_linearisation(int elements, double step) {
+  measured_linearisation_ = true;
   NumericalModel model = scene_.model;
   model.elements = elements;
   model.step = 2.0 * step;
   const Scene scene = with(scene_, model);
-  most_defect_ = tolerable_defect(comm_, scene);
+  residual_limit_ = measured_residual_limit(comm_, scene);
   spent_ += 2.0 * seconds(elements, *scene.model.step);
 }
 

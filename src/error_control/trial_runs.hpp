@@ -1,4 +1,4 @@
-// Runs of the beginning of a scene with several meshes and steps, to see what these change.
+// Runs of the first part of a scene with several meshes and steps, to measure discretisation errors.
 #pragma once
 
 #include <mpi.h>
@@ -15,73 +15,73 @@
 
 namespace traverse::app {
 
-/// The scene with a train that comes over a level layered track some bays before the bridge, where it starts farther
-/// off, and with so much less of the track: what it does until then tells nothing new.
+/// The scene with a shorter approach: a train on a level layered track starts some bays before the bridge, and the
+/// track is shortened by the same distance. The removed motion contains no new event.
 Scene trim_approach(const Scene& scene);
 
-/// The part of the scene that moves until then: vehicles that come onto the beam later and spans that nothing reaches
-/// are left out.
+/// The part of the scene that moves until `end`, s: without vehicles that enter the beam later and without spans that
+/// no motion reaches.
 Scene restrict_to_window(const Scene& scene, double end);
 
-/// What is left of a run of which only the peaks are wanted.
+/// The result of a run of which only the peaks are needed.
 struct RunPeaks {
   ResponseExtremes peaks;
-  double steps = 0.0;    // taken, those that were taken again for a contact's change too
+  double steps = 0.0;    // computed, with those repeated at contact events
   bool complete = true;  // false: ended at the limit of its steps
   bool lost_contact = false;
-  double defect = 0.0;          // of linear vehicles, coupling::System::defect
-  double energy_missing = 0.0;  // of what the energies change by
+  double residual = 0.0;        // of linear vehicles, coupling::System::linearisation_residual
+  double energy_missing = 0.0;  // relative to the change of the energies
 };
 
-/// Collective. A run of the scene, whose step is given, sampled at every step. Its accelerations are low-passed where
-/// the scene names the frequency.
-RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps = std::numeric_limits<double>::infinity());
+/// Collective. A run of the scene, whose step is given, sampled at every step. Its accelerations are low-passed if the
+/// scene gives the frequency.
+RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_steps = std::numeric_limits<double>::infinity());
 
-/// Trial runs would take more steps than they may: by counting, so that the same scene ends so everywhere.
-struct TooMuchWork {};
+/// Trial runs would exceed their cost limit. Steps are counted, so that the same scene ends equally on every machine.
+struct CostLimitExceeded {};
 
-/// Linear vehicles that were taken for a trial leave out more than they may.
-struct NotLinear {
-  double defect = 0.0;  // coupling::System::defect
+/// The linearisation residual of a trial run exceeds its limit.
+struct ResidualTooLarge {
+  double residual = 0.0;  // coupling::System::linearisation_residual
 };
 
 class TrialRuns {
  public:
   TrialRuns(MPI_Comm comm, Scene scene)
-      : comm_(comm), scene_(std::move(scene)), most_defect_(app::most_residual(scene_)) {}
+      : comm_(comm), scene_(std::move(scene)), residual_limit_(app::default_residual_limit(scene_)) {}
 
-  /// Collective. The peaks of a run, by the scene's integrator or another; kept. TooMuchWork where it would exceed what
-  /// all runs may take. Vehicles that the scene leaves open are taken as linear: NotLinear where that leaves out too
-  /// much.
+  /// Collective. The peaks of a run, by the scene's integrator or another one; they are stored. CostLimitExceeded if
+  /// the cost would exceed the limit of all runs. If the scene leaves the vehicle model open, it is linear; then
+  /// ResidualTooLarge if the linearisation residual is too large.
   const ResponseExtremes& run(int elements, double step, const std::string& integrator = {});
-  /// Collective. What energy is missing after the run, of what the energies change by.
+  /// Collective. The missing energy after the run, relative to the change of the energies.
   double energy_missing(int elements, double step);
-  std::size_t count() const { return kept_.size(); }
-  /// What linear vehicles may be out of balance by.
-  double most_residual() const { return most_defect_; }
-  bool lost_contact() const { return lost_contact_; }  // wheels did in one of them
-  /// An estimate of what a run takes, or of what all took so far, s: by counting, since decisions must not depend on
-  /// the clock.
+  std::size_t count() const { return stored_.size(); }
+  /// The limit of the linearisation residual.
+  double residual_limit() const { return residual_limit_; }
+  bool lost_contact() const { return lost_contact_; }  // wheels lost contact in one of them
+  /// The estimated cost of a run, and of all runs so far, s. It is computed from counts, because decisions must not
+  /// depend on the clock.
   double seconds(int elements, double step, const std::string& integrator = {}) const;
   double seconds() const;
 
  private:
-  bool linear_is_in_doubt(double defect) const;
-  void measure_linear(int elements, double step);
-  struct Kept {
+  bool needs_measurement(double residual) const;
+  void measure_linearisation(int elements, double step);
+  struct StoredRun {
     NumericalModel model;
     ResponseExtremes peaks;
     double energy_missing = 0.0;
   };
-  const Kept& kept_run(int elements, double step, const std::string& integrator);
+  const StoredRun& stored_run(int elements, double step, const std::string& integrator);
 
   MPI_Comm comm_;
   Scene scene_;
-  std::deque<Kept> kept_;  // references to its entries stay
-  double most_defect_;
-  bool measured_linear_ = false;  // against the mechanisms
+  std::deque<StoredRun> stored_;  // a deque, because references to entries must remain valid
+  double residual_limit_;
+  bool measured_linearisation_ = false;  // the limit was measured by comparison with the mechanisms
   bool lost_contact_ = false;
-  double spent_ = 0.0;  // s, estimated from the steps that were taken
+  double spent_ = 0.0;  // s, estimated from the computed steps
 };
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
 // Duration of a trial run: until the first vehicle has crossed the first spans, and until every later span, vehicle or
-// stretch of track with other properties has been crossed, which is decided by comparing their numbers.
+// stretch of track with different properties has been crossed. Parts are compared by their parameters.
 #include "error_control/trial_window.hpp"
 
 #include <fmt/format.h>
@@ -11,15 +11,17 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t crossed_in_full = 3;  // spans
-constexpr double behind = 1.1;              // spans, until what the last wheel does as it leaves is seen
-constexpr double part_of_swing = 0.75;      // of a vehicle, until it presses its wheels most behind the bridge
-constexpr double same_number = 1e-9;        // relative
-constexpr int places_a_span = 8;
-constexpr double bays_behind = 10.0;  // of a layered track, until what stirs wheels there is seen
+constexpr std::size_t max_bridge_spans = 3;  // spans of a bridge that is crossed completely
+constexpr double passed_spans = 1.1;         // spans: distance that includes the effects of the last wheel as it leaves
+constexpr double bounce_share =
+    0.75;                           // share of a vehicle's period until its wheel forces are largest behind the bridge
+constexpr double tolerance = 1e-9;  // relative tolerance
+constexpr int points_per_span = 8;
+constexpr double passed_bays =
+    10.0;  // bays of a layered track behind a feature until its effects on wheels are included
 
-/// s, of the vehicles that are there, each on all its springs at once.
-double longest_swing(const Scene& scene) {
+/// The longest bounce period of the vehicles, each on all its springs in parallel, s.
+double longest_bounce(const Scene& scene) {
   double longest = 0.0;
   for (const int type : scene.train.vehicles) {
     const multibody::MechanismModel& mechanism = scene.vehicles[static_cast<std::size_t>(type)].mechanism;
@@ -31,43 +33,44 @@ double longest_swing(const Scene& scene) {
   return longest;
 }
 
-/// x of what has to be crossed for a vehicle to have been seen.
-double reach(const Scene& scene) {
+/// x of the position that a vehicle has to pass in a trial run.
+double passed_position(const Scene& scene) {
   const std::vector<double>& spans = scene.beam->spans;
-  return behind * (spans.size() <= crossed_in_full ? scene.beam->length() : spans[0]);
+  return passed_spans * (spans.size() <= max_bridge_spans ? scene.beam->length() : spans[0]);
 }
 
-/// x at t = 0 of what of a vehicle has to have crossed: its last wheel, in a train its middle.
-double last_to_watch(const Scene& scene, std::size_t vehicle) {
+/// x at t = 0 of the part of a vehicle that has to pass: its last wheel, in a train the middle of its wheels.
+double last_position(const Scene& scene, std::size_t vehicle) {
   const std::vector<double> wheels = wheels_at_start(scene, vehicle);
   if (wheels.empty()) return 0.0;
   const auto [rear, front] = std::minmax_element(wheels.begin(), wheels.end());
   return scene.train.vehicles.size() < 3 ? *rear : 0.5 * (*front + *rear);
 }
 
-/// The same of moving forces: the fourth of them.
-double last_force_to_watch(const Scene& scene) {
+/// The same for moving forces: the fourth one.
+double last_force(const Scene& scene) {
   std::vector<double> positions = scene.load.positions;
   std::sort(positions.begin(), positions.end(), std::greater<>());
   return positions[std::min<std::size_t>(3, positions.size() - 1)];
 }
 
-/// When the first vehicle, or without vehicles the first forces, have passed x, s.
-double passed(const Scene& scene, double x) {
-  return scene.train.vehicles.empty() ? (x - last_force_to_watch(scene)) / scene.load.speed
-                                      : (x - last_to_watch(scene, 0)) / scene.train.speed;
+/// The time at which the first vehicle, or without vehicles the first forces, have passed x, s.
+double time_of_passing(const Scene& scene, double x) {
+  return scene.train.vehicles.empty() ? (x - last_force(scene)) / scene.load.speed
+                                      : (x - last_position(scene, 0)) / scene.train.speed;
 }
 
-/// All that tells a span from another one, in numbers.
-std::vector<double> numbers_of(const beam::BeamModel& beam, std::size_t span, double left) {
-  const double length = beam.spans[span], middle = left + 0.5 * length;
+/// All parameters that may distinguish a span from another one.
+std::vector<double> parameters_of(const beam::BeamModel& beam, std::size_t span, double start) {
+  const double length = beam.spans[span], middle = start + 0.5 * length;
   std::vector<double> numbers = {length};
   for (const std::size_t end : {span, span + 1})
     numbers.push_back((fixes_vertical(beam.supports[end]) ? 1.0 : 0.0) +
                       (fixes_rotation(beam.supports[end]) ? 2.0 : 0.0));
   const auto along = [&](const beam::Distribution& values) {
-    for (int i = 0; i <= places_a_span; ++i) numbers.push_back(values.at(left + length * i / places_a_span, middle));
-    for (const double x : values.breaks(left, left + length)) numbers.push_back((x - left) / length);
+    for (int i = 0; i <= points_per_span; ++i)
+      numbers.push_back(values.at(start + length * i / points_per_span, middle));
+    for (const double x : values.breaks(start, start + length)) numbers.push_back((x - start) / length);
   };
   along(beam.EI);
   along(beam.mass);
@@ -78,12 +81,12 @@ std::vector<double> numbers_of(const beam::BeamModel& beam, std::size_t span, do
   };
   for_points(beam.foundation, [&](const beam::FoundationKind&, const auto& points) {
     for (const beam::PointFoundation& point : points) {
-      const double place = (point.x - left) / length;
-      if (place < -same_number || place > 1.0 + same_number) continue;
+      const double place = (point.x - start) / length;
+      if (place < -tolerance || place > 1.0 + tolerance) continue;
       numbers.insert(numbers.end(), {place, point.k, point.c});
       law(point.law);
     }
-    numbers.push_back(-1.0);  // between the kinds
+    numbers.push_back(-1.0);  // separator of the kinds
   });
   for_beds(beam.foundation, [&](const beam::FoundationKind&, const beam::Bed& bed) {
     along(bed.k);
@@ -91,29 +94,31 @@ std::vector<double> numbers_of(const beam::BeamModel& beam, std::size_t span, do
     law(bed.law);
   });
   for (const double x : beam.hinges)
-    if (x > left && x < left + length) numbers.push_back((x - left) / length);
+    if (x > start && x < start + length) numbers.push_back((x - start) / length);
   for (const beam::Crack& crack : beam.cracks)
-    if (crack.x > left && crack.x < left + length) numbers.insert(numbers.end(), {(crack.x - left) / length, crack.k});
+    if (crack.x > start && crack.x < start + length)
+      numbers.insert(numbers.end(), {(crack.x - start) / length, crack.k});
   if (!beam.settlement.empty()) numbers.insert(numbers.end(), {beam.settlement[span], beam.settlement[span + 1]});
   return numbers;
 }
 
-bool same(const std::vector<double>& a, const std::vector<double>& b) {
+bool equal(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
-    return std::abs(x - y) <= same_number * std::max({std::abs(x), std::abs(y), 1.0});
+    return std::abs(x - y) <= tolerance * std::max({std::abs(x), std::abs(y), 1.0});
   });
 }
 
 void add_spans(const Scene& scene, std::vector<LaterEvent>& list) {
   const beam::BeamModel& beam = *scene.beam;
   std::vector<std::vector<double>> kinds;
-  double left = beam.start;
-  for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
-    std::vector<double> numbers = numbers_of(beam, i, left);
-    if (std::any_of(kinds.begin(), kinds.end(), [&](const auto& kind) { return same(kind, numbers); })) continue;
+  double start = beam.start;
+  for (std::size_t i = 0; i < beam.spans.size(); start += beam.spans[i++]) {
+    std::vector<double> numbers = parameters_of(beam, i, start);
+    if (std::any_of(kinds.begin(), kinds.end(), [&](const auto& kind) { return equal(kind, numbers); })) continue;
     kinds.push_back(std::move(numbers));
-    list.push_back({passed(scene, left + behind * beam.spans[i]),
-                    fmt::format("the span from {:g} to {:g} m, unlike those before it", left, left + beam.spans[i])});
+    list.push_back(
+        {time_of_passing(scene, start + passed_spans * beam.spans[i]),
+         fmt::format("the span from {:g} to {:g} m (different from all before it)", start, start + beam.spans[i])});
   }
 }
 
@@ -123,28 +128,29 @@ void add_vehicles(const Scene& scene, std::vector<LaterEvent>& list) {
     const int type = scene.train.vehicles[i];
     if (std::find(types.begin(), types.end(), type) != types.end()) continue;
     types.push_back(type);
-    list.push_back({(reach(scene) - last_to_watch(scene, i)) / scene.train.speed,
-                    fmt::format("vehicle {}, unlike those before it", i)});
+    list.push_back({(passed_position(scene) - last_position(scene, i)) / scene.train.speed,
+                    fmt::format("vehicle {} (different from all before it)", i)});
   }
 }
 
 void add_profile(const Scene& scene, std::vector<LaterEvent>& list) {
   const track::Profile& profile = scene.profile;
-  if (profile.level() || (profile.is_rough() && profile.kinks().empty())) return;  // no dips on top
+  if (profile.level() || (profile.is_rough() && profile.kinks().empty())) return;  // no dips in addition
   const double length = scene.beam->length();
   const bool bump = std::isfinite(profile.shortest_wave());
-  // a table stirs wheels most where it is most sharply bent
+  // a table excites wheels most at its largest curvature
   const double x = bump ? profile.kinks().back() : profile.sharpest_place(0.0, length);
   if (x <= length)
-    list.push_back({passed(scene, x + behind * scene.beam->spans[0]), fmt::format("the track's profile at {:g} m", x)});
+    list.push_back({time_of_passing(scene, x + passed_spans * scene.beam->spans[0]),
+                    fmt::format("the track's profile at {:g} m", x)});
 }
 
-/// Stretches of a layered track, where its tables change last, joints of its rail.
+/// Stretches of a layered track, the last changes of its tables, and joints of its rail.
 void add_track(const Scene& scene, std::vector<LaterEvent>& list) {
   if (!scene.beam->track) return;
   const beam::LayeredTrack& track = *scene.beam->track;
   const auto add = [&](double x, const std::string& what) {
-    list.push_back({passed(scene, x + bays_behind * track.spacing), what});
+    list.push_back({time_of_passing(scene, x + passed_bays * track.spacing), what});
   };
   for (const beam::TrackStretch& stretch : track.stretches)
     add(stretch.to, fmt::format("the stretch {} of the track", stretch.name));
@@ -167,7 +173,7 @@ void add_forces(const Scene& scene, std::vector<LaterEvent>& list) {
     for (const multibody::Actuator& actuator : scene.vehicles[static_cast<std::size_t>(type)].mechanism.actuators)
       for (const base::TimeFunction& action : actuator.action)
         if (const std::vector<double> kinks = action.kinks(); !kinks.empty())
-          list.push_back({kinks.back(), fmt::format("what {} does until {:g} s", actuator.name, kinks.back())});
+          list.push_back({kinks.back(), fmt::format("the force of {} until {:g} s", actuator.name, kinks.back())});
 }
 
 }  // namespace
@@ -175,15 +181,15 @@ void add_forces(const Scene& scene, std::vector<LaterEvent>& list) {
 double initial_window(const Scene& scene, double end) {
   double until = 0.0;
   if (!scene.train.vehicles.empty())
-    until = scene.train.steady() ? (reach(scene) - last_to_watch(scene, 0)) / scene.train.speed : end;
+    until = scene.train.steady() ? (passed_position(scene) - last_position(scene, 0)) / scene.train.speed : end;
   if (!scene.load.forces.empty())
     until = std::max(until, scene.load.courses.empty() && scene.load.speed > 0.0
-                                ? (reach(scene) - last_force_to_watch(scene)) / scene.load.speed
+                                ? (passed_position(scene) - last_force(scene)) / scene.load.speed
                                 : end);
   return until > 0.0 && until < end ? until : end;
 }
 
-bool vibrates_on(const Scene& scene) {
+bool has_undamped_vehicle(const Scene& scene) {
   const auto damps = [](const auto& spring) { return spring.damping > 0.0 || spring.law.has_value(); };
   return std::ranges::any_of(scene.train.vehicles, [&](int type) {
     const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(type)];
@@ -193,13 +199,13 @@ bool vibrates_on(const Scene& scene) {
   });
 }
 
-double with_swing_behind(const Scene& scene, double until) {
+double extend_by_bounce(const Scene& scene, double until) {
   if (scene.train.vehicles.empty() || !scene.train.steady()) return until;
-  const double leaves = passed(scene, scene.beam->end());
-  return until < leaves ? until : std::max(until, leaves + part_of_swing * longest_swing(scene));
+  const double leaves = time_of_passing(scene, scene.beam->end());
+  return until < leaves ? until : std::max(until, leaves + bounce_share * longest_bounce(scene));
 }
 
-std::vector<LaterEvent> later_events(const Scene& scene, double seen, double end) {
+std::vector<LaterEvent> later_events(const Scene& scene, double covered, double end) {
   std::vector<LaterEvent> list;
   const bool train = !scene.train.vehicles.empty();
   const bool constant =
@@ -211,8 +217,8 @@ std::vector<LaterEvent> later_events(const Scene& scene, double seen, double end
     add_track(scene, list);
   }
   add_forces(scene, list);
-  for (LaterEvent& meeting : list) meeting.until = std::min(meeting.until, end);
-  std::erase_if(list, [&](const LaterEvent& meeting) { return meeting.until <= seen; });
+  for (LaterEvent& event : list) event.until = std::min(event.until, end);
+  std::erase_if(list, [&](const LaterEvent& event) { return event.until <= covered; });
   std::stable_sort(list.begin(), list.end(),
                    [](const LaterEvent& a, const LaterEvent& b) { return a.until < b.until; });
   return list;

@@ -1,4 +1,4 @@
-// How much of a crossing trial runs see: its beginning, and what comes later and is unlike all before.
+// The duration of trial runs: the initial window and the later events that extend it.
 #pragma once
 
 #include <string>
@@ -8,25 +8,24 @@
 
 namespace traverse::app {
 
-/// When the first vehicle, or the first forces, have crossed the first span (a bridge of up to three spans in full), s;
-/// at most `end`.
+/// The time at which the first vehicle, or the first forces, have crossed the first span (a bridge of up to three spans
+/// completely), s; at most `end`.
 double initial_window(const Scene& scene, double end);
 
-/// `until`, s; where the first vehicle is seen to leave the bridge, so much longer as its swing there takes until it
-/// presses its wheels most.
-double with_swing_behind(const Scene& scene, double until);
+/// `until`, s; if the first vehicle has left the bridge by then, extended until its bounce presses the wheels most.
+double extend_by_bounce(const Scene& scene, double until);
 
-/// Whether nothing damps one of the vehicles: what its vibration is off by adds up until the end.
-bool vibrates_on(const Scene& scene);
+/// Whether a vehicle has no damping at all, so that errors of its vibration accumulate until the end.
+bool has_undamped_vehicle(const Scene& scene);
 
-/// Something of a kind that was not there before.
+/// An event that differs from all earlier ones.
 struct LaterEvent {
-  double until = 0.0;  // s, when the first vehicle, or the one that it is about, has it behind it
+  double until = 0.0;  // s, when the first vehicle, or the one of this event, has passed it
   std::string what;    // in words
 };
 
-/// What is met between `seen` and `end`, in s: spans and vehicles unlike all before, a bump, the sharpest place of a
-/// profile's table, the last change of a force over time. Ascending.
-std::vector<LaterEvent> later_events(const Scene& scene, double seen, double end);
+/// The events between `covered` and `end`, in s, ascending: spans and vehicles that differ from all before, a bump, the
+/// sharpest position of a profile's table, the last change of a force over time.
+std::vector<LaterEvent> later_events(const Scene& scene, double covered, double end);
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// The entries of PETSc vectors for one scope.
+// Access to the entries of PETSc vectors within a scope.
 #pragma once
 
 #include "base/petsc.hpp"

@@ -5,8 +5,8 @@
 namespace traverse::integrate {
 namespace {
 
-/// y times the propagator, in place.
-void turn(const Eigen::VectorXcd& propagator, Eigen::VectorXd& y) {
+/// Multiplies y by the propagator, in place.
+void multiply_by(const Eigen::VectorXcd& propagator, Eigen::VectorXd& y) {
   const Eigen::Index count = propagator.size();
   for (Eigen::Index j = 0; j < count; ++j) {
     const double re = y[j], im = y[count + j], c = propagator[j].real(), s = propagator[j].imag();
@@ -31,18 +31,18 @@ void CoupledOscillation::start(const Eigen::VectorXd& u, const Eigen::VectorXd& 
 
 Eigen::VectorXcd CoupledOscillation::propagator(double dt) const { return (modes_.lambda.array() * dt).exp(); }
 
-void CoupledOscillation::move(const Eigen::VectorXcd& propagator) { turn(propagator, y_); }
+void CoupledOscillation::move(const Eigen::VectorXcd& propagator) { multiply_by(propagator, y_); }
 
-void CoupledOscillation::see(Eigen::VectorXd& u, Eigen::VectorXd& w) {
+void CoupledOscillation::evaluate(Eigen::VectorXd& u, Eigen::VectorXd& w) {
   state_.noalias() = modes_.state * y_;
   u = state_.head(omega_.size()).array() / omega_;
   w = state_.tail(omega_.size());
 }
 
-void CoupledOscillation::observe_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w) {
+void CoupledOscillation::evaluate_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w) {
   later_ = y_;
-  turn(propagator, y_);
-  see(u, w);
+  multiply_by(propagator, y_);
+  evaluate(u, w);
   y_.swap(later_);
 }
 

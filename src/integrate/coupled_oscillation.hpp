@@ -1,5 +1,5 @@
 // The free oscillation of modes that damping couples, u'' + C u' + Omega^2 u = 0, exact in time: each complex mode
-// decays and turns by itself.
+// decays and oscillates independently.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,18 +11,18 @@ namespace traverse::integrate {
 
 class CoupledOscillation {
  public:
-  /// Of a bridge whose modes are coupled, which must outlive it.
+  /// For a bridge with coupled modes, which must outlive this object.
   explicit CoupledOscillation(const structure::ModalBridge& bridge);
 
-  /// Starts anew from u and its rate w.
+  /// Starts from u and its rate w.
   void start(const Eigen::VectorXd& u, const Eigen::VectorXd& w);
-  /// e^(lambda dt) of every complex mode: what it is multiplied by in dt.
+  /// The factors e^(lambda dt) of every complex mode for a time dt.
   Eigen::VectorXcd propagator(double dt) const;
   void move(const Eigen::VectorXcd& propagator);
   /// u and w, now or after a propagator's time.
-  void see(Eigen::VectorXd& u, Eigen::VectorXd& w);
+  void evaluate(Eigen::VectorXd& u, Eigen::VectorXd& w);
   void keep(base::Bytes& bytes) { bytes(y_); }
-  void observe_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w);
+  void evaluate_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w);
 
  private:
   const structure::ComplexModes& modes_;

@@ -9,9 +9,9 @@ namespace traverse::integrate {
 namespace {
 
 constexpr double most_numbers = 2e8;     // 1.6 GB
-constexpr double same_distance = 1e-12;  // of the bridge: distances that are one
+constexpr double same_distance = 1e-12;  // of the bridge's length: equal distances
 
-/// Adds force*influence at x, as a polynomial of a distance that adds to x. The sum is no part of the influence.
+/// Adds force*influence at x + s, as a polynomial of the distance s. `sum` must not overlap the influence.
 void add(const structure::PiecewiseCubic& influence, std::size_t piece, double force, double x, double* sum) {
   const std::size_t n = influence.channels;
   const double* c = &influence.coefficients[4 * n * piece];

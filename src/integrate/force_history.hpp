@@ -1,4 +1,4 @@
-// What moving forces do to a bridge, over the distance that they have travelled: the same at every speed.
+// The effect of moving forces on a bridge over the distance that they have travelled, which is the same at every speed.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace traverse::integrate {
 /// Sums of the influence of all forces: cubic polynomials of the distance, between the distances at which a force
 /// passes a break. The last interval has no end.
 struct ForceHistory {
-  /// InputError where it would not fit into memory.
+  /// InputError if it does not fit into memory.
   ForceHistory(const structure::PiecewiseCubic& influence, const train::MovingLoad& load);
 
   std::vector<double> start;  // of each interval, m travelled since t = 0; the first is 0

@@ -1,4 +1,4 @@
-// Free oscillations, exact over any time.
+// Free oscillations, exact for any time.
 #pragma once
 
 namespace traverse::integrate {
@@ -8,7 +8,7 @@ struct FreeOscillation {
   double uu, uw, wu, ww;
 };
 
-/// Of u'' + 2 sigma u' + omega^2 u = 0, in 1/s, over dt in s; also where it creeps.
+/// For u'' + 2 sigma u' + omega^2 u = 0, in 1/s, over dt in s; also if overdamped.
 FreeOscillation free_oscillation(double omega, double sigma, double dt);
 
 }  // namespace traverse::integrate

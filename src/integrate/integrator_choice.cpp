@@ -1,4 +1,4 @@
-// Reads -ts_type and related PETSc options, and refuses combinations of integrator, order and step control that would
+// Reads -ts_type and related PETSc options, and rejects combinations of integrator, order and step control that would
 // be wrong or unstable for these equations.
 #include "integrator_choice.hpp"
 

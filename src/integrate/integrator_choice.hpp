@@ -1,4 +1,4 @@
-// Which of the integrators that work here the options ask for.
+// The integrator that the options select.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace traverse::integrate {
 
-/// The type: as given, or the one that the options given belong to, or else by_accuracy where that is not empty. Others
-/// than those named in its message fail on this system, some of them without a word. InputError for these, and for
-/// options that do not go with the type.
+/// The type: the given one, or the one that other given options need, otherwise by_accuracy if that is not empty.
+/// InputError for types that this system does not support, some of which fail without a message, and for options that
+/// do not fit the type.
 std::string chosen_type(const std::string& by_accuracy = {});
 
-/// Whether an option says how steps are taken, so that nothing else may choose the type.
+/// Whether an option determines the type, so that it must not be chosen automatically.
 bool type_is_given();
 
-/// The method of that type, for steps of 1 s; none where the type is PETSc's own.
+/// The method of that type, for steps of 1 s; none for a type of PETSc.
 std::optional<structure::Method> own_method(const std::string& by_accuracy = {});
 
 }  // namespace traverse::integrate

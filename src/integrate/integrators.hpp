@@ -1,5 +1,5 @@
-// What -ts_type may name: the program's own methods (structure::methods) and those types of PETSc that integrate this
-// system rightly.
+// The values of -ts_type: the program's own methods (structure::methods) and the types of PETSc that integrate this
+// system correctly.
 #pragma once
 
 #include <span>
@@ -8,17 +8,17 @@
 
 namespace traverse::integrate {
 
-/// A type of PETSc's that works here.
+/// A type of PETSc that this program supports.
 struct PetscType {
   const char* name;
   bool implicit;
   bool multistep;
-  int order;  // as it is set here, unless options say otherwise
+  int order;  // as set here, unless options change it
   const char* words;
 };
 
 std::span<const PetscType> petsc_types();
-/// Null: it is none of these.
+/// Null for other types.
 const PetscType* find_petsc_type(std::string_view name);
 
 /// A line for each choice of -ts_type, for -help.

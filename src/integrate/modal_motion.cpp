@@ -9,17 +9,17 @@
 namespace traverse::integrate {
 namespace {
 
-/// c[0] + c[1] t + ..., its derivatives.
+/// c[0] + c[1] t + ..., and its derivatives.
 double value(const std::array<double, 4>& c, double t) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
 double first(const std::array<double, 4>& c, double t) { return c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]); }
 double second(const std::array<double, 4>& c, double t) { return 2.0 * c[2] + 6.0 * t * c[3]; }
 
-// Gauss' points and weights on (0, 1), exact to the power 9.
+// Gauss points and weights on (0, 1), exact to the power 9.
 constexpr std::array<double, 5> points = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155,
                                           0.953089922969332};
 constexpr std::array<double, 5> weights = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
                                            0.23931433524968324, 0.11846344252809454};
-constexpr double counted_phase = 0.5;  // rad of the fastest mode between which energies are integrated
+constexpr double energy_phase = 0.5;  // rad of the fastest mode in one integration interval of the energies
 
 }  // namespace
 
@@ -34,22 +34,22 @@ ModalMotion::ModalMotion(const structure::ModalBridge& bridge, const ForceHistor
   }
   if (bridge.coupled()) coupled_.emplace(bridge);
   enter(0);
-  see();
+  update_state();
 }
 
-// Tabulates the propagators of all modes for steps of this length.
-void ModalMotion::expect(double dt) {
-  expected_dt_ = dt;
+// Computes the propagators of all modes for steps of this length.
+void ModalMotion::prepare(double dt) {
+  prepared_dt_ = dt;
   if (coupled_) {
-    expected_coupled_ = coupled_->propagator(dt);
+    prepared_coupled_ = coupled_->propagator(dt);
     return;
   }
-  expected_.clear();
+  prepared_.clear();
   for (std::size_t i = 0; i < modes_.size(); ++i)
-    expected_.push_back(free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt));
+    prepared_.push_back(free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt));
 }
 
-// The polynomial that solves the equation of motion with the interval's force; what is left oscillates freely.
+// Sets the polynomial that solves the equation of motion with the interval's force; the difference oscillates freely.
 void ModalMotion::enter(std::size_t interval) {
   interval_ = interval;
   const std::size_t n = history_.channels;
@@ -67,7 +67,7 @@ void ModalMotion::enter(std::size_t interval) {
   }
 }
 
-// The same of coupled modes: what damping between modes takes counts to the force, from the highest power down.
+// The same for coupled modes: the damping forces between modes are part of the force, from the highest power down.
 void ModalMotion::enter_coupled() {
   const std::size_t n = history_.channels;
   const double* g = history_.interval(interval_);
@@ -77,7 +77,7 @@ void ModalMotion::enter_coupled() {
   p[4] = p[5] = Eigen::VectorXd::Zero(m);
   for (std::size_t k = 4; k-- > 0;) {
     const auto power = static_cast<double>(k);
-    const Eigen::VectorXd rate = (power + 1.0) * p[k + 1];  // of q' by powers
+    const Eigen::VectorXd rate = (power + 1.0) * p[k + 1];  // coefficients of q'
     p[k] = -bridge_.cross_damping() * rate - (power + 1.0) * (power + 2.0) * p[k + 2];
     for (Eigen::Index i = 0; i < m; ++i) {
       const auto mode = static_cast<std::size_t>(i);
@@ -108,12 +108,12 @@ void ModalMotion::advance(double t) {
   for (double event = next_event(); event < t; event = next_event()) {
     move(event - time_);
     time_ = event;
-    see();
+    update_state();
     pass_event();
   }
   move(t - time_);
   time_ = t;
-  see();
+  update_state();
 }
 
 void ModalMotion::pass_event() {
@@ -122,16 +122,16 @@ void ModalMotion::pass_event() {
 
 void ModalMotion::move(double dt) {
   if (dt <= 0.0) return;
-  if (counting_) return coupled_ ? move_coupled_counting(dt) : move_counting(dt);
-  // Instants a constant interval apart differ from it by the rounding of their times.
-  const bool expected = std::abs(dt - expected_dt_) <= 4.0 * std::numeric_limits<double>::epsilon() * (time_ + dt);
+  if (integrates_energy_) return coupled_ ? move_coupled_with_energy(dt) : move_with_energy(dt);
+  // Equal intervals between instants differ by the rounding of the times.
+  const bool prepared = std::abs(dt - prepared_dt_) <= 4.0 * std::numeric_limits<double>::epsilon() * (time_ + dt);
   if (coupled_) {
-    coupled_->move(expected ? expected_coupled_ : coupled_->propagator(dt));
-    coupled_->see(u_, w_);
+    coupled_->move(prepared ? prepared_coupled_ : coupled_->propagator(dt));
+    coupled_->evaluate(u_, w_);
     return record_free();
   }
   for (std::size_t i = 0; i < modes_.size(); ++i) {
-    const FreeOscillation a = expected ? expected_[i] : free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt);
+    const FreeOscillation a = prepared ? prepared_[i] : free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt);
     Mode& mode = modes_[i];
     const double u = mode.u;
     mode.u = a.uu * u + a.uw * mode.w;
@@ -139,10 +139,11 @@ void ModalMotion::move(double dt) {
   }
 }
 
-// The powers g q' and 2 sigma q'^2 are integrated by Gauss' formula, on the exact motion.
-void ModalMotion::move_counting(double dt) {
+// Integrates the powers g q' and 2 sigma q'^2 by Gauss quadrature of the exact motion.
+void ModalMotion::move_with_energy(double dt) {
   const double begin = speed_ > 0.0 ? history_.start[interval_] / speed_ : 0.0;
-  const auto parts = static_cast<long>(std::ceil(highest_ * dt / counted_phase));  // see ModalStepper: not many
+  const auto parts =
+      static_cast<long>(std::ceil(highest_ * dt / energy_phase));  // ModalStepper limits the number of parts
   const double h = dt / static_cast<double>(parts);
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const double omega = bridge_.omega()[i], sigma = bridge_.sigma()[i];
@@ -166,9 +167,9 @@ void ModalMotion::move_counting(double dt) {
   }
 }
 
-void ModalMotion::move_coupled_counting(double dt) {
+void ModalMotion::move_coupled_with_energy(double dt) {
   const double begin = speed_ > 0.0 ? history_.start[interval_] / speed_ : 0.0;
-  const auto parts = static_cast<long>(std::ceil(highest_ * dt / counted_phase));
+  const auto parts = static_cast<long>(std::ceil(highest_ * dt / energy_phase));
   const double h = dt / static_cast<double>(parts);
   std::array<Eigen::VectorXcd, points.size()> inner;
   for (std::size_t k = 0; k < points.size(); ++k) inner[k] = coupled_->propagator(points[k] * h);
@@ -179,7 +180,7 @@ void ModalMotion::move_coupled_counting(double dt) {
   for (long part = 0; part < parts; ++part) {
     for (std::size_t k = 0; k < points.size(); ++k) {
       const double t = time_ - begin + (static_cast<double>(part) + points[k]) * h;
-      coupled_->observe_after(inner[k], u_, w_);
+      coupled_->evaluate_after(inner[k], u_, w_);
       force.assign(modes_.size(), 0.0);
       add_channels_at(speed_ * t, 0, modes_.size(), force.data());
       for (Eigen::Index i = 0; i < m; ++i) rate[i] = first(modes_[static_cast<std::size_t>(i)].particular, t) + w_[i];
@@ -192,11 +193,11 @@ void ModalMotion::move_coupled_counting(double dt) {
     }
     coupled_->move(step);
   }
-  coupled_->see(u_, w_);
+  coupled_->evaluate(u_, w_);
   record_free();
 }
 
-void ModalMotion::see() {
+void ModalMotion::update_state() {
   const double t = speed_ > 0.0 ? time_ - history_.start[interval_] / speed_ : 0.0;
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const Mode& mode = modes_[i];

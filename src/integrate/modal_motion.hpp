@@ -1,8 +1,8 @@
-// The modes' motion under moving forces, exact in time: between two passages of breaks the modal force is a cubic
-// polynomial of time, so
+// The modal motion under moving forces, exact in time: between two breaks of the influence lines the modal force is a
+// cubic polynomial of time, so
 //   q(t) = polynomial + free oscillation,   q'' + 2 sigma q' + omega^2 q = g(t).
-// Of modes that damping couples the polynomials solve the coupled equations, and the free oscillation is that of the
-// complex modes. Rounding alone is in the result, however far apart the instants are.
+// If damping couples modes, the polynomials satisfy the coupled equations, and the free oscillation is that of the
+// complex modes. The only error is rounding, for any interval between instants.
 #pragma once
 
 #include <array>
@@ -18,30 +18,29 @@ namespace traverse::integrate {
 
 class ModalMotion {
  public:
-  /// Starts at t = 0: in static equilibrium under the forces that stand on the bridge then, or undeflected. All three
-  /// must outlive it.
+  /// Starts at t = 0, in static equilibrium under the forces on the bridge, or undeflected. The bridge and the history
+  /// must outlive this object.
   ModalMotion(const structure::ModalBridge& bridge, const ForceHistory& history, double speed, bool equilibrium);
 
-  /// Steps of this length cost less than others.
-  void expect(double dt);
-  /// From now on counts the work of the forces and what dampers take, which more than doubles the cost.
-  void count_energy() { counting_ = true; }
-  /// Moves on to a time t not before the last one; q, ... are then those of t, and where something jumps at t those
-  /// just before it.
+  /// Prepares steps of this length, which then cost less than others.
+  void prepare(double dt);
+  /// From now on integrates the work of the forces and the dissipation of dampers, which more than doubles the cost.
+  void integrate_energy() { integrates_energy_ = true; }
+  /// Moves to a time t not before the last one; q, rate and acceleration are then the values at t, before a jump at t.
   void advance(double t);
   /// The next time at which a force passes a break; infinite after the last one.
   double next_event() const;
-  /// At the time of an event: q, ... become those just after it.
+  /// At the time of an event: changes q, rate and acceleration to the values after it.
   void pass_event();
   double time() const { return time_; }
 
   const std::vector<double>& q() const { return q_; }
   const std::vector<double>& rate() const { return rate_; }
   const std::vector<double>& acceleration() const { return acceleration_; }
-  /// Adds `count` of the history's channels at this time, from `first` on.
+  /// Adds `count` of the history's channels at the present time, from `first` on.
   void add_channels(std::size_t first, std::size_t count, double* sum) const;
   double dissipated() const { return dissipated_; }  // J, since t = 0
-  double work() const { return work_; }              // J, of the forces on the modes' motion
+  double work() const { return work_; }              // J, of the forces in the modal motion
   void keep(base::Bytes& bytes) {
     bytes(interval_, time_, modes_, q_, rate_, acceleration_, u_, w_, dissipated_, work_);
     if (coupled_) coupled_->keep(bytes);
@@ -49,17 +48,17 @@ class ModalMotion {
 
  private:
   struct Mode {
-    std::array<double, 4> particular{};  // by powers of the time since the interval's start
-    double u = 0.0, w = 0.0;             // the free oscillation and its rate, now
+    std::array<double, 4> particular{};  // coefficients of the powers of the time since the interval's start
+    double u = 0.0, w = 0.0;             // the free oscillation and its rate at the present time
   };
   void enter(std::size_t interval);
   void enter_coupled();
   void move(double dt);
-  void move_counting(double dt);
-  void move_coupled_counting(double dt);
+  void move_with_energy(double dt);
+  void move_coupled_with_energy(double dt);
   void record_free();
   void add_channels_at(double s, std::size_t first, std::size_t count, double* sum) const;
-  void see();
+  void update_state();
 
   const structure::ModalBridge& bridge_;
   const ForceHistory& history_;
@@ -68,13 +67,13 @@ class ModalMotion {
   double time_ = 0.0;
   std::vector<Mode> modes_;
   std::vector<double> q_, rate_, acceleration_;
-  std::vector<FreeOscillation> expected_;
-  double expected_dt_ = -1.0;
+  std::vector<FreeOscillation> prepared_;
+  double prepared_dt_ = -1.0;
   double highest_ = 0.0;  // rad/s
-  bool counting_ = false;
-  std::optional<CoupledOscillation> coupled_;  // keeps the free oscillation of coupled modes
-  Eigen::VectorXcd expected_coupled_;
-  Eigen::VectorXd u_, w_;  // that oscillation and its rate, now
+  bool integrates_energy_ = false;
+  std::optional<CoupledOscillation> coupled_;  // the free oscillation of coupled modes
+  Eigen::VectorXcd prepared_coupled_;
+  Eigen::VectorXd u_, w_;  // this oscillation and its rate at the present time
   double dissipated_ = 0.0, work_ = 0.0;
 };
 

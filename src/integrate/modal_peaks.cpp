@@ -10,44 +10,44 @@
 namespace traverse::integrate {
 namespace {
 
-constexpr long instants_unasked = 4096;  // between two questions whether to go on
+constexpr long instants_between_checks = 4096;  // between calls of `proceed`
 
-/// The vertex of the parabola through three instants, where the middle one is the largest.
+/// The vertex of the parabola through three samples, of which the middle one is the largest.
 base::Extreme vertex(const std::array<double, 3>& t, const std::array<double, 3>& y) {
   const double before = (y[1] - y[0]) / (t[1] - t[0]), after = (y[2] - y[1]) / (t[2] - t[1]);
-  const double bend = (after - before) / (t[2] - t[0]);
-  const double at = 0.5 * (t[0] + t[1]) - 0.5 * before / bend;
-  return {y[1] + (at - t[1]) * (before + bend * (at - t[0])), at};
+  const double second_difference = (after - before) / (t[2] - t[0]);
+  const double at = 0.5 * (t[0] + t[1]) - 0.5 * before / second_difference;
+  return {y[1] + (at - t[1]) * (before + second_difference * (at - t[0])), at};
 }
 
-/// Responses over time, from instant to instant, and their peaks so far.
-class Curves {
+/// The responses at the last samples, and their peaks so far.
+class PeakTracker {
  public:
-  explicit Curves(std::size_t count) : peaks_(count) { rows_.fill(std::vector<double>(count)); }
+  explicit PeakTracker(std::size_t count) : peaks_(count) { rows_.fill(std::vector<double>(count)); }
 
-  /// Where the responses of a new instant go.
+  /// The array for the responses of a new sample.
   std::vector<double>& next() {
     std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
     return rows_[2];
   }
-  /// When they are there.
+  /// Evaluates the new sample.
   void add(double t) {
     t_ = {t_[1], t_[2], t};
     ++known_;
     for (std::size_t i = 0; i < peaks_.size(); ++i) {
       const double value = std::abs(rows_[2][i]), middle = std::abs(rows_[1][i]);
       if (value > peaks_[i].value) peaks_[i] = {value, t};
-      if (known_ >= 3 && middle > near * peaks_[i].value && middle > value) look_between(i);
+      if (known_ >= 3 && middle > near_largest * peaks_[i].value && middle > value) interpolate_peak(i);
     }
   }
-  /// What comes has a kink with what was.
+  /// Starts a new curve: the motion has a kink here.
   void restart() { known_ = 1; }
   const std::vector<base::Extreme>& peaks() const { return peaks_; }
 
  private:
-  static constexpr double near = 0.9;  // of the largest so far: no vertex of less can be larger
+  static constexpr double near_largest = 0.9;  // of the largest so far: no vertex below it can be larger
 
-  void look_between(std::size_t i) {
+  void interpolate_peak(std::size_t i) {
     const double sign = rows_[1][i] < 0.0 ? -1.0 : 1.0;
     const std::array<double, 3> y = {sign * rows_[0][i], sign * rows_[1][i], sign * rows_[2][i]};
     if (y[1] < y[0]) return;
@@ -55,17 +55,17 @@ class Curves {
     if (top.value > peaks_[i].value) peaks_[i] = top;
   }
 
-  std::size_t known_ = 0;  // instants without a kink between them
+  std::size_t known_ = 0;  // samples without a kink between them
   std::array<double, 3> t_{};
-  std::array<std::vector<double>, 3> rows_;  // of the last instants
+  std::array<std::vector<double>, 3> rows_;  // of the last samples
   std::vector<base::Extreme> peaks_;
 };
 
 /// The deflections of all probes at one instant, their accelerations, their moments.
-void see(const structure::ModalBridge& bridge, const ModalMotion& motion, std::vector<double>& seen) {
+void evaluate_probes(const structure::ModalBridge& bridge, const ModalMotion& motion, std::vector<double>& responses) {
   const structure::ModalProbes& probes = bridge.probes();
   const std::size_t n = probes.count;
-  double *deflections = seen.data(), *accelerations = deflections + n, *moments = accelerations + n;
+  double *deflections = responses.data(), *accelerations = deflections + n, *moments = accelerations + n;
   std::copy(probes.weight_deflection.begin(), probes.weight_deflection.end(), deflections);
   std::fill_n(accelerations, n, 0.0);
   std::copy(probes.weight_moment.begin(), probes.weight_moment.end(), moments);
@@ -89,35 +89,35 @@ void see(const structure::ModalBridge& bridge, const ModalMotion& motion, std::v
 
 std::vector<base::ProbePeaks> modal_peaks(const structure::ModalBridge& bridge, const ForceHistory& history,
                                           double speed, bool equilibrium, double end_time, double instants,
-                                          const std::function<bool()>& going) {
+                                          const std::function<bool()>& proceed) {
   ModalMotion motion(bridge, history, speed, equilibrium);
   const double fastest = *std::max_element(bridge.omega().begin(), bridge.omega().end());
   const double interval = 2.0 * std::numbers::pi / fastest / instants;
-  motion.expect(interval);
+  motion.prepare(interval);
   const std::size_t n = bridge.probes().count;
-  Curves curves(3 * n);
-  const auto look = [&] {
-    see(bridge, motion, curves.next());
-    curves.add(motion.time());
+  PeakTracker tracker(3 * n);
+  const auto sample = [&] {
+    evaluate_probes(bridge, motion, tracker.next());
+    tracker.add(motion.time());
   };
-  look();
+  sample();
   while (motion.time() < end_time) {
-    // Instants count from the last event: steps of the expected length cost least.
+    // Samples count from the last event: steps of the prepared length cost least.
     const double event = std::min(motion.next_event(), end_time);
     const double from = motion.time();
     for (long i = 1; from + static_cast<double>(i) * interval < event; ++i) {
-      if (i % instants_unasked == 0 && !going()) return {};
+      if (i % instants_between_checks == 0 && !proceed()) return {};
       motion.advance(from + static_cast<double>(i) * interval);
-      look();
+      sample();
     }
     motion.advance(event);
-    look();
+    sample();
     motion.pass_event();
-    curves.restart();
+    tracker.restart();
   }
   std::vector<base::ProbePeaks> peaks;
   for (std::size_t p = 0; p < n; ++p)
-    peaks.push_back({curves.peaks()[p], curves.peaks()[n + p], curves.peaks()[2 * n + p]});
+    peaks.push_back({tracker.peaks()[p], tracker.peaks()[n + p], tracker.peaks()[2 * n + p]});
   return peaks;
 }
 

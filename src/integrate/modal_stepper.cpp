@@ -12,8 +12,8 @@
 
 namespace traverse::integrate {
 namespace {
-constexpr double just_before = 1e-12;  // of the run: at a jump the samples show what was there before
-constexpr double phase_at_once = 1e5;  // rad of the highest mode between looks at whether the run is to go on
+constexpr double just_before = 1e-12;   // of the run: at a jump the samples have the values before it
+constexpr double phase_per_step = 1e5;  // rad of the highest mode between checks whether to continue
 }  // namespace
 
 ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridge& bridge,
@@ -40,9 +40,9 @@ ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridg
   acceleration_.assign(n, 0.0);
   force_.assign(n, 0.0);
   drag_.assign(n, 0.0);
-  most_at_once_ = phase_at_once / *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
-  dragged_ = *std::max_element(bridge_.own_drag().begin(), bridge_.own_drag().end()) > 0.0;
-  motion_.count_energy();
+  longest_step_ = phase_per_step / *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
+  has_drag_ = *std::max_element(bridge_.own_drag().begin(), bridge_.own_drag().end()) > 0.0;
+  motion_.integrate_energy();
   ts_ = make_modal_ts(motion_);
   base::check(TSGetMaxSteps(ts_, &most_steps_));
   base::check(TSSetMaxSteps(ts_, std::numeric_limits<PetscInt>::max() - 1));  // counted here
@@ -53,7 +53,7 @@ std::string ModalStepper::method() const { return std::to_string(bridge_.modes()
 void ModalStepper::begin(const std::function<void(const Instant&)>& sample) {
   if (begun_) return;
   system_.begin_step(0.0, 0.0);
-  show_to_monitors();
+  call_monitors();
   sample_now(sample, Purpose::sample);
   begun_ = true;
 }
@@ -62,25 +62,25 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
                          const std::function<bool(double, long)>& step, const std::function<void(double)>& between) {
   const double slack = 1e-3 * std::min(interval_, end_time_);
   begin(sample);
-  for (bool going = true; going && motion_.time() < end_time_ - slack;) {
+  for (bool running = true; running && motion_.time() < end_time_ - slack;) {
     if (between) between(motion_.time());
     double t = static_cast<double>(steps_ + 1) * interval_;
-    const bool beyond = t > end_time_ + slack;  // the end is no multiple of the interval
+    const bool beyond = t > end_time_ + slack;  // the end is not a multiple of the interval
     if (t > end_time_ - slack) t = end_time_;
-    for (bool there = false; going && !there;) {
-      const double left = t - motion_.time();
-      there = left <= most_at_once_;
-      base::check(TSSetTimeStep(ts_, there ? left : most_at_once_));
+    for (bool arrived = false; running && !arrived;) {
+      const double remaining = t - motion_.time();
+      arrived = remaining <= longest_step_;
+      base::check(TSSetTimeStep(ts_, arrived ? remaining : longest_step_));
       base::check(TSStep(ts_));
-      if (!there) going = step(motion_.time(), steps_);
+      if (!arrived) running = step(motion_.time(), steps_);
     }
-    if (!going) break;
+    if (!running) break;
     system_.begin_step(t - 2.0 * just_before * end_time_, t);
     ++steps_;
-    show_to_monitors();
+    call_monitors();
     const bool stored = steps_ % stored_ == 0 && !beyond;
-    sample_now(sample, stored ? Purpose::sample : t == end_time_ ? Purpose::end : Purpose::look);
-    going = step(t, steps_) && !stopped_at_limit();
+    sample_now(sample, stored ? Purpose::sample : t == end_time_ ? Purpose::end : Purpose::peaks);
+    running = step(t, steps_) && !stopped_at_limit();
   }
   return motion_.time();
 }
@@ -91,7 +91,7 @@ void ModalStepper::keep(base::Archive& archive) {
   base::check(TSSetTime(ts_, motion_.time()));
 }
 
-void ModalStepper::show_to_monitors() {
+void ModalStepper::call_monitors() {
   if (!has_monitors(ts_)) return;
   Vec y = nullptr;
   base::check(TSGetSolution(ts_, &y));
@@ -99,7 +99,7 @@ void ModalStepper::show_to_monitors() {
 }
 
 // This rank's nodal forces; at a jump those before it.
-void ModalStepper::load_now(double* nodal) const {
+void ModalStepper::nodal_loads(double* nodal) const {
   const beam::Line& line = bridge_.beam().bridge();
   std::fill_n(nodal, force_.size(), 0.0);
   for (std::size_t j = 0; j < load_.forces.size(); ++j) {
@@ -120,8 +120,8 @@ void ModalStepper::load_now(double* nodal) const {
 void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   const std::size_t n = force_.size();
   double *v = y_.data(), *w = v + n, *a = acceleration_.data();
-  // The static correction first: K* v = P and dampers' forces, less the modes' share of it.
-  load_now(force_.data());
+  // The static correction first: K* v = forces P and dampers' forces, minus the modes' share.
+  nodal_loads(force_.data());
   bridge_.add_forces_on_others(motion_.rate().data(), force_.data());
   std::vector<double> share(bridge_.modes(), 0.0);
   for (std::size_t i = 0; i < bridge_.modes(); ++i)
@@ -152,11 +152,11 @@ void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample,
     }
   }
   for (std::size_t k = 0; k < n; ++k) v[k] += sagging_[k];
-  if (y_.size() > 2 * n) {  // the rank that keeps the energies
+  if (y_.size() > 2 * n) {  // the rank that stores the energies
     y_[2 * n] = motion_.dissipated();
-    y_[2 * n + 1] = motion_.work() + stored - at_start_;  // what the correction stores, forces have put in
+    y_[2 * n + 1] = motion_.work() + stored - at_start_;  // forces have supplied the energy of the correction
   }
-  sample({motion_.time(), y_.data(), acceleration_.data(), dragged_ ? drag_.data() : nullptr, purpose});
+  sample({motion_.time(), y_.data(), acceleration_.data(), has_drag_ ? drag_.data() : nullptr, purpose});
 }
 
 }  // namespace traverse::integrate

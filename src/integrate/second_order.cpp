@@ -1,8 +1,8 @@
 // Implements the functions that PETSc calls of a TS type: one step with its repetitions, the error estimate, the
-// options, and the TSAdapt that selects steps from the ladder.
+// options, and the TSAdapt of the step-size control.
 #include "integrate/second_order.hpp"
 
-#include <petsc/private/tsimpl.h>  // types of TS and TSAdapt; how many monitors there are
+#include <petsc/private/tsimpl.h>  // types of TS and TSAdapt; number of monitors
 
 #include <algorithm>
 #include <limits>
@@ -16,7 +16,7 @@ namespace {
 using base::check;
 using base::guard;
 
-constexpr double shorter = 0.25;  // of a step that could not be taken
+constexpr double shortening = 0.25;  // of a step that could not be solved
 
 struct Data {
   const structure::MethodRow* row = nullptr;
@@ -27,7 +27,7 @@ struct Data {
 
 Data& data_of(TS ts) { return *static_cast<Data*>(ts->data); }
 
-bool is_ladder(TSAdapt adapt) {
+bool uses_step_size_control(TSAdapt adapt) {
   TSAdaptType type = nullptr;
   check(TSAdaptGetType(adapt, &type));
   return type != nullptr && std::string_view(type) == ladder_adapt;
@@ -37,32 +37,32 @@ PetscErrorCode set_up(TS ts) {
   return guard([&] {
     Data& data = data_of(ts);
     data.system->begin_motion(data.row->make(data.parameter));
-    if (is_ladder(ts->adapt)) data.system->measure_errors();
+    if (uses_step_size_control(ts->adapt)) data.system->measure_errors();
     check(TSAdaptCandidatesClear(ts->adapt));
     check(TSAdaptCandidateAdd(ts->adapt, nullptr, data.row->order, 1, 1.0, 1.0, PETSC_TRUE));
   });
 }
 
-/// What the step control says of a step.
+/// The result of the step-size control for a step.
 struct Verdict {
   TS ts;
   PetscReal next = 0.0;
   PetscBool accepted = PETSC_FALSE;
-  bool ask() {
+  bool evaluate() {
     PetscInt scheme = 0;
     check(TSAdaptChoose(ts->adapt, ts, ts->time_step, &scheme, &next, &accepted));
     return accepted == PETSC_TRUE;
   }
 };
 
-// Of a step that could not be taken.
+// The length for the repetition of a step that could not be solved.
 double shorter_step(TS ts, const Verdict& verdict) {
   if (verdict.next > 0.0) return verdict.next;
-  const double next = shorter * ts->time_step;
-  if (!is_ladder(ts->adapt)) return next;
-  StepSizeControl& ladder = *static_cast<StepSizeControl*>(ts->adapt->data);
-  ladder.judge(ts->time_step, std::numeric_limits<double>::infinity());
-  return std::min(next, ladder.wanted());
+  const double next = shortening * ts->time_step;
+  if (!uses_step_size_control(ts->adapt)) return next;
+  StepSizeControl& control = *static_cast<StepSizeControl*>(ts->adapt->data);
+  control.evaluate(ts->time_step, std::numeric_limits<double>::infinity());
+  return std::min(next, control.allowed_step());
 }
 
 void take_step(TS ts, Data& data, double* y) {
@@ -70,7 +70,7 @@ void take_step(TS ts, Data& data, double* y) {
   data.started = true;
   for (int rejections = 0;; ++rejections) {
     Verdict verdict{ts};
-    if (data.system->step_motion(ts->ptime, ts->time_step, y, [&verdict] { return verdict.ask(); })) {
+    if (data.system->step_motion(ts->ptime, ts->time_step, y, [&verdict] { return verdict.evaluate(); })) {
       ts->ptime += ts->time_step;
       ts->time_step = verdict.next;
       return;
@@ -126,7 +126,7 @@ PetscErrorCode error_of_step(TS ts, NormType, PetscInt* order, PetscReal* error)
   });
 }
 
-// TSSetType has named the type before it calls this.
+// TSSetType has set the name of the type before it calls this.
 PetscErrorCode create_second_order(TS ts) {
   return guard([&] {
     TSType type = nullptr;
@@ -147,15 +147,15 @@ PetscErrorCode choose(TSAdapt adapt, TS ts, PetscReal h, PetscInt* scheme, Petsc
   return guard([&] {
     PetscInt order = PETSC_DECIDE;
     check(TSEvaluateWLTE(ts, adapt->wnormtype, &order, error));
-    StepSizeControl& ladder = *static_cast<StepSizeControl*>(adapt->data);
+    StepSizeControl& control = *static_cast<StepSizeControl*>(adapt->data);
     *scheme = 0;
-    *absolute = *relative = -1.0;  // not told apart
-    *accept = ladder.judge(h, *error) ? PETSC_TRUE : PETSC_FALSE;
-    *next = ladder.wanted();
+    *absolute = *relative = -1.0;  // not distinguished
+    *accept = control.evaluate(h, *error) ? PETSC_TRUE : PETSC_FALSE;
+    *next = control.allowed_step();
   });
 }
 
-PetscErrorCode create_ladder(TSAdapt adapt) {
+PetscErrorCode create_step_size_control(TSAdapt adapt) {
   adapt->ops->choose = choose;
   return base::success;
 }
@@ -163,7 +163,7 @@ PetscErrorCode create_ladder(TSAdapt adapt) {
 }  // namespace
 
 void register_second_order() {
-  check(TSAdaptRegister(ladder_adapt, create_ladder));
+  check(TSAdaptRegister(ladder_adapt, create_step_size_control));
   for (const structure::MethodRow& row : structure::methods()) check(TSRegister(row.name, create_second_order));
 }
 
@@ -173,6 +173,6 @@ bool has_monitors(TS ts) { return ts->numbermonitors > 0; }
 
 bool& has_started(TS ts) { return data_of(ts).started; }
 
-void set_ladder(TS ts, StepSizeControl& ladder) { ts->adapt->data = &ladder; }
+void set_step_size_control(TS ts, StepSizeControl& control) { ts->adapt->data = &control; }
 
 }  // namespace traverse::integrate

@@ -1,7 +1,7 @@
-// The methods of one_step_methods.hpp as PETSc TS types, by their names. They take the steps of System::step_motion,
-// without SNES and without vectors of stages in PETSc; everything else (time, step, options, monitors) is TS's own.
-// Steps are as long as TSSetTimeStep says; one whose stages have no solution is tried again, a quarter as long, and one
-// that a TSAdapt finds too inaccurate as long as that says.
+// The methods of one_step_methods.hpp as PETSc TS types, by their names. Their steps are those of System::step_motion,
+// without SNES and without vectors of stages in PETSc; everything else (time, step, options, monitors) is that of TS.
+// TSSetTimeStep sets the length of steps. A step whose stages have no solution is repeated with a quarter of the
+// length; a step that a TSAdapt rejects is repeated with the length that it selects.
 #pragma once
 
 #include <petscts.h>
@@ -13,16 +13,16 @@ namespace traverse::integrate {
 
 inline constexpr const char* ladder_adapt = "ladder";  // a TSAdapt type, for methods that estimate their errors
 
-/// Makes the types known to PETSc; more than once does no harm.
+/// Registers the types with PETSc; repeated calls have no effect.
 void register_second_order();
-/// What such a TS integrates; before its first step. Its solution is y of the system.
+/// Sets the system of such a TS, before its first step. The solution of the TS is y of the system.
 void set_system(TS ts, coupling::System& system);
-/// What such a TS with the ladder for its TSAdapt takes its steps from: those with an error above TS's relative
-/// tolerance are taken again, shorter.
-void set_ladder(TS ts, StepSizeControl& ladder);
-/// Whether anybody watches the steps of a TS of any type.
+/// Sets the step-size control of such a TS, if its TSAdapt type is ladder_adapt. Steps with an error above the relative
+/// tolerance of TS are repeated with a shorter step.
+void set_step_size_control(TS ts, StepSizeControl& control);
+/// Whether a TS of any type has monitors.
 bool has_monitors(TS ts);
-/// Whether such a TS has taken a step, so that the next one goes on from it.
+/// Whether such a TS has computed a step from which the next one continues.
 bool& has_started(TS ts);
 
 }  // namespace traverse::integrate

@@ -1,5 +1,5 @@
-// Selects the next step length longest/2^k from the local error estimate of an embedded method: at once shorter where
-// the error is too large, twice as long after two accurate steps.
+// Selects the next step length longest/2^k from the local error estimate of an embedded method: at once shorter if the
+// error is too large, twice as long after two accurate steps.
 #include "integrate/step_size_control.hpp"
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 namespace traverse::integrate {
 namespace {
 
-constexpr int most_rungs = 1000;    // shorter steps than the last one are none
-constexpr int lowest = 16;          // rung that errors lead to
-constexpr int most_fallen = 4;      // rungs at once
-constexpr double growth = 16.0;     // of the error from a rung to the next: local errors of order 4
-constexpr double aim = 0.5;         // of the tolerance, on another rung
-constexpr int calm_steps = 2;       // before a longer one
-constexpr double same_step = 1e-6;  // of a step: lengths that differ by rounding
-constexpr double rounding = 1e-9;   // of a step
+constexpr int most_levels = 1000;           // limit of the levels that other conditions need
+constexpr int last_level = 16;              // level of the shortest step due to errors
+constexpr int most_levels_at_once = 4;      // levels at once
+constexpr double growth = 16.0;             // of the error per level: local errors of order 4
+constexpr double target = 0.5;              // of the tolerance, on another level
+constexpr int required_accurate_steps = 2;  // before a longer step
+constexpr double same_step = 1e-6;          // of a step: lengths that differ by rounding
+constexpr double rounding = 1e-9;           // of a step
 
 }  // namespace
 
@@ -27,40 +27,41 @@ double shared_evenly(double whole, double most) {
 
 double StepSizeControl::length(int level) const { return std::ldexp(longest_, -level); }
 
-// The first rung that is not longer.
-int StepSizeControl::rung_within(double most) const {
+// The first level with a length of at most `most`.
+int StepSizeControl::level_within(double most) const {
   if (!std::isfinite(most)) return 0;
-  return std::max(0, base::whole(std::ceil(std::log2(longest_ / most * (1.0 - rounding))), most_rungs));
+  return std::max(0, base::whole(std::ceil(std::log2(longest_ / most * (1.0 - rounding))), most_levels));
 }
 
-bool StepSizeControl::judge(double h, double error) {
-  if (!(error <= 1.0) && h > length(lowest) * (1.0 + same_step)) {
-    int level = rung_within(h * (1.0 - same_step));
-    const int last = std::min(lowest, level + most_fallen - 1);
-    while (level < last && !(error * std::pow(length(level) / h, std::log2(growth)) <= aim)) ++level;
+bool StepSizeControl::evaluate(double h, double error) {
+  if (!(error <= 1.0) && h > length(last_level) * (1.0 + same_step)) {
+    int level = level_within(h * (1.0 - same_step));
+    const int last = std::min(last_level, level + most_levels_at_once - 1);
+    while (level < last && !(error * std::pow(length(level) / h, std::log2(growth)) <= target)) ++level;
     level_ = std::max(level, level_);
-    calm_ = 0;
+    accurate_steps_ = 0;
     return false;
   }
-  if (h < wanted() * (1.0 - same_step)) return true;  // it says little of longer ones
-  calm_ = error * growth <= aim ? calm_ + 1 : 0;
-  if (level_ > 0 && calm_ >= calm_steps) {
+  if (h < allowed_step() * (1.0 - same_step))
+    return true;  // a shorter step does not show whether a longer one is accurate
+  accurate_steps_ = error * growth <= target ? accurate_steps_ + 1 : 0;
+  if (level_ > 0 && accurate_steps_ >= required_accurate_steps) {
     --level_;
-    calm_ = 0;
+    accurate_steps_ = 0;
   }
   return true;
 }
 
-double StepSizeControl::towards(double left, double most) const {
-  const int first = std::max(level_, rung_within(most));
-  for (int level = first; level <= std::max(first, lowest); ++level) {
-    const double count = std::round(left / length(level));
-    if (count >= 1.0 && std::abs(left - count * length(level)) <= same_step * length(level))
-      return count == 1.0 ? left : length(level);
+double StepSizeControl::next_step(double remaining, double most) const {
+  const int first = std::max(level_, level_within(most));
+  for (int level = first; level <= std::max(first, last_level); ++level) {
+    const double count = std::round(remaining / length(level));
+    if (count >= 1.0 && std::abs(remaining - count * length(level)) <= same_step * length(level))
+      return count == 1.0 ? remaining : length(level);
   }
   const double h = length(first);
-  if (left <= h) return left;
-  return left < 2.0 * h ? 0.5 * left : h;
+  if (remaining <= h) return remaining;
+  return remaining < 2.0 * h ? 0.5 * remaining : h;
 }
 
 }  // namespace traverse::integrate

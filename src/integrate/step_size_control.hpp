@@ -1,10 +1,10 @@
-// Lengths of adaptive steps from a ladder, the longest step halved again and again: a handful of factorisations serves
-// all of them, and where the longest step fits between samples the shorter ones do.
+// Lengths of adaptive steps: the longest step halved k times, with the level k. A few factorisations are sufficient for
+// all levels, and if the longest step divides the sampling interval, the shorter ones do too.
 #pragma once
 
 namespace traverse::integrate {
 
-/// The length of as few equal steps as go into `whole`, no longer than `most`.
+/// `whole` divided into the smallest number of equal steps that are not longer than `most`.
 double shared_evenly(double whole, double most);
 
 class StepSizeControl {
@@ -12,22 +12,23 @@ class StepSizeControl {
   explicit StepSizeControl(double longest) : longest_(longest) {}
 
   /// The longest step that the errors so far allow, s.
-  double wanted() const { return length(level_); }
+  double allowed_step() const { return length(level_); }
   double length(int level) const;
 
-  /// Whether a step of h (s) with this error, as part of the tolerance, is good enough; `wanted` is shorter than h
-  /// where not. On the lowest rung all are: shorter ones would not make a jump smaller.
-  bool judge(double h, double error);
-  /// The step to take when there are `left` (s) until the next one has to end, no longer than wanted and `most` (s).
-  /// All steps are rungs of the ladder, but for the last ones before an end that is off the ladder.
-  double towards(double left, double most) const;
+  /// Whether a step of h (s) is accurate enough; error: over the tolerance. If not, allowed_step() becomes shorter than
+  /// h. On the highest level all steps are accepted: shorter ones would not reduce the error at a jump.
+  bool evaluate(double h, double error);
+  /// The next step, if `remaining` (s) is the time until a step has to end; not longer than allowed_step() and `most`
+  /// (s). All steps have the length of a level, except the last ones before an end that is not a multiple of it.
+  double next_step(double remaining, double most) const;
 
  private:
-  int rung_within(double most) const;
+  int level_within(double most) const;
 
   double longest_;
   int level_ = 0;  // 0: the longest
-  int calm_ = 0;   // steps on this rung after each other that would have been good enough on the next one
+  int accurate_steps_ =
+      0;  // number of successive steps on this level that would be accurate enough on the next longer one
 };
 
 }  // namespace traverse::integrate

@@ -20,12 +20,12 @@ namespace {
 using base::check;
 using coupling::Terms;
 
-constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS wants some bound
+constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS needs some bound
 constexpr int most_rejections = 12;                                      // of one step, each a quarter as long
-constexpr double near_event = 1e-3;     // of a step: events closer than this share the end of a step
-constexpr double restart_growth = 2.0;  // steps of a method that carries accelerations on may not grow faster
-constexpr long steps_unseen = 16;       // between two looks at the bounds of the motion, which cost a pass over it
-constexpr double kept_step = 1e-7;      // of a step: lengths that need no other factorisation
+constexpr double near_event = 1e-3;        // of a step: closer events share the end of a step
+constexpr double restart_growth = 2.0;     // largest growth of steps of a method that reuses accelerations
+constexpr long steps_between_checks = 16;  // between two checks of the bounds of the motion
+constexpr double reused_step = 1e-7;       // of a step: lengths that need no new factorisation
 
 bool has_type(TS ts, const char* type) {
   PetscBool same = PETSC_FALSE;
@@ -66,7 +66,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   check(TSGetMaxSteps(ts_, &most_steps_));
   monitored_ = has_monitors(ts_);
   check(TSSetMaxSteps(ts_, no_limit));
-  // Time and step are the scene's; TS takes one step at a time and never looks ahead to an end.
+  // Time and step are the scene's; TS computes one step at a time without a final time.
   check(TSSetTime(ts_, 0.0));
   check(TSSetMaxTime(ts_, std::numeric_limits<double>::max()));
   check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_STEPOVER));
@@ -75,7 +75,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   check(TSAdaptGetType(adapt, &adapt_type));
   adaptive_ = std::string_view(adapt_type) != TSADAPTNONE;
   if (std::string_view(adapt_type) == ladder_adapt)
-    set_ladder(ts_, ladder_.emplace(shared_evenly(settings_.interval, settings_.time_step)));
+    set_step_size_control(ts_, step_control_.emplace(shared_evenly(settings_.interval, settings_.time_step)));
   next_step_ = settings_.time_step;
   set_up_type();
 }
@@ -150,115 +150,116 @@ void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array));
 // --- the loop ------------------------------------------------------------------------------------------------------
 
 void Stepper::begin(const std::function<void(const Instant&)>& sample) {
-  if (way_.begun) return;
-  if (settings_.corners) system_.expect_corners(settings_.end_time, settings_.time_step);
+  if (progress_.begun) return;
+  if (settings_.kinks) system_.list_kinks(settings_.end_time, settings_.time_step);
   sample_now(sample, Purpose::sample);
   {
     Array y(y_);
-    system_.accept(way_.t, y.data);
+    system_.accept(progress_.t, y.data);
   }
-  show_to_monitors(way_.t);
-  way_.begun = true;
+  call_monitors(progress_.t);
+  progress_.begun = true;
 }
 
 double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
                     const std::function<void(double)>& between) {
   const double slack = near_event * std::min({settings_.time_step, settings_.interval, settings_.end_time});
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::max(settings_.end_time, 1.0);
-  Way& way = way_;
-  double& t = way.t;
+  Progress& progress = progress_;
+  double& t = progress.t;
   begin(sample);
-  for (bool going = true; going && t < settings_.end_time - slack;) {
-    if (!way.under_way) set_target(slack);
-    while (going && t < way.target) {
+  for (bool running = true; running && t < settings_.end_time - slack;) {
+    if (!progress.under_way) set_target(slack);
+    while (running && t < progress.target) {
       if (between) between(t);
-      t = take_step(t, way.target - t);
-      if (t > way.target - rounding) {
-        t = way.target;
+      t = take_step(t, progress.target - t);
+      if (t > progress.target - rounding) {
+        t = progress.target;
         check(TSSetTime(ts_, t));
       }
       Array y(y_);
       const bool rewritten = system_.accept(t, y.data);
       if (rewritten) check(TSRestartStep(ts_));
-      if (steps_ % steps_unseen == 0) check_bounds(t, y.data);
-      show_to_monitors(t);
-      going = step(t, steps_) && !stopped_at_limit();
+      if (steps_ % steps_between_checks == 0) check_bounds(t, y.data);
+      call_monitors(t);
+      running = step(t, steps_) && !stopped_at_limit();
     }
-    way.under_way = t < way.target;
-    if (t == way.next_sample) {
-      const bool stored = ++way.samples % settings_.stored == 0 && !way.beyond;
-      sample_now(sample, stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::look);
-    } else if (way.passage < settings_.passages.size() && t == settings_.passages[way.passage]) {
-      sample_now(sample, Purpose::look);
+    progress.under_way = t < progress.target;
+    if (t == progress.next_sample) {
+      const bool stored = ++progress.samples % settings_.stored == 0 && !progress.beyond;
+      sample_now(sample, stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::peaks);
+    } else if (progress.passage < settings_.passages.size() && t == settings_.passages[progress.passage]) {
+      sample_now(sample, Purpose::peaks);
     }
   }
   return t;
 }
 
-// The next time at which a step has to end.
+// Sets the next time at which a step has to end.
 void Stepper::set_target(double slack) {
-  way_.under_way = true;
-  way_.next_sample = static_cast<double>(way_.samples + 1) * settings_.interval;
-  way_.beyond = way_.next_sample > settings_.end_time + slack;  // the end is no multiple of the interval
-  if (way_.next_sample > settings_.end_time - slack) way_.next_sample = settings_.end_time;
-  way_.target = way_.next_sample;
+  progress_.under_way = true;
+  progress_.next_sample = static_cast<double>(progress_.samples + 1) * settings_.interval;
+  progress_.beyond = progress_.next_sample > settings_.end_time + slack;  // the end is not a multiple of the interval
+  if (progress_.next_sample > settings_.end_time - slack) progress_.next_sample = settings_.end_time;
+  progress_.target = progress_.next_sample;
   const auto stop_at = [&](const std::vector<double>& times, std::size_t& next) {
-    while (next < times.size() && times[next] <= way_.t + slack) ++next;
-    if (next < times.size() && times[next] < way_.target - slack) way_.target = times[next];
+    while (next < times.size() && times[next] <= progress_.t + slack) ++next;
+    if (next < times.size() && times[next] < progress_.target - slack) progress_.target = times[next];
   };
-  stop_at(settings_.events, way_.event);
-  stop_at(settings_.passages, way_.passage);
+  stop_at(settings_.events, progress_.event);
+  stop_at(settings_.passages, progress_.passage);
 }
 
-// TS takes single steps here, in which it calls none.
-void Stepper::show_to_monitors(double t) {
+// TS computes single steps, in which it calls no monitors.
+void Stepper::call_monitors(double t) {
   if (!monitored_) return;
   check(TSMonitor(ts_, static_cast<PetscInt>(steps_), t, y_));
 }
 
-// What comes next on the way to a target `left` s away: a rung of the ladder, or what is left shared evenly among the
-// steps that it takes. Where the target moves a little, the step stays, and with it the beam's factorisation.
-double Stepper::next_step(double from, double left) const {
+// The next step towards a target in `remaining` s: the length of a level, or `remaining` divided into equal steps. If
+// the target moves a little, the step and thus the beam's factorisation are unchanged.
+double Stepper::next_step(double from, double remaining) const {
   const double limit = system_.contacts().step_limit(from);
   const double impact = system_.contacts().time_to_impact(settings_.contact_tolerance);
-  if (ladder_) return std::min(ladder_->towards(left, limit), impact);
-  const double wanted = std::min({adaptive_ ? next_step_ : settings_.time_step, limit, impact});
-  const double even = shared_evenly(left, wanted);
-  const bool held = even < left && last_step_ <= wanted && std::abs(even - last_step_) <= kept_step * last_step_;
-  return held ? last_step_ : even;
+  if (step_control_) return std::min(step_control_->next_step(remaining, limit), impact);
+  const double allowed = std::min({adaptive_ ? next_step_ : settings_.time_step, limit, impact});
+  const double even = shared_evenly(remaining, allowed);
+  const bool reuse =
+      even < remaining && last_step_ <= allowed && std::abs(even - last_step_) <= reused_step * last_step_;
+  return reuse ? last_step_ : even;
 }
 
-// One step from where TS is, no longer than what is left to the next target. Returns the time reached.
-double Stepper::take_step(double from, double left) {
-  const auto turn = next_kink(from, left);
-  if (turn) left = turn->time - from;
-  const double h = next_step(from, left);
-  // generalised-alpha carries on an acceleration of a part of a step elsewhere, as multistep methods do
+// One step from the time of TS, not longer than the time to the next target. Returns the new time.
+double Stepper::take_step(double from, double remaining) {
+  const auto passage = next_kink(from, remaining);
+  if (passage) remaining = passage->time - from;
+  const double h = next_step(from, remaining);
+  // generalised-alpha, like multistep methods, reuses an acceleration of another instant in the step
   const bool carries = multistep_ || (second_order_ && !high_order_);
   if (carries && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
-  if (system_.begin_step(from, from + h)) {  // a jump: what is known of the rate belongs to its other side
+  if (system_.begin_step(from, from + h)) {  // a jump: a known rate is valid only before it
     known_ = false;
     check(TSRestartStep(ts_));
   }
-  const bool turns = turn && h == left;
+  const bool ends_at_kink = passage && h == remaining;
   const bool locating = settings_.contact_tolerance > 0.0 && system_.fleet().contacts() > 0;
   if (second_order_)
-    system_.keep_steps(locating || turns);
-  else if (locating || turns)
+    system_.store_steps(locating || ends_at_kink);
+  else if (locating || ends_at_kink)
     check(VecCopy(y_, before_));
-  double t = step_to(from, turns ? turn->time : from + h);
+  double t = step_to(from, ends_at_kink ? passage->time : from + h);
   PetscReal next = 0.0;
   check(TSGetTimeStep(ts_, &next));
   if (locating) t = locate_contact_change(from, t);
-  if (turns && std::abs(t - turn->time) < turn->tolerance) t = end_at_kink(from, t, *turn);
+  if (ends_at_kink && std::abs(t - passage->time) < passage->tolerance) t = end_at_kink(from, t, *passage);
   last_step_ = t - from;
-  if (adaptive_) next_step_ = h < left || next < next_step_ ? next : std::max(next_step_, next);
+  if (adaptive_) next_step_ = h < remaining || next < next_step_ ? next : std::max(next_step_, next);
   next_step_ = std::min(next_step_, settings_.time_step);
   ++steps_;
   return t;
 }
 
-// From where TS is, `from`, to `end` or, where that cannot be solved, not as far. Returns the time reached.
+// From `from`, the time of TS, to `end`, or less far if that cannot be solved. Returns the new time.
 double Stepper::step_to(double from, double end) {
   const double h = end - from;
   system_.begin_trial();
@@ -270,22 +271,22 @@ double Stepper::step_to(double from, double end) {
   check(TSGetTime(ts_, &t));
   if (reason < 0)
     throw StepTooLong("the step of " + std::to_string(h) + " s at t = " + std::to_string(t) +
-                      " s could not be taken, not even shortened: " + system_.trouble());
+                      " s could not be taken, not even shortened: " + system_.failure_reason());
   return t;
 }
 
 void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
-  const bool known = second_order_ && steps_ > 0 && system_.knows_acceleration();
+  const bool known = second_order_ && steps_ > 0 && system_.provides_acceleration();
   if (!known) rate(t, y_, rate_, Terms::all);
   ReadArray y(y_);
   ReadArray ydot(rate_);
-  if (purpose != Purpose::look) check_bounds(t, y.data);
+  if (purpose != Purpose::peaks) check_bounds(t, y.data);
   sample({t, y.data, known ? system_.acceleration() : ydot.data + system_.structure_unknowns(), nullptr, purpose});
 }
 
-// SolverError where the motion is no number any more, or the beam deflects by more than its length.
+// Throws SolverError if the motion is not finite, or if the beam deflects by more than its length.
 void Stepper::check_bounds(double t, const double* y) const {
   const auto abs = [](const double* x, int size) { return Eigen::Map<const Eigen::ArrayXd>(x, size).abs(); };
   const int n = system_.local_size(), unknowns = system_.structure_unknowns();

@@ -1,5 +1,4 @@
-// Steps that end at events which the motion itself decides on: contacts lost and gained, wheels that turn about
-// corners.
+// Steps that end at events of the motion: contacts that open or close, wheels that turn about kinks.
 #include <cmath>
 
 #include "arrays.hpp"
@@ -10,27 +9,27 @@ namespace {
 
 using base::check;
 
-constexpr int most_trials = 40;      // of a step's end at the change of a contact
-constexpr int most_turn_trials = 3;  // and where a wheel turns about a corner
+constexpr int most_trials = 40;      // of a step's end at a contact event
+constexpr int most_kink_trials = 3;  // and at the turn of a wheel about a kink
 
 }  // namespace
 
-// When the next wheel turns about a corner of the surface, if it does so within `left` s. A multistep method is started
-// anew by a short step, which costs it more; the ladder sees the corner's error, and keeps to the steps it has factors
-// of.
-std::optional<coupling::KinkEvents::KinkPassage> Stepper::next_kink(double from, double left) {
-  if (!settings_.corners || multistep_ || ladder_) return std::nullopt;
+// The next turn of a wheel about a kink of the surface within `remaining` s, if any. Multistep methods do without,
+// since the restart with a short step costs them more; so does the step-size control, whose error estimate includes the
+// kink and which uses only the lengths of its levels.
+std::optional<coupling::KinkEvents::KinkPassage> Stepper::next_kink(double from, double remaining) {
+  if (!settings_.kinks || multistep_ || step_control_) return std::nullopt;
   ReadArray y(y_);
-  return system_.next_kink(from, left, y.data);
+  return system_.next_kink(from, remaining, y.data);
 }
 
-// Sets the vehicles to where the step has led.
-void Stepper::arrive(double t) {
+// Sets the vehicles to the end of the step.
+void Stepper::set_vehicles(double t) {
   ReadArray y(y_);
-  system_.arrive(t, y.data);
+  system_.set_vehicles(t, y.data);
 }
 
-// Takes the step from `from` again, to another end. Returns the time reached.
+// Repeats the step from `from` with another end. Returns the new time.
 double Stepper::step_again(double from, double end) {
   if (second_order_) {
     Array y(y_);
@@ -42,36 +41,36 @@ double Stepper::step_again(double from, double end) {
   check(TSRestartStep(ts_));
   known_ = false;
   const double reached = step_to(from, end);
-  arrive(reached);
+  set_vehicles(reached);
   return reached;
 }
 
-// Takes the step from `from` again, shorter, where a contact is lost or gained in it: until it ends just behind the
-// first loss, or just before the first gain, since a stiff contact must not be met in a long step. `full`: where it
-// ended at first. Returns the time reached.
+// If a contact opens or closes in the step from `from` to `full`, repeats the step until it ends just after the first
+// opening or just before the first closing, because the onset of a stiff contact needs short steps. Returns the new
+// time.
 double Stepper::locate_contact_change(double from, double full) {
-  arrive(full);
+  set_vehicles(full);
   auto change = system_.contacts().change(full, settings_.contact_tolerance);
   if (!change) return full;
-  coupling::ContactEventLocator bracket(system_, *change, from, full, settings_.contact_tolerance);
+  coupling::ContactEventLocator locator(system_, *change, from, full, settings_.contact_tolerance);
   double at = full;
-  for (int i = 0; i < most_trials && !bracket.found(); ++i) {
-    at = step_again(from, bracket.trial());
-    bracket.tried(at, system_.contacts().change(at, settings_.contact_tolerance));
+  for (int i = 0; i < most_trials && !locator.found(); ++i) {
+    at = step_again(from, locator.trial());
+    locator.update(at, system_.contacts().change(at, settings_.contact_tolerance));
   }
-  return at != bracket.end() ? step_again(from, bracket.end()) : at;
+  return at != locator.end() ? step_again(from, locator.end()) : at;
 }
 
-// Takes the step from `from` to `at` again where the wheel turns about its corner at another time than was expected.
-double Stepper::end_at_kink(double from, double at, const coupling::KinkEvents::KinkPassage& turn) {
-  arrive(at);
-  for (int i = 0; i < most_turn_trials; ++i) {
+// Repeats the step from `from` to `at` if the wheel turns about its kink at another time than predicted.
+double Stepper::end_at_kink(double from, double at, const coupling::KinkEvents::KinkPassage& passage) {
+  set_vehicles(at);
+  for (int i = 0; i < most_kink_trials; ++i) {
     double found = 0.0;
     {
       ReadArray y(y_);
-      found = system_.time_of(turn, at, y.data);
+      found = system_.time_of(passage, at, y.data);
     }
-    if (!(std::abs(found - at) > turn.tolerance) || !(found > from) || !std::isfinite(found)) break;
+    if (!(std::abs(found - at) > passage.tolerance) || !(found > from) || !std::isfinite(found)) break;
     at = step_again(from, found);
   }
   return at;

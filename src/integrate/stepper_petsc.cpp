@@ -1,5 +1,5 @@
-// What TS calls: PETSc's implicit types solve their stages by System::solve_stage behind a SNESSHELL, its explicit ones
-// evaluate System::rate.
+// The functions that TS calls: PETSc's implicit types solve their stages by System::solve_stage behind a SNESSHELL, its
+// explicit ones evaluate System::rate.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,8 +13,8 @@ using base::check;
 using base::guard;
 using coupling::Terms;
 
-// Whether the last solved stage is the state asked for: its rate is known then.
-bool Stepper::remembered(double t, const double* y) const {
+// Whether the last solved stage is the given state: its rate is known then.
+bool Stepper::is_last_stage(double t, const double* y) const {
   int same = known_ && std::abs(t - known_t_) <= 1e-13 * std::max(1.0, std::abs(t)) &&
                      std::memcmp(y, known_y_.data(), known_y_.size() * sizeof(double)) == 0
                  ? 1
@@ -26,18 +26,18 @@ bool Stepper::remembered(double t, const double* y) const {
 void Stepper::rate(double t, Vec y, Vec ydot, Terms terms) {
   ReadArray in(y);
   Array out(ydot);
-  if (terms == implicit_terms_ && remembered(t, in.data))
+  if (terms == implicit_terms_ && is_last_stage(t, in.data))
     std::copy(known_rate_.begin(), known_rate_.end(), out.data);
   else
     system_.rate(t, in.data, out.data, terms);
 }
 
-// F = y' - G, or, inside a stage solve, only a note of what is asked.
+// F = y' - G, or during a stage solution only a record of the request.
 void Stepper::implicit_residual(double t, Vec y, Vec ydot, Vec residual) {
   if (request_.recording) {
     request_.t = t;
     request_.start = y != request_.unknown;
-    if (request_.start) {  // PETSc 3.20 and later: ARKIMEX asks for the y' of its first explicit stage
+    if (request_.start) {  // PETSc 3.20 and later: ARKIMEX needs y' of its first explicit stage
       PetscReal now = 0.0;
       check(TSGetTime(ts_, &now));
       return rate(now, y, residual, implicit_terms_);

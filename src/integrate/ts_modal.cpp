@@ -18,7 +18,7 @@ constexpr const char* type_name = "modal";
 
 ModalMotion& motion_of(TS ts) { return *static_cast<ModalMotion*>(ts->data); }
 
-void show(const ModalMotion& motion, Vec y) {
+void copy_solution(const ModalMotion& motion, Vec y) {
   double* values = nullptr;
   check(VecGetArray(y, &values));
   std::copy(motion.q().begin(), motion.q().end(), values);
@@ -30,7 +30,7 @@ PetscErrorCode step_modal(TS ts) {
   return base::guard([&] {
     motion_of(ts).advance(ts->ptime + ts->time_step);
     ts->ptime += ts->time_step;
-    show(motion_of(ts), ts->vec_sol);
+    copy_solution(motion_of(ts), ts->vec_sol);
   });
 }
 
@@ -38,7 +38,7 @@ PetscErrorCode view(TS ts, PetscViewer viewer) {
   return PetscViewerASCIIPrintf(viewer, "  %d modes, exact in time\n", static_cast<int>(motion_of(ts).q().size()));
 }
 
-PetscErrorCode destroy_modal(TS ts) {  // the motion is its owner's
+PetscErrorCode destroy_modal(TS ts) {  // the motion belongs to its owner
   ts->data = nullptr;
   return base::success;
 }
@@ -60,7 +60,7 @@ base::Handle<TS> make_modal_ts(ModalMotion& motion) {
   base::Handle<Vec> y;
   const auto size = static_cast<PetscInt>(2 * motion.q().size());
   check(VecCreateSeq(PETSC_COMM_SELF, size, y.out()));
-  show(motion, y);
+  copy_solution(motion, y);
   check(TSCreate(PETSC_COMM_SELF, ts.out()));
   check(TSSetType(ts, type_name));
   static_cast<TS>(ts)->data = &motion;

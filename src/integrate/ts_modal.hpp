@@ -1,7 +1,7 @@
-// ts_type modal: what PETSc has none of, a TS whose step is the exact motion of modes under moving forces.
+// ts_type modal, which PETSc does not have: a TS whose step is the exact motion of modes under moving forces.
 //
-// y = (q, q'), the same on every rank. A step of any length ends where the closed form says, events inside it included;
-// there is no right-hand side to evaluate, no stage and no error to control.
+// y = (q, q'), the same on every rank. A step of any length, also with events inside it, is computed in closed form;
+// there is no right-hand side, no stage and no error estimate.
 #pragma once
 
 #include "base/petsc.hpp"
@@ -9,7 +9,7 @@
 
 namespace traverse::integrate {
 
-/// A TS of type modal on `motion`, which must outlive it, at the motion's time; PETSc's options are read.
+/// A TS of type modal on `motion`, which must outlive it, at the motion's time. Reads PETSc's options.
 base::Handle<TS> make_modal_ts(ModalMotion& motion);
 
 }  // namespace traverse::integrate

@@ -12,22 +12,21 @@
 
 namespace traverse::modal_engine {
 
-// Compiled from moving_force_kernel.cpp, once for each.
-TRAVERSE_LANES_DECLARE(long work_size(const ForceTask& task); void cross(const ForceTask& task);)
+// Compiled from moving_force_kernel.cpp, once for each instruction set.
+TRAVERSE_LANES_DECLARE(long work_size(const ForceTask& task); void run_passages(const ForceTask& task);)
 
 namespace {
 
-constexpr double no_kink = 1e-6;  // of the largest slope, or value
+constexpr double negligible_kink = 1e-6;  // of the largest slope, or value
 
-/// Of one channel within an interval, by powers of the distance since its start.
+/// The coefficients of one channel in an interval, by powers of the distance since its start.
 std::array<double, 4> cubic_of(const integrate::ForceHistory& history, std::size_t interval, std::size_t channel) {
   const double* c = history.interval(interval) + channel;
   const std::size_t n = history.channels;
   return {c[0], c[n], c[2 * n], c[3 * n]};
 }
 
-/// The largest magnitudes of each channel and of its slope at the starts of the intervals, and by how much both jump
-/// there.
+/// The largest magnitudes of each channel and of its slope at the starts of the intervals, and the jumps of both there.
 struct Jumps {
   explicit Jumps(const integrate::ForceHistory& history)
       : largest(history.channels, 0.0), steepest(largest), value(history.coefficients.size() / 4), slope(value) {
@@ -68,11 +67,11 @@ MovingForcePassages::MovingForcePassages(const structure::ModalBridge& bridge, c
   find_kinks();
 }
 
-/// Where the modes' forces have a kink, all responses have; elsewhere those whose static correction has.
+/// If a modal force has a kink, all responses have one; otherwise the responses whose static correction has a kink.
 void MovingForcePassages::find_kinks() {
   const std::size_t modes = bridge_.modes(), n = history_.channels, probes = bridge_.probes().count;
   const Jumps jumps(history_);
-  // What is small beside the response that it is a part of is no kink.
+  // A kink is ignored if it is small relative to the whole response.
   std::vector<double> largest = jumps.largest, steepest = jumps.steepest;
   for (std::size_t k = modes; k < n; ++k)
     for (std::size_t i = 0; i < modes; ++i) {
@@ -83,8 +82,8 @@ void MovingForcePassages::find_kinks() {
     }
   first_kink_ = {0};
   for (std::size_t i = 0; i < history_.start.size(); ++i) {
-    const auto jumps_in = [&](std::size_t k) { return jumps.value[i * n + k] > no_kink * largest[k]; };
-    const auto kink_in = [&](std::size_t k) { return jumps.slope[i * n + k] > no_kink * steepest[k]; };
+    const auto jumps_in = [&](std::size_t k) { return jumps.value[i * n + k] > negligible_kink * largest[k]; };
+    const auto kink_in = [&](std::size_t k) { return jumps.slope[i * n + k] > negligible_kink * steepest[k]; };
     ForceEvent event = ForceEvent::smooth;
     for (std::size_t k = 0; k < modes; ++k) {
       if (jumps_in(k)) event = ForceEvent::all_jump;
@@ -103,7 +102,7 @@ void MovingForcePassages::find_kinks() {
 std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<const double> speeds,
                                                                       std::span<const double> end_times,
                                                                       double instants,
-                                                                      const std::function<bool()>& going) const {
+                                                                      const std::function<bool()>& proceed) const {
   const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 2 ? 4 : 2, probes = bridge_.probes().count;
   engine::Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
   for (std::size_t lane = 0; lane < width; ++lane) {
@@ -138,17 +137,17 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<
   task.moment_by_acceleration = forms.moment_by_acceleration.data();
   task.weight = weight_.data();
   bool stopped = false;
-  const auto goes_on = [&] {
-    stopped = stopped || !going();
+  const auto check = [&] {
+    stopped = stopped || !proceed();
     return !stopped;
   };
-  task.whom = const_cast<void*>(static_cast<const void*>(&goes_on));
-  task.going = [](void* whom) { return (*static_cast<decltype(goes_on)*>(whom))(); };
+  task.context = const_cast<void*>(static_cast<const void*>(&check));
+  task.proceed = [](void* context) { return (*static_cast<decltype(check)*>(context))(); };
   task.peak = peak.data();
   task.peak_time = time.data();
   engine::Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task))));
   task.work = work.data();
-  TRAVERSE_LANES_CALL(cross(task));
+  TRAVERSE_LANES_CALL(run_passages(task));
   if (stopped) return {};
   std::vector<std::vector<base::ProbePeaks>> peaks(speeds.size(), std::vector<base::ProbePeaks>(probes));
   for (std::size_t lane = 0; lane < speeds.size(); ++lane)
@@ -176,16 +175,16 @@ std::vector<double> MovingForcePassages::static_peaks() const {
         for (std::size_t k = 0; k < 4; ++k) c[k] += probes.deflection[i * probes.count + p] * force[k] / omega2_[i];
       }
       c[0] += probes.weight_deflection[p];
-      const auto look = [&](double s) {
+      const auto evaluate = [&](double s) {
         if (s >= 0.0 && s <= length) peaks[p] = std::max(peaks[p], std::abs(c[0] + s * (c[1] + s * (c[2] + s * c[3]))));
       };
-      look(0.0);
-      look(length);
-      const double root = c[2] * c[2] - 3.0 * c[1] * c[3];  // where the slope is zero
+      evaluate(0.0);
+      evaluate(length);
+      const double root = c[2] * c[2] - 3.0 * c[1] * c[3];  // from the zeros of the slope
       if (root < 0.0) continue;
       const double far = -(c[2] + std::copysign(std::sqrt(root), c[2]));
-      if (c[3] != 0.0) look(far / (3.0 * c[3]));
-      if (far != 0.0) look(c[1] / far);
+      if (c[3] != 0.0) evaluate(far / (3.0 * c[3]));
+      if (far != 0.0) evaluate(c[1] / far);
     }
   }
   return peaks;

@@ -1,5 +1,5 @@
-// Passages of moving forces by modes, exact in time, where only the peaks at the probes are wanted: what a sweep is
-// made of. Runs of one train at several speeds go side by side, one in each lane of the processor's vectors.
+// Passages of moving forces by modes, exact in time, for sweeps, which need only the peaks at the probes. Runs of one
+// train at several speeds are computed together, one in each SIMD lane.
 #pragma once
 
 #include <functional>
@@ -13,22 +13,22 @@
 
 namespace traverse::modal_engine {
 
-/// One train of forces over one bridge.
+/// One train of forces on one bridge.
 class MovingForcePassages {
  public:
-  /// The bridge must outlive it. equilibrium: runs start in static equilibrium under the forces that stand on the
-  /// bridge then, otherwise undeflected.
+  /// The bridge must outlive this object. equilibrium: runs start in static equilibrium under the forces on the bridge
+  /// at t = 0, otherwise undeflected.
   MovingForcePassages(const structure::ModalBridge& bridge, const train::MovingLoad& load, bool equilibrium);
 
-  /// The peaks from t = 0 to `end_times` (s) at every probe of the bridge, of at most `engine::widest` runs with speeds
-  /// of one class (speed_class.hpp): [run][probe]. Looked for at `instants` a period of the fastest mode or somewhat
-  /// more, wherever a response has a kink, and between them by parabolas. `going` is asked now and then; once it
-  /// returns false the search stops, and there are no peaks.
+  /// The peaks from t = 0 to `end_times` (s) at every probe of the bridge, for at most `engine::widest` runs with
+  /// speeds of one class (speed_class.hpp): [run][probe]. The responses are sampled `instants` times or slightly more
+  /// in a period of the fastest mode, and at their kinks; peaks between samples are interpolated by parabolas.
+  /// `proceed` is called at intervals; once it returns false the search stops, and there are no peaks.
   std::vector<std::vector<base::ProbePeaks>> peaks(std::span<const double> speeds, std::span<const double> end_times,
-                                                   double instants, const std::function<bool()>& going) const;
+                                                   double instants, const std::function<bool()>& proceed) const;
 
   const integrate::ForceHistory& history() const { return history_; }
-  /// The largest static deflection of each probe while the forces pass, m.
+  /// The largest static deflection at each probe during the passage of the forces, m.
   std::vector<double> static_peaks() const;
 
  private:

@@ -1,8 +1,8 @@
-// Passages of the same moving forces at several speeds, one in each lane of the processor's vectors. All runs look at
-// the same distances: what the modes leave out, which is taken as static, is then the same number in every lane.
+// Passages of the same moving forces at several speeds, one in each SIMD lane. All runs are sampled at the same
+// distances, so that the static correction is the same number in every lane.
 //
-// Responses are looked at in regular instants, and peaks between them found by parabolas. Where a force passes a break
-// of the influence lines, only those responses are looked at that have a kink there.
+// Responses are sampled at regular intervals, and peaks between samples are interpolated by parabolas. When a force
+// passes a break of the influence lines, only the responses with a kink there are sampled.
 #pragma once
 
 #include "modal_engine/moving_force_motion.hpp"
@@ -32,8 +32,8 @@ class MovingForceBatch : Lanes<W> {
   void run() {
     begin();
     for (long k = 1; any(runs_); ++k) {
-      if (k % instants_unasked == 0 && !task_.going(task_.whom)) return;
-      go_to_instant(static_cast<double>(k) * task_.ds);
+      if (k % instants_between_checks == 0 && !task_.proceed(task_.context)) return;
+      advance_to(static_cast<double>(k) * task_.ds);
     }
     for (int i = 0; i < 3 * probes_; ++i) {
       lanes(task_.peak)[i] = peak_[i];
@@ -42,32 +42,32 @@ class MovingForceBatch : Lanes<W> {
   }
 
  private:
-  // Of the largest so far: no vertex of a parabola whose middle point is less can be larger, as it lies above that by
-  // an eighth of the drop to the next point at most, and points a twentieth of a period apart do not drop by 16 %
-  // beside a peak.
+  // Of the largest magnitude so far. The vertex of a parabola exceeds the middle point by at most an eighth of the drop
+  // to the next point. For points a twentieth of a period apart the drop beside a peak is less than 16 %. Therefore a
+  // middle point below this limit cannot lead to a larger peak.
   static constexpr double near_largest = 0.98;
-  static constexpr double too_near = 1e-6;         // of the next distance: points that near do not make a parabola
-  static constexpr double same_end = 1.0 + 1e-12;  // distances that are one but for rounding
-  static constexpr long instants_unasked = 4096;   // between two questions whether to go on
+  static constexpr double least_gap = 1e-6;        // of the next distance: points closer than this define no parabola
+  static constexpr double same_end = 1.0 + 1e-12;  // equal distances except for rounding
+  static constexpr long instants_between_checks = 4096;  // between calls of `proceed`
 
   // --- memory ------------------------------------------------------------------------------------------------------
 
   void lay_out(double* work) {
-    const auto in_lanes = [&](long count) { return take_from<Lane>(work, used_, W, count); };
-    const auto numbers = [&](long count) { return take_from<double>(work, used_, W, count); };
+    const auto in_lanes = [&](long count) { return allocate_from<Lane>(work, used_, W, count); };
+    const auto numbers = [&](long count) { return allocate_from<double>(work, used_, W, count); };
     motion_.lay_out(work, used_);
     for (int k = 0; k < 3; ++k) {
       Instant& own = instants_[k];
-      seen_[k] = &own;
+      last_[k] = &own;
       Lane** const of_modes_then[] = {&own.q, &own.r, &own.a};
       for (Lane** then : of_modes_then) *then = in_lanes(modes_);
-      own.predicted = numbers(2L * probes_);
-      own.flagged = take_from<int>(work, used_, W, 3L * probes_);
+      own.static_part = numbers(2L * probes_);
+      own.flagged = allocate_from<int>(work, used_, W, 3L * probes_);
       own.value = in_lanes(3L * probes_);
     }
     Lane** const of_responses[] = {&peak_, &peak_place_, &limit_, &kink_value_};
     for (Lane** own : of_responses) *own = in_lanes(3L * probes_);
-    kink_look_ = take_from<long>(work, used_, W, 3L * probes_);
+    kink_sample_ = allocate_from<long>(work, used_, W, 3L * probes_);
     kink_place_ = numbers(3L * probes_);
     limit_alone_ = numbers(3L * probes_);
   }
@@ -82,13 +82,13 @@ class MovingForceBatch : Lanes<W> {
     for (int i = 0; i < 3 * probes_; ++i) {
       peak_[i] = peak_place_[i] = limit_[i] = Lane{};
       limit_alone_[i] = 0.0;
-      kink_look_[i] = -1;
+      kink_sample_[i] = -1;
     }
     motion_.begin();
-    look();
+    sample();
   }
 
-  void go_to_instant(double to) {
+  void advance_to(double to) {
     if (motion_.next_event() > to) {
       end_runs_until(to);
       motion_.move_regularly(to);
@@ -102,7 +102,7 @@ class MovingForceBatch : Lanes<W> {
       end_runs_until(to);
       motion_.move_to(to);
     }
-    look();
+    sample();
   }
 
   // --- events ------------------------------------------------------------------------------------------------------
@@ -110,33 +110,33 @@ class MovingForceBatch : Lanes<W> {
   void pass_event() {
     const ForceEvent event = task_.event[motion_.interval + 1];
     if (event == ForceEvent::all_kink || event == ForceEvent::all_jump) {
-      look();
+      sample();
       motion_.enter_next();
       if (event == ForceEvent::all_jump) {
-        known_from_ = looked_ + 1;
-        look();
+        smooth_from_ = samples_ + 1;
+        sample();
       }
-      known_from_ = looked_;
+      smooth_from_ = samples_;
       return;
     }
     const int first = task_.first_kink[motion_.interval + 1], last = task_.first_kink[motion_.interval + 2];
-    for (int k = first; k < last; ++k) see_before_kink(task_.kink[k]);
+    for (int k = first; k < last; ++k) sample_before_kink(task_.kink[k]);
     motion_.enter_next();
     for (int k = first; k < last; ++k) start_after_kink(task_.kink[k]);
   }
 
-  /// A response's curve ends here.
-  void see_before_kink(int i) {
-    const Lane value = response(i, fill(static_now(i)), motion_.q, motion_.r, motion_.a);
-    note(i, runs_, magnitude(value), fill(motion_.s));
-    see_between_last(i, runs_, fill(motion_.s), value);
+  /// Samples a response before its kink, at the end of a smooth curve.
+  void sample_before_kink(int i) {
+    const Lane value = response(i, fill(static_value(i)), motion_.q, motion_.r, motion_.a);
+    record_largest(i, runs_, magnitude(value), fill(motion_.s));
+    check_last_vertex(i, runs_, fill(motion_.s), value);
   }
 
-  /// Another one begins here: what was seen at the last instant does not belong to it.
+  /// Starts a new curve after the kink; earlier samples do not belong to it.
   void start_after_kink(int i) {
-    kink_value_[i] = response(i, fill(static_now(i)), motion_.q, motion_.r, motion_.a);
-    note(i, runs_, magnitude(kink_value_[i]), fill(motion_.s));
-    kink_look_[i] = looked_;
+    kink_value_[i] = response(i, fill(static_value(i)), motion_.q, motion_.r, motion_.a);
+    record_largest(i, runs_, magnitude(kink_value_[i]), fill(motion_.s));
+    kink_sample_[i] = samples_;
     kink_place_[i] = motion_.s;
   }
 
@@ -150,32 +150,32 @@ class MovingForceBatch : Lanes<W> {
       if (runs[l] != 0 && ends[l] < next_end_) next_end_ = ends[l];
   }
 
-  /// Looks at the end of the runs that end before the distance `to`, which lies in this interval.
+  /// Samples the runs that end before the distance `to`, which lies in this interval, at their ends.
   void end_runs_until(double to) {
     if (next_end_ > to * same_end) return;
     const Mask ending = runs_ & (end_ <= fill(to * same_end));
     const Lane at = ending ? end_ : fill(motion_.s);
     const Lane since = at - task_.start[motion_.interval];
-    motion_.move_apart(at);
+    motion_.move_lanes(at);
     for (int i = 0; i < 3 * probes_; ++i) {
-      Lane predicted{};
-      if (i < probes_ || i >= 2 * probes_) predicted = static_in_lanes(i, since);
-      const Lane value = response(i, predicted, motion_.q, motion_.r, motion_.a);
-      note(i, ending, magnitude(value), at);
-      see_between_last(i, ending, at, value);
+      Lane static_part{};
+      if (i < probes_ || i >= 2 * probes_) static_part = static_in_lanes(i, since);
+      const Lane value = response(i, static_part, motion_.q, motion_.r, motion_.a);
+      record_largest(i, ending, magnitude(value), at);
+      check_last_vertex(i, ending, at, value);
     }
     motion_.move_back();
     runs_ &= ~ending;
     find_next_end();
   }
 
-  // --- what is seen ------------------------------------------------------------------------------------------------
+  // --- samples -----------------------------------------------------------------------------------------------------
 
-  /// A response without the modes: the static correction, and the beam's own weight.
+  /// The part of a response without the modes: the static correction and the self-weight.
   const double* static_of(int i) const {
     return task_.coefficients + 4 * task_.channels * motion_.interval + modes_ + (i < probes_ ? i : i - probes_);
   }
-  double static_now(int i) const {
+  double static_value(int i) const {
     if (i >= probes_ && i < 2 * probes_) return 0.0;
     const double *c = static_of(i), d = motion_.s - task_.start[motion_.interval];
     const long k = task_.channels;
@@ -187,7 +187,7 @@ class MovingForceBatch : Lanes<W> {
     return task_.weight[i < probes_ ? i : i - probes_] + (c[0] + d * (c[k] + d * (c[2 * k] + d * c[3 * k])));
   }
 
-  /// A response with these coordinates, rates and accelerations of the modes.
+  /// A response for these coordinates, rates and accelerations of the modes.
   Lane response(int i, Lane value, const Lane* q, const Lane* r, const Lane* a) const {
     if (i < probes_) {
       for (int k = 0; k < modes_; ++k) value += task_.deflection[k * probes_ + i] * q[k];
@@ -204,27 +204,29 @@ class MovingForceBatch : Lanes<W> {
     return value;
   }
 
-  /// What is kept of an instant: the modes, the static corrections, and the responses that may be the largest.
+  /// A sample: the modes, the static corrections, and the responses that may be the largest.
   struct Instant {
     double place = 0.0;  // m travelled
     Lane *q = nullptr, *r = nullptr, *a = nullptr;
-    double* predicted = nullptr;
+    double* static_part = nullptr;
     int* flagged = nullptr;
-    Lane* value = nullptr;  // of these
+    Lane* value = nullptr;  // of the flagged responses
     int count = 0;
   };
   Lane response(int i, const Instant& then) const {
-    const double predicted = i < probes_ ? then.predicted[i] : i < 2 * probes_ ? 0.0 : then.predicted[i - probes_];
-    return response(i, fill(predicted), then.q, then.r, then.a);
+    const double static_part = i < probes_       ? then.static_part[i]
+                               : i < 2 * probes_ ? 0.0
+                                                 : then.static_part[i - probes_];
+    return response(i, fill(static_part), then.q, then.r, then.a);
   }
 
-  /// All responses at this distance.
-  void look() {
-    Instant* const oldest = seen_[0];
-    seen_[0] = seen_[1];
-    seen_[1] = seen_[2];
-    seen_[2] = oldest;
-    ++looked_;
+  /// Samples all responses at this distance.
+  void sample() {
+    Instant* const oldest = last_[0];
+    last_[0] = last_[1];
+    last_[1] = last_[2];
+    last_[2] = oldest;
+    ++samples_;
     Instant& now = *oldest;
     now.place = motion_.s;
     for (int i = 0; i < modes_; ++i) {
@@ -232,37 +234,37 @@ class MovingForceBatch : Lanes<W> {
       now.r[i] = motion_.r[i];
       now.a[i] = motion_.a[i];
     }
-    observe_statics(now.predicted);
+    evaluate_static_parts(now.static_part);
     now.count = 0;
     int p = 0;
     if (task_.runs == 1)
-      for (; p + in_a_row <= probes_; p += in_a_row) observe_row(p, now);
+      for (; p + in_a_row <= probes_; p += in_a_row) flag_row(p, now);
     else
-      for (; p + 4 <= probes_; p += 4) see<4>(p, now);
-    for (; p < probes_; ++p) see<1>(p, now);
-    for (int k = 0; k < now.count; ++k) note(now.flagged[k], runs_, magnitude(now.value[k]), fill(motion_.s));
-    if (looked_ - 2 < known_from_) return;
-    const Instant& last = *seen_[1];
-    for (int k = 0; k < last.count; ++k) observe_between(last.flagged[k], last.value[k]);
+      for (; p + 4 <= probes_; p += 4) flag_large<4>(p, now);
+    for (; p < probes_; ++p) flag_large<1>(p, now);
+    for (int k = 0; k < now.count; ++k) record_largest(now.flagged[k], runs_, magnitude(now.value[k]), fill(motion_.s));
+    if (samples_ - 2 < smooth_from_) return;
+    const Instant& last = *last_[1];
+    for (int k = 0; k < last.count; ++k) check_vertex(last.flagged[k], last.value[k]);
   }
 
-  void observe_statics(double* predicted) const {
+  void evaluate_static_parts(double* static_part) const {
     const double d = motion_.s - task_.start[motion_.interval];
     const long k = task_.channels;
     const double* c = task_.coefficients + 4 * k * motion_.interval + modes_;
     for (int i = 0; i < 2 * probes_; ++i)
-      predicted[i] = task_.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
+      static_part[i] = task_.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
   }
 
-  /// Flags those responses of N neighbouring probes that may be the largest.
+  /// Flags the responses of N neighbouring probes that may be the largest.
   template <int N>
-  void see(int p, Instant& now) const {
+  void flag_large(int p, Instant& now) const {
     Lane v[N], a[N], M[N];
 #pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
-      v[k] = fill(now.predicted[p + k]);
+      v[k] = fill(now.static_part[p + k]);
       a[k] = Lane{};
-      M[k] = fill(now.predicted[probes_ + p + k]);
+      M[k] = fill(now.static_part[probes_ + p + k]);
     }
     for (int i = 0; i < modes_; ++i) {
       const int at = i * probes_ + p;
@@ -301,11 +303,11 @@ class MovingForceBatch : Lanes<W> {
     now.count += exceeds(magnitude(value), limit_[i]) != 0 ? 1 : 0;
   }
 
-  /// As see() for a single run: here the lanes are neighbouring probes.
-  void observe_row(int p, Instant& now) const {
+  /// The same for a single run: here the lanes are neighbouring probes.
+  void flag_row(int p, Instant& now) const {
     using Row = Lanes<in_a_row>;
     const auto at = [](const double* numbers) { return *reinterpret_cast<const typename Row::Unaligned*>(numbers); };
-    typename Row::Lane v = at(now.predicted + p), a{}, M = at(now.predicted + probes_ + p);
+    typename Row::Lane v = at(now.static_part + p), a{}, M = at(now.static_part + probes_ + p);
     for (int i = 0; i < modes_; ++i) {
       const int k = i * probes_ + p;
       const double q = now.q[i][0], rate = now.r[i][0], acceleration = now.a[i][0];
@@ -326,7 +328,7 @@ class MovingForceBatch : Lanes<W> {
     }
   }
 
-  void note(int i, Mask where, Lane value, Lane at) {
+  void record_largest(int i, Mask where, Lane value, Lane at) {
     const Mask larger = where & (value > peak_[i]);
     peak_[i] = larger ? value : peak_[i];
     peak_place_[i] = larger ? at : peak_place_[i];
@@ -334,41 +336,41 @@ class MovingForceBatch : Lanes<W> {
     limit_alone_[i] = limit_[i][0];
   }
 
-  /// The last instant but one, where a response had this value, may be beside a peak.
-  void observe_between(int i, Lane middle) {
-    if (kink_look_[i] == looked_ - 1) return;
-    const Lane after = response(i, *seen_[2]);
+  /// Interpolates a peak near the second last sample, where the response has the value `middle`.
+  void check_vertex(int i, Lane middle) {
+    if (kink_sample_[i] == samples_ - 1) return;
+    const Lane after = response(i, *last_[2]);
     const Mask turns = runs_ & (magnitude(middle) > limit_[i]) & (magnitude(middle) > magnitude(after));
     if (!any(turns)) return;
-    const bool kink = kink_look_[i] == looked_ - 2;
-    record_vertex(i, turns, kink ? kink_place_[i] : seen_[0]->place, kink ? kink_value_[i] : response(i, *seen_[0]),
-                  seen_[1]->place, middle, fill(seen_[2]->place), after);
+    const bool kink = kink_sample_[i] == samples_ - 2;
+    record_vertex(i, turns, kink ? kink_place_[i] : last_[0]->place, kink ? kink_value_[i] : response(i, *last_[0]),
+                  last_[1]->place, middle, fill(last_[2]->place), after);
   }
 
-  /// The last instant may be, before a value further on.
-  void see_between_last(int i, Mask where, Lane at, Lane after) {
-    if (kink_look_[i] == looked_ || looked_ - 1 < known_from_) return;
-    const Lane middle = response(i, *seen_[2]);
+  /// Interpolates a peak near the last sample, before a later value.
+  void check_last_vertex(int i, Mask where, Lane at, Lane after) {
+    if (kink_sample_[i] == samples_ || samples_ - 1 < smooth_from_) return;
+    const Lane middle = response(i, *last_[2]);
     const Mask turns = where & (magnitude(middle) > limit_[i]) & (magnitude(middle) > magnitude(after));
     if (!any(turns)) return;
-    const bool kink = kink_look_[i] == looked_ - 1;
-    record_vertex(i, turns, kink ? kink_place_[i] : seen_[1]->place, kink ? kink_value_[i] : response(i, *seen_[1]),
-                  seen_[2]->place, middle, at, after);
+    const bool kink = kink_sample_[i] == samples_ - 1;
+    record_vertex(i, turns, kink ? kink_place_[i] : last_[1]->place, kink ? kink_value_[i] : response(i, *last_[1]),
+                  last_[2]->place, middle, at, after);
   }
 
-  /// The vertex of the parabola through three points, of whose magnitudes the middle one is the largest.
+  /// The vertex of the parabola through three points, of which the middle one has the largest magnitude.
   void record_vertex(int i, Mask where, double s0, Lane y0, double s1, Lane y1, Lane s2, Lane y2) {
     const Lane sign = y1 < Lane{} ? fill(-1.0) : fill(1.0);
     y0 *= sign;
     y1 *= sign;
     y2 *= sign;
     const Lane gap = fill(s1 - s0), next = s2 - s1;
-    where &= (y1 >= y0) & (gap > too_near * next) & (next > too_near * gap);
+    where &= (y1 >= y0) & (gap > least_gap * next) & (next > least_gap * gap);
     if (!any(where)) return;
     const Lane before = (y1 - y0) / gap, after = (y2 - y1) / next;
     const Lane bend = (after - before) / (gap + next);
     const Lane at = 0.5 * (s0 + s1) - 0.5 * before / bend;
-    note(i, where, y1 + (at - s1) * (before + bend * (at - s0)), at);
+    record_largest(i, where, y1 + (at - s1) * (before + bend * (at - s0)), at);
   }
 
   const ForceTask& task_;
@@ -376,16 +378,17 @@ class MovingForceBatch : Lanes<W> {
   ForcedModes<W> motion_;
   long used_ = 0;
   Lane speed_{}, end_{};
-  Mask runs_{};                          // which have not ended
-  double next_end_ = 0.0;                // m: of these
-  Instant instants_[3], *seen_[3] = {};  // the last ones, in turn
-  long looked_ = 0, known_from_ = 1;     // instants so far; the first without a kink of all responses since
-  // Of each response: its largest magnitude so far, m travelled then, what may be larger, the same of the first lane.
+  Mask runs_{};                          // runs that have not ended
+  double next_end_ = 0.0;                // m: of these runs
+  Instant instants_[3], *last_[3] = {};  // the last samples, in cyclic order
+  long samples_ = 0, smooth_from_ = 1;   // number of samples; first one after a kink of all responses
+  // For each response: its largest magnitude so far, the distance of it in m, the limit for larger values, and the
+  // limit in the first lane.
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
   double* limit_alone_ = nullptr;
-  long* kink_look_ = nullptr;     // of each response: the instant before its last kink
-  double* kink_place_ = nullptr;  // m: where that was
-  Lane* kink_value_ = nullptr;    // just after it
+  long* kink_sample_ = nullptr;   // for each response: the sample before its last kink
+  double* kink_place_ = nullptr;  // m: position of the kink
+  Lane* kink_value_ = nullptr;    // value just after the kink
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The modes' motion under the same moving forces at several speeds, one in each lane of the processor's vectors. All
-// runs step by distance: the modal forces are then the same number in every lane.
+// The modal motion under the same moving forces at several speeds, one in each SIMD lane. All runs have the same steps
+// in distance, so that the modal forces are the same number in every lane.
 //
 //   q'' + 2 sigma q' + omega^2 q = g,    g a cubic polynomial of the distance between two events
 //
@@ -9,8 +9,8 @@
 //   q  (t) = q  + t    q'  + Q_0 q'' + Q_1 j   + Q_2 g'' + Q_3 g'''       j = g' - omega^2 q'
 //   q' (t) = q' + O(t) q'' + Q_0 j   + Q_1 g'' + Q_2 g'''
 //
-// Q_3 and Q_2 are power series, which also hold for overdamped modes; the others follow by
-// Q_(k-2) = t^k/k! - 2 sigma Q_(k-1) - omega^2 Q_k.
+// Q_3 and Q_2 are power series, which are valid for overdamped modes too; the others follow by Q_(k-2) = t^k/k! - 2
+// sigma Q_(k-1) - omega^2 Q_k.
 #pragma once
 
 #include "engine/lane.hpp"
@@ -19,10 +19,10 @@
 namespace traverse::modal_engine {
 namespace {
 
+using engine::allocate_from;
 using engine::Lanes;
-using engine::run_as_wide;
+using engine::run_with_width;
 using engine::size_of_work;
-using engine::take_from;
 
 template <int W>
 class ForcedModes : Lanes<W> {
@@ -35,11 +35,11 @@ class ForcedModes : Lanes<W> {
   explicit ForcedModes(const ForceTask& task) : task_(task), modes_(task.modes) {}
 
   void lay_out(double* work, long& used) {
-    Lane** const of_modes[] = {&q, &r, &a, &q_kept_, &r_kept_, &a_kept_};
-    for (Lane** own : of_modes) *own = take_from<Lane>(work, used, W, modes_);
-    regular_ = take_from<Advance>(work, used, W, modes_);
-    series_ = take_from<Series>(work, used, W, modes_);
-    for (double*& power : g_) power = take_from<double>(work, used, W, modes_);
+    Lane** const of_modes[] = {&q, &r, &a, &q_stored_, &r_stored_, &a_stored_};
+    for (Lane** own : of_modes) *own = allocate_from<Lane>(work, used, W, modes_);
+    regular_ = allocate_from<Advance>(work, used, W, modes_);
+    series_ = allocate_from<Series>(work, used, W, modes_);
+    for (double*& power : g_) power = allocate_from<double>(work, used, W, modes_);
   }
 
   void begin() {
@@ -54,10 +54,10 @@ class ForcedModes : Lanes<W> {
     place(0.0);
   }
 
-  /// m travelled; infinite after the last one.
+  /// m travelled at the next event; infinite after the last one.
   double next_event() const { return interval + 1 < task_.intervals ? task_.start[interval + 1] : 1e300; }
 
-  /// At an event: the modal forces become those after it.
+  /// At an event: changes the modal forces to those after it.
   void enter_next() {
     ++interval;
     if (interval + 1 < task_.intervals) {
@@ -67,7 +67,7 @@ class ForcedModes : Lanes<W> {
     place(s);
   }
 
-  /// From an instant to the next one, without an event between.
+  /// Moves from a sample to the next one, without an event between them.
   void move_regularly(double to) {
     const double from = s;
     for (double k = 1.0; k <= parts_; k += 1.0) {
@@ -76,7 +76,7 @@ class ForcedModes : Lanes<W> {
     }
   }
 
-  /// To a distance at most an instant away, at the next event at the latest.
+  /// Moves to a distance at most one sampling interval away, not beyond the next event.
   void move_to(double to) {
     const double from = s;
     const Lane part = fill((to - from) / parts_) / speed_;
@@ -86,13 +86,13 @@ class ForcedModes : Lanes<W> {
     }
   }
 
-  /// So does every lane to a distance of its own; move_back() undoes it.
-  void move_apart(Lane to) {
+  /// Moves every lane to a separate distance; move_back() reverses this.
+  void move_lanes(Lane to) {
     const Lane step = (to - s) / parts_, part = step / speed_;
     for (int i = 0; i < modes_; ++i) {
-      q_kept_[i] = q[i];
-      r_kept_[i] = r[i];
-      a_kept_[i] = a[i];
+      q_stored_[i] = q[i];
+      r_stored_[i] = r[i];
+      a_stored_[i] = a[i];
       const Advance by = advance_by(i, part);
       const double* c = task_.coefficients + 4 * task_.channels * interval + i;
       const double c0 = c[0], c1 = c[task_.channels], c2 = c[2 * task_.channels], c3 = c[3 * task_.channels];
@@ -106,9 +106,9 @@ class ForcedModes : Lanes<W> {
   }
   void move_back() {
     for (int i = 0; i < modes_; ++i) {
-      q[i] = q_kept_[i];
-      r[i] = r_kept_[i];
-      a[i] = a_kept_[i];
+      q[i] = q_stored_[i];
+      r[i] = r_stored_[i];
+      a[i] = a_stored_[i];
     }
   }
 
@@ -117,20 +117,21 @@ class ForcedModes : Lanes<W> {
   Lane *q = nullptr, *r = nullptr, *a = nullptr;  // of the modes: coordinates, rates, accelerations
 
  private:
-  static constexpr double most_phase = 2.0;   // of a part of an instant: series are short up to there
+  static constexpr double most_phase = 2.0;   // of a part of a sampling interval: up to this phase series are short
   static constexpr int most_terms = 32;       // of a series
-  static constexpr double last_term = 1e-19;  // of a series, over the first
+  static constexpr double last_term = 1e-19;  // of a series, over the first term
 
-  /// What one step adds to a mode's q and q', by q', q'', j, and the second and third powers of the distance in g.
+  /// The coefficients of one step for a mode's q and q': of q', q'', j, and the second and third powers of the distance
+  /// in g.
   struct Advance {
     Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
   };
   struct Series {
     int terms;
-    double by_2[most_terms], by_3[most_terms];  // of Q_2 and Q_3
+    double by_2[most_terms], by_3[most_terms];  // coefficients of Q_2 and Q_3
   };
 
-  /// As many coefficients as the longest part of an instant needs; and how many parts it has.
+  /// Computes the series' coefficients for the longest part of a sampling interval, and the number of parts.
   void set_series() {
     for (int i = 0; i < modes_; ++i) {
       const double least = __builtin_ceil(rate_of(i) * task_.instant / most_phase);
@@ -155,7 +156,7 @@ class ForcedModes : Lanes<W> {
     }
   }
 
-  /// How fast a mode changes, 1/s.
+  /// The rate of a mode's fastest change, 1/s.
   double rate_of(int i) const {
     const double sigma = 0.5 * task_.damping[i], square = sigma * sigma - task_.omega2[i];
     return square > 0.0 ? sigma + __builtin_sqrt(square) : __builtin_sqrt(task_.omega2[i]);
@@ -179,7 +180,8 @@ class ForcedModes : Lanes<W> {
     return {time, impulse, Q0, Q1, by_2 * Q2, by_3 * Q3, by_2 * Q1, by_3 * Q2};
   }
 
-  /// With the powers of the distance in g from where the step begins; of one lane's distance, or of all.
+  /// One step of a mode; first, second, third: coefficients of the powers of the distance in g at its start, for all
+  /// lanes or one lane.
   template <class Number>
   void move(int i, const Advance& by, Number first, Number second, double third) {
     const Lane rate = r[i], acceleration = a[i], jerk = first * speed_ - task_.omega2[i] * rate;
@@ -187,10 +189,10 @@ class ForcedModes : Lanes<W> {
     r[i] = rate + (by.Q0 * jerk + (by.rate_by_2 * second + by.rate_by_3 * third)) + by.impulse * acceleration;
   }
 
-  /// Where the k-th of the parts of a step ends.
+  /// The end of the k-th part of a step.
   double part_of(double from, double to, double k) const { return k < parts_ ? from + (to - from) * (k / parts_) : to; }
 
-  /// At a distance within this interval: the modal forces, and the accelerations by them.
+  /// Sets the distance, within this interval: modal forces and accelerations.
   void place(double at) {
     s = at;
     const double d = s - task_.start[interval];
@@ -208,11 +210,11 @@ class ForcedModes : Lanes<W> {
   const ForceTask& task_;
   const int modes_;
   Lane speed_{};
-  double parts_ = 1.0;  // of an instant
-  Lane *q_kept_ = nullptr, *r_kept_ = nullptr, *a_kept_ = nullptr;
-  Advance* regular_ = nullptr;  // from instant to instant
+  double parts_ = 1.0;  // number of parts of a sampling interval
+  Lane *q_stored_ = nullptr, *r_stored_ = nullptr, *a_stored_ = nullptr;
+  Advance* regular_ = nullptr;  // for one sampling interval
   Series* series_ = nullptr;
-  double* g_[4] = {};  // of the modes: coefficients of g by powers of the distance from here; the force itself is in a
+  double* g_[4] = {};  // of the modes: coefficients of g by powers of the distance from here
 };
 
 }  // namespace

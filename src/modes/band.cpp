@@ -11,11 +11,12 @@ namespace traverse::modes {
 
 namespace {
 
-/// The negative pivots. `Width` is a constant for the common beams: count_below runs many times over long ones.
+/// The number of negative pivots. `Width` is a constant for the common beams, because count_below runs often over long
+/// beams.
 template <class Width>
 int negative_pivots(const Band& K, const Band& M, double sigma, Width width) {
   const int w = width;
-  // The last rows of L and their pivots, in rings whose lengths are a power of two.
+  // The last rows of L and their pivots, in ring buffers whose lengths are a power of two.
   const unsigned ring = std::bit_ceil(static_cast<unsigned>(w) + 1), mask = ring - 1;
   const auto in_ring = [mask](int i) { return static_cast<unsigned>(i) & mask; };
   std::vector<double> L(ring * ring), d(ring);
@@ -74,7 +75,7 @@ Factor::Factor(const Band& K) : rows_(K) {
   for (int i = 0; i < K.size(); ++i) {
     const int first = std::max(0, i - w);
     for (int j = first; j < i; ++j) {
-      double scaled = rows_.at(i, j);  // L_ij d_j, of which rows_.at(i, p), p < j, are ready
+      double scaled = rows_.at(i, j);  // L_ij d_j, for which rows_.at(i, p), p < j, are already computed
       for (int p = std::max(first, j - w); p < j; ++p) scaled -= rows_.at(i, p) * rows_.at(j, p);
       rows_.at(i, j) = scaled;
     }
@@ -105,7 +106,7 @@ double highest_quotient(const Band& K, const Band& M) {
 }
 
 Bracket bracket_lowest(const Band& K, const Band& M) {
-  // The lowest eigenvalue is at most Rayleigh's quotient of a unit vector.
+  // Rayleigh's quotient of a unit vector is an upper bound of the lowest eigenvalue.
   double high = std::numeric_limits<double>::max();
   for (int i = 0; i < K.size(); ++i) high = std::min(high, K.at(i, i) / M.at(i, i));
   high *= 1.0 + 1e-6;
@@ -118,21 +119,21 @@ Bracket bracket_lowest(const Band& K, const Band& M) {
   return {};
 }
 
-Bracket narrow(Bracket b, int most, double narrowest, const std::function<int(double)>& below) {
+Bracket narrow(Bracket b, int max_count, double min_width, const std::function<int(double)>& below) {
   int inside = below(b.high);
-  while (b.high > b.low * (1.0 + narrowest) && (b.high > 1.05 * b.low || inside > most)) {
+  while (b.high > b.low * (1.0 + min_width) && (b.high > 1.05 * b.low || inside > max_count)) {
     const double middle = std::sqrt(b.low) * std::sqrt(b.high);
-    const int there = below(middle);
-    if (there <= 0) {
+    const int count = below(middle);
+    if (count <= 0) {
       b.low = middle;
     } else {
       b.high = middle;
-      inside = there;
+      inside = count;
     }
   }
-  // Low close to the lowest one, as seen from the others in the bracket.
+  // Moves low close to the lowest eigenvalue, relative to the distances of the others in the bracket.
   double lowest = b.high;
-  while (inside > 1 && lowest - b.low > std::max(0.1 * (b.high - b.low), narrowest * b.low)) {
+  while (inside > 1 && lowest - b.low > std::max(0.1 * (b.high - b.low), min_width * b.low)) {
     const double middle = 0.5 * (b.low + lowest);
     (below(middle) <= 0 ? b.low : lowest) = middle;
   }

@@ -1,4 +1,4 @@
-// Symmetric matrices of one connected part of a beam, narrow and held on every rank.
+// Symmetric matrices of one connected part of a beam, narrow and stored on every rank.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class Band {
 /// y += factor A x.
 void add_product(const Band& A, double factor, const double* x, double* y);
 
-/// How many eigenvalues of K x = lambda M x lie below `sigma`: the negative pivots of K - sigma M = L D L^T
+/// The number of eigenvalues of K x = lambda M x below `sigma`: the negative pivots of K - sigma M = L D L^T
 /// (Sylvester's law of inertia). K and M have the same width.
 int count_below(const Band& K, const Band& M, double sigma);
 
@@ -42,29 +42,29 @@ int count_below(const Band& K, const Band& M, double sigma);
 class Factor {
  public:
   explicit Factor(const Band& K);
-  /// False where a pivot was not positive: K is singular, or so close to it that rounding decides.
+  /// False if a pivot is not positive: K is singular to rounding.
   bool positive() const { return positive_; }
   /// x becomes K^-1 x.
   void solve(double* x) const;
 
  private:
-  Band rows_;  // of L, the pivots in place of its ones
+  Band rows_;  // of L, with the pivots in place of its unit diagonal
   bool positive_ = true;
 };
 
-/// The largest K_ii/M_ii: the size of the highest eigenvalues, and times the machine's epsilon that of rounding.
+/// The largest K_ii/M_ii: the magnitude of the highest eigenvalues; times the machine epsilon that of rounding errors.
 double highest_quotient(const Band& K, const Band& M);
 
-/// An interval (low, high] that holds the lowest of the eigenvalues that are looked for.
+/// An interval (low, high] that contains the lowest of the wanted eigenvalues.
 struct Bracket {
   double low = 0.0, high = 0.0;
 };
-/// Narrows a bracket with 0 < low: until it is 5 % wide and holds no more than `most` of them, or it is as narrow as
-/// `narrowest`, relatively; then low moves up to the lowest one. below(sigma) says how many of those looked for lie
-/// below sigma: none below low.
-Bracket narrow(Bracket bracket, int most, double narrowest, const std::function<int(double)>& below);
+/// Narrows a bracket with 0 < low until it is 5 % wide and contains at most `max_count` eigenvalues, or until its
+/// relative width is `min_width`. Then low is moved up close to the lowest eigenvalue. below(sigma) returns the number
+/// of wanted eigenvalues below sigma; below(low) is 0.
+Bracket narrow(Bracket bracket, int max_count, double min_width, const std::function<int(double)>& below);
 
-/// A bracket of the lowest eigenvalue, within a factor of 4; {0, 0} when K is too close to singular to say.
+/// A bracket of the lowest eigenvalue, within a factor of 4; {0, 0} if K is singular to rounding.
 Bracket bracket_lowest(const Band& K, const Band& M);
 
 }  // namespace traverse::modes

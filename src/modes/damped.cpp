@@ -1,5 +1,5 @@
-// Damped modes of the whole beam from those of its segments: with proportional damping from the natural modes, by
-// lambda^2 + (a + b omega^2) lambda + omega^2 = 0, else from the quadratic eigenvalue problem.
+// Damped modes of the whole beam from those of its segments: for proportional damping from the natural modes, by
+// lambda^2 + (a + b omega^2) lambda + omega^2 = 0, otherwise from the quadratic eigenvalue problem.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,24 +23,25 @@ struct DampedMode {
   std::vector<Complex> shape;  // of the segment's unknowns
 };
 
-/// a and b of the segment's C = a M + b K, where it is that: without dampers, or with a bed like its mass.
+/// a and b of the segment's C = a M + b K, if C has this form: without dampers, or with dampers proportional to the
+/// mass.
 std::optional<beam::Rayleigh> proportional(const Segment& s, const beam::Rayleigh& ab) {
-  const double more = s.D.at(0, 0) / s.M.at(0, 0);
+  const double extra = s.D.at(0, 0) / s.M.at(0, 0);
   for (int i = 0; i < s.size(); ++i) {
-    if ((s.D.at(i, i) != 0.0) != (more != 0.0)) return std::nullopt;
+    if ((s.D.at(i, i) != 0.0) != (extra != 0.0)) return std::nullopt;
     for (int j = std::max(0, i - s.D.width()); j <= i; ++j) {
-      const double D = s.D.at(i, j), from_mass = more * s.M.at(i, j);
-      // D has the rounding of the element matrices, and that of C.
+      const double D = s.D.at(i, j), from_mass = extra * s.M.at(i, j);
+      // D contains the rounding errors of the element matrices and of C.
       const double rounding = 1e-13 * (std::abs(D) + std::abs(from_mass)) +
                               16.0 * std::numeric_limits<double>::epsilon() * std::abs(ab.b * s.K.at(i, j));
       if (std::abs(D - from_mass) > rounding) return std::nullopt;
     }
   }
-  return beam::Rayleigh{ab.a + more, ab.b};
+  return beam::Rayleigh{ab.a + extra, ab.b};
 }
 
-/// Roots of lambda^2 + (a + b omega^2) lambda + omega^2 = 0: the one with Im > 0 of a pair, or both real ones. A rigid
-/// motion has 0 and, where it is damped, -a.
+/// Roots of lambda^2 + (a + b omega^2) lambda + omega^2 = 0: of a complex pair the one with Im > 0, otherwise both real
+/// roots. A rigid motion has the root 0 and, if it is damped, -a.
 std::vector<Complex> roots(double omega, const beam::Rayleigh& ab) {
   const double half = 0.5 * (ab.a + ab.b * omega * omega);
   if (omega == 0.0) {
@@ -48,17 +49,17 @@ std::vector<Complex> roots(double omega, const beam::Rayleigh& ab) {
     return {0.0, -ab.a};
   }
   if (std::abs(half) < omega) return {Complex(-half, std::sqrt((omega - half) * (omega + half)))};
-  const double far = half + std::copysign(std::sqrt((half - omega) * (half + omega)), half);
-  return {-omega * (omega / far), -far};
+  const double larger = half + std::copysign(std::sqrt((half - omega) * (half + omega)), half);
+  return {-omega * (omega / larger), -larger};
 }
 
 /// The modes of one segment.
 std::vector<DampedPair> damped_modes_of(const Segment& s, const beam::Rayleigh& ab, int count) {
-  const auto own = proportional(s, ab);
-  if (!own) return lowest_damped(s, ab, count);
+  const auto proportional_ab = proportional(s, ab);
+  if (!proportional_ab) return lowest_damped(s, ab, count);
   std::vector<DampedPair> modes;
   for (const Eigenpair& natural : lowest_modes(s, count)) {
-    for (const Complex lambda : roots(natural.omega, *own)) {
+    for (const Complex lambda : roots(natural.omega, *proportional_ab)) {
       modes.push_back({lambda, {natural.shape.begin(), natural.shape.end()}});
     }
   }
@@ -68,8 +69,8 @@ std::vector<DampedPair> damped_modes_of(const Segment& s, const beam::Rayleigh& 
 std::vector<DampedMode> lowest_damped(const std::vector<Segment>& segments, const beam::Rayleigh& ab, int count) {
   std::vector<DampedMode> modes;
   for (const Segment& s : segments) {
-    const int equal = static_cast<int>(s.offsets.size());
-    for (const DampedPair& pair : damped_modes_of(s, ab, (count + equal - 1) / equal)) {
+    const int copies = static_cast<int>(s.offsets.size());
+    for (const DampedPair& pair : damped_modes_of(s, ab, (count + copies - 1) / copies)) {
       for (int offset : s.offsets) modes.push_back({pair.lambda, &s, offset, pair.shape});
     }
   }

@@ -18,7 +18,7 @@ namespace {
 using base::check;
 
 constexpr double tolerance = 1e-12;  // of SLEPc, relative to the inverted eigenvalue
-constexpr double resolution = 1e-9;  // brackets of eigenvalues are not made narrower, relatively
+constexpr double resolution = 1e-9;  // smallest relative width of brackets of eigenvalues
 
 base::Handle<Mat> matrix(const Band& band) {
   const PetscInt n = band.size();
@@ -40,15 +40,16 @@ base::Handle<Mat> matrix(const Band& band) {
   return m;
 }
 
-/// From where to look when there are rigid motions, or nearly so: from below zero. The eigenvalues of a beam spread
-/// with the fourth power of the number of its elements, those of a bar with the second.
+/// A shift below zero for a segment with rigid motions, or nearly so. The ratio of the largest to the lowest eigenvalue
+/// of a beam grows with the fourth power of the number of its elements, that of a bar with the second.
 double shift_below_zero(const Segment& s) {
   const double elements = std::max(1.0, static_cast<double>(s.nodes.back() - s.nodes.front()));
   return -highest_quotient(s.K, s.M) / std::pow(elements, s.axial ? 2.0 : 4.0);
 }
 
-/// The eigenvalues of a beam spread with the fourth power of the number of its elements. The lowest one must not be
-/// below the rounding of the highest, but where next to nothing holds the beam.
+/// Checks that the lowest eigenvalue is not below the rounding error of the highest one. The ratio of both grows with
+/// the fourth power of the number of a beam's elements. With few elements such an eigenvalue is that of a very soft
+/// support.
 void check_rounding(const Segment& s, const Bracket& lowest) {
   const double rounding = std::numeric_limits<double>::epsilon() * highest_quotient(s.K, s.M);
   const double elements = s.nodes.back() - s.nodes.front();
@@ -60,7 +61,7 @@ void check_rounding(const Segment& s, const Bracket& lowest) {
         elements));
 }
 
-/// Next to the lowest eigenvalue of a bracket, from below, at a distance like that of the others in it.
+/// A shift below the lowest eigenvalue of a bracket, at a distance similar to that of the others in the bracket.
 double shift_below(const Bracket& b) { return b.low - 0.2 * (b.high - b.low); }
 
 Eigenpair pair_of(EPS eps, Mat K, PetscInt i, double (*eigenvalue)(double, double), double shift) {
@@ -77,8 +78,8 @@ Eigenpair pair_of(EPS eps, Mat K, PetscInt i, double (*eigenvalue)(double, doubl
   return pair;
 }
 
-/// All elastic modes, by LAPACK. The pencil is turned round, M x = mu (K - shift M) x, so that the lowest
-/// frequencies, not the highest, are the accurate ones.
+/// All elastic modes, by LAPACK. The inverted problem M x = mu (K - shift M) x makes the lowest frequencies, not the
+/// highest, the accurate ones.
 std::vector<Eigenpair> all_elastic(const Segment& s, double shift) {
   const base::Handle<Mat> shifted = matrix(s.K), M = matrix(s.M);
   check(MatAXPY(shifted, -shift, M, SAME_NONZERO_PATTERN));
@@ -90,7 +91,7 @@ std::vector<Eigenpair> all_elastic(const Segment& s, double shift) {
   check(EPSSetWhichEigenpairs(eps, EPS_LARGEST_REAL));
   check(EPSSolve(eps));
   std::vector<Eigenpair> modes;
-  for (auto i = static_cast<PetscInt>(s.rigid.size()); i < s.size(); ++i) {  // the rigid ones come first
+  for (auto i = static_cast<PetscInt>(s.rigid.size()); i < s.size(); ++i) {  // rigid modes are the first ones
     modes.push_back(pair_of(
         eps, M, i, [](double mu, double below) { return below + 1.0 / mu; }, shift));
   }
@@ -98,20 +99,20 @@ std::vector<Eigenpair> all_elastic(const Segment& s, double shift) {
   return modes;
 }
 
-/// Krylov-Schur, for a few of many.
+/// Krylov-Schur solver for a few of many modes.
 class Solver {
  public:
   explicit Solver(const Segment& segment) : segment_(segment), K_(matrix(segment.K)), M_(matrix(segment.M)) {
     for (const auto& motion : segment_.rigid) known_.push_back(vector(motion));
   }
 
-  /// The `count` modes nearest to the shift, or a few more, other than the rigid ones and those found before.
+  /// Computes the `count` modes nearest to the shift, or a few more, without the rigid ones and those found before.
   void find(double shift, int count) {
-    const int left = segment_.size() - static_cast<int>(known_.size());
-    count = std::min(count, left - 1);
+    const int remaining = segment_.size() - static_cast<int>(known_.size());
+    count = std::min(count, remaining - 1);
     if (count <= 0) return;
     base::Handle<EPS> eps;
-    set_up(eps, shift, count, std::min(left, std::max(2 * count, count + 15)));
+    set_up(eps, shift, count, std::min(remaining, std::max(2 * count, count + 15)));
     check(EPSSolve(eps));
     PetscInt converged = 0;
     check(EPSGetConverged(eps, &converged));
@@ -128,7 +129,7 @@ class Solver {
   }
 
   const std::vector<Eigenpair>& found() const { return found_; }
-  /// How many of them have omega^2 below `limit`.
+  /// Number of found modes with omega^2 below `limit`.
   int found_below(double limit) const {
     return static_cast<int>(
         std::count_if(found_.begin(), found_.end(), [&](const auto& m) { return m.omega * m.omega < limit; }));
@@ -154,8 +155,8 @@ class Solver {
     check(KSPSetType(ksp, KSPPREONLY));
     check(KSPGetPC(ksp, &pc));
     check(PCSetType(pc, PCLU));
-    check(PCFactorSetMatOrderingType(pc, MATORDERINGNATURAL));            // a band: no fill beyond it
-    check(PCFactorSetZeroPivot(pc, std::numeric_limits<double>::min()));  // pivots carry units: 1e-14 may be all right
+    check(PCFactorSetMatOrderingType(pc, MATORDERINGNATURAL));            // no fill outside the band
+    check(PCFactorSetZeroPivot(pc, std::numeric_limits<double>::min()));  // pivots have units: 1e-14 may be valid
     if (!known_.empty()) {
       std::vector<Vec> raw(known_.begin(), known_.end());
       check(EPSSetDeflationSpace(eps, static_cast<PetscInt>(raw.size()), raw.data()));
@@ -171,23 +172,24 @@ class Solver {
   std::vector<Eigenpair> found_;
 };
 
-/// The lowest modes of a long chain: a few at a time, each time with the shift next to the lowest one that is still
-/// unknown. Counting tells where that is. So frequencies that crowd cost little, and copies of a repeated one, which
-/// an iteration that starts from one vector may not see, are not missed.
-class Hunt {
+/// Computes the lowest modes of a long chain, a few at a time, each time with the shift next to the lowest missing
+/// mode, which is located by counting. Clusters of frequencies therefore cost little, and copies of a repeated
+/// frequency, which an iteration from one start vector may miss, are found.
+class ModeSearch {
  public:
-  explicit Hunt(const Segment& s) : s_(s), solver_(s), highest_(highest_quotient(s.K, s.M)) {}
+  explicit ModeSearch(const Segment& s) : s_(s), solver_(s), highest_(highest_quotient(s.K, s.M)) {}
 
   /// At least `count` elastic modes.
   std::vector<Eigenpair> lowest(int count) {
     start(count);
-    while (const double high = unknown_below(count)) {
-      const Bracket b = narrow({floor_, high}, at_once, resolution, [this](double sigma) { return unknown(sigma); });
+    while (const double high = bound_of_missing(count)) {
+      const Bracket b = narrow({lower_limit_, high}, modes_per_solve, resolution,
+                               [this](double sigma) { return missing_below(sigma); });
       const double edge = b.high * (1.0 + tolerance_at(b.high));
       const int before = solver_.found_below(edge);
-      solver_.find(shift_below(b), std::min(sought(b, count), 4 * at_once));
-      // Nothing there after all: the count was off by rounding.
-      if (solver_.found_below(edge) == before) floor_ = edge;
+      solver_.find(shift_below(b), std::min(modes_to_solve(b, count), 4 * modes_per_solve));
+      // No mode was found: the count was wrong because of rounding.
+      if (solver_.found_below(edge) == before) lower_limit_ = edge;
     }
     if (static_cast<int>(solver_.found().size()) < count) {
       throw SolverError(
@@ -197,8 +199,9 @@ class Hunt {
   }
 
  private:
-  static constexpr int at_once = 16;
-  static constexpr double crowded = 1.01;  // high over low of a bracket, beside which all others are far away
+  static constexpr int modes_per_solve = 16;
+  static constexpr double narrow_bracket =
+      1.01;  // high over low of a narrow bracket, from which all other eigenvalues are far away
 
   void start(int count) {
     Bracket b;
@@ -207,42 +210,44 @@ class Hunt {
       check_rounding(s_, b);
     }
     if (b.low > 0.0) {
-      // Two at least: a free beam on a bed has one frequency twice, and no bracket is narrow enough to part them.
-      b = narrow(b, std::clamp(count, 2, at_once), resolution, [this](double sigma) { return unknown(sigma); });
-      floor_ = b.low;
-      solver_.find(shift_below(b), std::min(sought(b, count), at_once));
+      // At least two: a free beam on a bed has a double frequency, which no bracket can separate.
+      b = narrow(b, std::clamp(count, 2, modes_per_solve), resolution,
+                 [this](double sigma) { return missing_below(sigma); });
+      lower_limit_ = b.low;
+      solver_.find(shift_below(b), std::min(modes_to_solve(b, count), modes_per_solve));
     } else {
       const double shift = shift_below_zero(s_);
-      floor_ = -shift * 1e-10;
-      solver_.find(shift, std::min(count, at_once));
+      lower_limit_ = -shift * 1e-10;
+      solver_.find(shift, std::min(count, modes_per_solve));
     }
   }
 
-  /// How many to look for next to a bracket: what is in it, and of the `count` what will be wanted after that.
-  int sought(const Bracket& b, int count) const {
-    const int inside = std::max(unknown(b.high), 1), missing = count - static_cast<int>(solver_.found().size());
-    return b.high < crowded * b.low ? inside : std::max(inside, std::min(missing, at_once));
+  /// Number of modes to compute next to a bracket: those in it, or those that are missing of `count`.
+  int modes_to_solve(const Bracket& b, int count) const {
+    const int inside = std::max(missing_below(b.high), 1), missing = count - static_cast<int>(solver_.found().size());
+    return b.high < narrow_bracket * b.low ? inside : std::max(inside, std::min(missing, modes_per_solve));
   }
 
-  /// Relative width within which a count and a computed eigenvalue may disagree by rounding.
+  /// Relative width within which a count and a computed eigenvalue may differ by rounding.
   double tolerance_at(double sigma) const { return std::clamp(1e-14 * highest_ / sigma, resolution, 1e-4); }
 
-  /// How many eigenvalues below sigma have not been found.
-  int unknown(double sigma) const {
+  /// Number of eigenvalues below sigma that have not been found.
+  int missing_below(double sigma) const {
     return count_below(s_.K, s_.M, sigma) - static_cast<int>(s_.rigid.size()) -
            solver_.found_below(sigma * (1.0 + tolerance_at(sigma)));
   }
 
-  /// Zero when the `count` lowest are known, else a bound with something unknown below it and above the floor.
-  double unknown_below(int count) const {
+  /// Zero if the `count` lowest modes are known; otherwise a bound with a missing mode below it and above the lower
+  /// limit.
+  double bound_of_missing(int count) const {
     const auto& found = solver_.found();
     if (static_cast<int>(found.size()) >= count) {
       const double last = std::pow(found[static_cast<std::size_t>(count - 1)].omega, 2);
       const double limit = last * (1.0 - 2.0 * tolerance_at(last));
-      return limit > floor_ && unknown(limit) > 0 ? limit : 0.0;
+      return limit > lower_limit_ && missing_below(limit) > 0 ? limit : 0.0;
     }
-    double high = std::max(2.0 * floor_, found.empty() ? 0.0 : std::pow(found.back().omega, 2));
-    while (unknown(high) <= 0) {
+    double high = std::max(2.0 * lower_limit_, found.empty() ? 0.0 : std::pow(found.back().omega, 2));
+    while (missing_below(high) <= 0) {
       high *= 1.1;
       if (high > 10.0 * highest_) return 0.0;
     }
@@ -252,10 +257,10 @@ class Hunt {
   const Segment& s_;
   Solver solver_;
   double highest_ = 0.0;
-  double floor_ = 0.0;  // nothing unknown lies below
+  double lower_limit_ = 0.0;  // all eigenvalues below are known
 };
 
-std::vector<Eigenpair> all(const Segment& s) {
+std::vector<Eigenpair> all_modes(const Segment& s) {
   Bracket b;
   if (s.rigid.empty()) b = bracket_lowest(s.K, s.M);
   return all_elastic(s, b.low > 0.0 ? b.low : shift_below_zero(s));
@@ -269,8 +274,8 @@ std::vector<Eigenpair> lowest_modes(const Segment& segment, int count) {
   for (const auto& motion : segment.rigid) modes.push_back({0.0, motion});
   const int elastic = count - static_cast<int>(modes.size());
   if (elastic > 0) {
-    const bool few = segment.size() <= 32 || count > segment.size() / 2;
-    const auto found = few ? all(segment) : Hunt(segment).lowest(elastic);
+    const bool small = segment.size() <= 32 || count > segment.size() / 2;
+    const auto found = small ? all_modes(segment) : ModeSearch(segment).lowest(elastic);
     modes.insert(modes.end(), found.begin(), found.end());
   }
   modes.resize(std::min(modes.size(), static_cast<std::size_t>(count)));

@@ -1,4 +1,4 @@
-// Modes that were found elsewhere, as vectors of the unknowns at their stations.
+// Given modes as vectors of the unknowns at their stations.
 #include <algorithm>
 
 #include "modes.hpp"

@@ -17,7 +17,7 @@ MatrixXd times(const Band& A, double factor, const MatrixXd& X) {
   return Y;
 }
 
-/// How large the rounding of x^T C x can be. D is known to the rounding of b K, where it is not zero.
+/// Bound of the rounding error of x^T C x. A non-zero D has the rounding error of b K.
 double rounding(const Segment& s, const beam::Rayleigh& ab, const VectorXd& x) {
   double sum = 0.0;
   for (int i = 0; i < s.size(); ++i) {
@@ -30,11 +30,12 @@ double rounding(const Segment& s, const beam::Rayleigh& ab, const VectorXd& x) {
   return 16.0 * std::numeric_limits<double>::epsilon() * sum;
 }
 
-/// About the lowest frequency other than zero, rad/s: the right power of ten is enough.
+/// The order of magnitude of the lowest non-zero frequency, rad/s.
 double typical_frequency(const Segment& s) {
   const Bracket lowest = s.rigid.empty() ? bracket_lowest(s.K, s.M) : Bracket{};
   if (lowest.low > 0.0) return std::sqrt(lowest.high);
-  // Squared frequencies of a beam spread with the fourth power of the number of its elements, of a bar the second.
+  // The ratio of squared frequencies of a beam grows with the fourth power of the number of its elements, of a bar with
+  // the second.
   const double elements = std::max(1.0, static_cast<double>(s.nodes.back() - s.nodes.front()));
   return std::sqrt(highest_quotient(s.K, s.M) / std::pow(elements, s.axial ? 2.0 : 4.0));
 }
@@ -45,7 +46,7 @@ Inverse::Inverse(const Segment& segment, beam::Rayleigh ab)
     : s_(segment), ab_(ab), scale_(typical_frequency(segment)), root_mass_(segment.size()) {
   for (int i = 0; i < unknowns(); ++i) root_mass_[i] = std::sqrt(s_.M.at(i, i));
   if (!s_.rigid.empty()) prepare_motions();
-  stiffness_ = Factor(held_stiffness());
+  stiffness_ = Factor(restrained_stiffness());
   if (!stiffness_.positive()) {
     throw SolverError(
         "modes: the stiffness that holds the beam is lost beside that of its elements; use fewer elements or a stiffer "
@@ -54,34 +55,34 @@ Inverse::Inverse(const Segment& segment, beam::Rayleigh ab)
 }
 
 void Inverse::prepare_motions() {
-  MatrixXd given(unknowns(), static_cast<Eigen::Index>(s_.rigid.size()));
-  for (Eigen::Index c = 0; c < given.cols(); ++c) {
-    given.col(c) = VectorXd::Map(s_.rigid[static_cast<std::size_t>(c)].data(), unknowns());
+  MatrixXd basis(unknowns(), static_cast<Eigen::Index>(s_.rigid.size()));
+  for (Eigen::Index c = 0; c < basis.cols(); ++c) {
+    basis.col(c) = VectorXd::Map(s_.rigid[static_cast<std::size_t>(c)].data(), unknowns());
   }
   const auto damping = [&](const MatrixXd& X) -> MatrixXd { return times(s_.M, ab_.a, X) + times(s_.D, 1.0, X); };
-  // Those of least damping first.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> principal(given.transpose() * damping(given),
-                                                                     given.transpose() * times(s_.M, 1.0, given));
-  motions_ = given * principal.eigenvectors();
+  // The motions with the least damping first.
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> principal(basis.transpose() * damping(basis),
+                                                                     basis.transpose() * times(s_.M, 1.0, basis));
+  motions_ = basis * principal.eigenvectors();
   mass_motions_ = times(s_.M, 1.0, motions_);
   damped_motions_ = damping(motions_);
   rates_ = principal.eigenvalues();
   double least = 0.0;
   for (int k = 0; k < rigid(); ++k) least = std::max(least, rounding(s_, ab_, motions_.col(k)));
-  while (still_ < rigid() && std::abs(rates_[still_]) <= least) ++still_;
+  while (undamped_ < rigid() && std::abs(rates_[undamped_]) <= least) ++undamped_;
 }
 
-Band Inverse::held_stiffness() {
+Band Inverse::restrained_stiffness() {
   Band K = s_.K;
   if (rigid() == 0) return K;
-  // Displacements that see the motions best, and differently.
-  MatrixXd seen = motions_.transpose();
+  // Displacements in which the motions are largest and linearly independent.
+  MatrixXd displacements = motions_.transpose();
   for (int i = 0; i < unknowns(); ++i) {
-    if (s_.slope[static_cast<std::size_t>(i)] != 0) seen.col(i).setZero();
+    if (s_.slope[static_cast<std::size_t>(i)] != 0) displacements.col(i).setZero();
   }
-  const Eigen::ColPivHouseholderQR<MatrixXd> best(seen);
+  const Eigen::ColPivHouseholderQR<MatrixXd> pivoting(displacements);
   for (int k = 0; k < rigid(); ++k) {
-    const int i = static_cast<int>(best.colsPermutation().indices()[k]);
+    const int i = static_cast<int>(pivoting.colsPermutation().indices()[k]);
     held_.push_back(i);
     for (int j = std::max(0, i - K.width()); j < i; ++j) K.at(i, j) = 0.0;
     for (int j = i + 1; j <= std::min(K.size() - 1, i + K.width()); ++j) K.at(j, i) = 0.0;
@@ -93,9 +94,9 @@ void Inverse::apply(const double* state, double* result) const {
   const int n = unknowns();
   VectorXd x = VectorXd::Map(state, n).cwiseQuotient(root_mass_);
   const VectorXd z = VectorXd::Map(state + n, n).cwiseQuotient(root_mass_);
-  if (still_ > 0) x -= motions_.leftCols(still_) * (mass_motions_.leftCols(still_).transpose() * x);
+  if (undamped_ > 0) x -= motions_.leftCols(undamped_) * (mass_motions_.leftCols(undamped_).transpose() * x);
 
-  // -K^-1 (C x + M z) without its part b K.
+  // -K^-1 (C x + M z) without the part b K of C.
   VectorXd x_new = VectorXd::Zero(n);
   add_product(s_.M, -ab_.a, x.data(), x_new.data());
   add_product(s_.D, -1.0, x.data(), x_new.data());
@@ -113,7 +114,7 @@ void Inverse::apply(const double* state, double* result) const {
 void Inverse::add_motions(const VectorXd& x, VectorXd& x_new) const {
   VectorXd part = mass_motions_.transpose() * x + damped_motions_.transpose() * x_new;
   part = -part.cwiseQuotient(rates_);
-  part.head(still_) = -mass_motions_.leftCols(still_).transpose() * x_new;
+  part.head(undamped_) = -mass_motions_.leftCols(undamped_).transpose() * x_new;
   x_new += motions_ * part;
 }
 

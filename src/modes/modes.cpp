@@ -18,10 +18,10 @@ namespace traverse::modes {
 namespace {
 
 constexpr double distinct = 1e-6;  // relative difference of two frequencies
-// The same between spans that nothing couples: frequencies go with the inverse square of a span, and two spans of one
-// drawing may be built by 20 mm longer and shorter (EN 13670, 10.4), which is this for 8 m.
+// The same between spans that are not coupled: frequencies are proportional to the inverse square of a span, and two
+// spans of one drawing may be built 20 mm longer and shorter (EN 13670, 10.4), which is this difference at 8 m.
 constexpr double distinct_spans = 0.01;
-constexpr double as_printed = 1e-5;  // of a damping ratio: one copied from a message is within its limit
+constexpr double ratio_tolerance = 1e-5;  // of a damping ratio, relative: a limit copied from a message is accepted
 
 struct Mode {
   double omega = 0.0;
@@ -30,12 +30,12 @@ struct Mode {
   std::vector<double> shape;  // of the segment's unknowns
 };
 
-/// The `count` lowest of all segments and their equals.
+/// The `count` lowest modes of all segments and their equal copies.
 std::vector<Mode> lowest(const std::vector<Segment>& segments, int count) {
   std::vector<Mode> modes;
   for (const Segment& s : segments) {
-    const int equal = static_cast<int>(s.offsets.size());
-    for (const Eigenpair& pair : lowest_modes(s, (count + equal - 1) / equal)) {
+    const int copies = static_cast<int>(s.offsets.size());
+    for (const Eigenpair& pair : lowest_modes(s, (count + copies - 1) / copies)) {
       for (int offset : s.offsets) modes.push_back({pair.omega, &s, offset, pair.shape});
     }
   }
@@ -46,7 +46,7 @@ std::vector<Mode> lowest(const std::vector<Segment>& segments, int count) {
   return modes;
 }
 
-/// The lowest frequencies of one segment that differ and are not zero: `wanted`, or as many as it has.
+/// The lowest distinct non-zero frequencies of one segment: `wanted`, or as many as it has.
 std::vector<double> distinct_of(const Segment& s, std::size_t wanted) {
   for (int count = static_cast<int>(wanted + s.rigid.size());; count *= 2) {
     std::vector<double> found;
@@ -70,7 +70,7 @@ double dot(const std::vector<double>& x, const std::vector<double>& y) {
 
 double modal_mass(const Mode& mode) { return dot(mode.shape, product(mode.segment->M, mode.shape)); }
 
-/// phi^T M phi = 1, by Gram and Schmidt: an iteration leaves copies of a frequency a little oblique.
+/// Scales to phi^T M phi = 1 by Gram-Schmidt, because computed copies of a frequency are not exactly orthogonal.
 void orthonormalise(std::vector<Mode>& modes) {
   std::vector<std::vector<double>> momenta;  // M phi
   for (std::size_t i = 0; i < modes.size(); ++i) {
@@ -86,7 +86,7 @@ void orthonormalise(std::vector<Mode>& modes) {
   }
 }
 
-/// Whether a shape has one value and one slope at every station.
+/// Whether every shape has one value and one slope at every station.
 bool without_kinks(const beam::Beam& beam) {
   const beam::BeamModel& model = beam.model();
   if (beam.rail() != nullptr || !model.hinges.empty()) return false;
@@ -95,19 +95,19 @@ bool without_kinks(const beam::Beam& beam) {
   return true;
 }
 
-/// Adds slopes and modal mass of the shape added last, whose vector has this phi^T M phi.
+/// Adds the slopes and the modal mass of the last stored shape; `mass` is phi^T M phi of its vector.
 void add_slopes(const beam::Beam& beam, const beam::ShapePoints& points, const std::vector<double>& vector, double mass,
                 Modes& modes) {
   const auto value = [&](int unknown) { return vector[static_cast<std::size_t>(unknown)]; };
   const std::vector<double> raw = points.curve<double>(beam.bridge(), false, value), &shape = modes.shape.back();
-  const std::size_t top = static_cast<std::size_t>(std::max_element(shape.begin(), shape.end()) - shape.begin());
-  const double scale = shape[top] / raw[top];
+  const std::size_t largest = static_cast<std::size_t>(std::max_element(shape.begin(), shape.end()) - shape.begin());
+  const double scale = shape[largest] / raw[largest];
   modes.slope.push_back(points.slopes(beam.bridge(), value));
   for (double& slope : modes.slope.back()) slope *= scale;
   modes.mass.push_back(mass * scale * scale);
 }
 
-/// Damping ratios where C* is a M + b K*, so that modes move each by itself.
+/// Adds damping ratios if C* = a M + b K*, for which the modes are not coupled.
 void add_ratios(const beam::Beam& beam, Modes& modes) {
   const beam::Rayleigh ab = beam.rayleigh();
   if (beam.dampers() != nullptr || (beam.springs() != nullptr && ab.b != 0.0)) return;
@@ -130,7 +130,7 @@ Modes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* point
     std::vector<double> all(static_cast<std::size_t>(beam.columns()) * static_cast<std::size_t>(beam.block()), 0.0);
     for (std::size_t i = 0; i < mode.shape.size(); ++i)
       all[static_cast<std::size_t>(mode.segment->unknowns[i] + mode.offset * beam.block())] = mode.shape[i];
-    if (mode.segment->axial) {  // not to be taken up as a mode of bending
+    if (mode.segment->axial) {  // excluded from the modes of bending
       result.slope.emplace_back(points->points().size(), 0.0);
       result.mass.push_back(1.0);
     } else {
@@ -141,13 +141,13 @@ Modes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* point
   return result;
 }
 
-/// As `lowest`, and the remaining copies of the last frequency.
+/// The result of `lowest` with all copies of the last frequency.
 std::vector<Mode> lowest_with_copies(const std::vector<Segment>& segments, int count) {
-  for (int more = count + 1;; more *= 2) {
-    std::vector<Mode> modes = lowest(segments, more);
+  for (int larger_count = count + 1;; larger_count *= 2) {
+    std::vector<Mode> modes = lowest(segments, larger_count);
     if (static_cast<int>(modes.size()) <= count) return modes;
     const double last = modes[static_cast<std::size_t>(count) - 1].omega * (1.0 + distinct);
-    if (modes.back().omega <= last && static_cast<int>(modes.size()) == more) continue;
+    if (modes.back().omega <= last && static_cast<int>(modes.size()) == larger_count) continue;
     std::erase_if(modes, [&](const Mode& mode) { return mode.omega > last; });
     return modes;
   }
@@ -199,15 +199,15 @@ std::vector<double> distinct_frequencies(const beam::Beam& beam, std::size_t cou
   for (std::size_t i = 0; i < segments.size(); ++i)
     for (const double omega : distinct_of(segments[i], count)) all.emplace_back(omega, i);
   std::sort(all.begin(), all.end());
-  for (const OfSegment& one : all) {
+  for (const OfSegment& candidate : all) {
     const auto is_copy = [&](const OfSegment& other) {
-      const double apart = one.second == other.second ? distinct : distinct_spans;
-      return one.first <= other.first * (1.0 + apart);
+      const double limit = candidate.second == other.second ? distinct : distinct_spans;
+      return candidate.first <= other.first * (1.0 + limit);
     };
-    if (found.size() < count && std::none_of(found.begin(), found.end(), is_copy)) found.push_back(one);
+    if (found.size() < count && std::none_of(found.begin(), found.end(), is_copy)) found.push_back(candidate);
   }
   std::vector<double> omegas;
-  for (const OfSegment& one : found) omegas.push_back(one.first);
+  for (const OfSegment& candidate : found) omegas.push_back(candidate.first);
   return omegas;
 }
 
@@ -224,7 +224,7 @@ std::pair<double, double> distinct_pair(const beam::Beam& beam) {
 
 beam::Rayleigh rayleigh(double omega1, double omega2, double zeta1, double zeta2) {
   const auto [least, most] = std::minmax({zeta1 * omega1 / omega2, zeta1 * omega2 / omega1});
-  if (zeta2 < least * (1.0 - as_printed) || zeta2 > most * (1.0 + as_printed))
+  if (zeta2 < least * (1.0 - ratio_tolerance) || zeta2 > most * (1.0 + ratio_tolerance))
     throw InputError(
         fmt::format("beam_damping_ratios = {:g},{:g}: Rayleigh damping that has these at {:.6g} and {:.6g} Hz has a "
                     "negative {}, which feeds energy into the beam; allowed beside {:g}: from {:.6g} to {:.6g}; "
@@ -232,7 +232,7 @@ beam::Rayleigh rayleigh(double omega1, double omega2, double zeta1, double zeta2
                     zeta1, zeta2, omega1 / (2.0 * std::numbers::pi), omega2 / (2.0 * std::numbers::pi),
                     (zeta2 < least) == (omega1 < omega2) ? "b" : "a", zeta1, least, most));
   zeta2 = std::clamp(zeta2, least, most);
-  // Eq. 20 divided by omega2 - omega1, so that nothing cancels: equal ratios give their limit exactly.
+  // Eq. 20 divided by omega2 - omega1, so that no terms cancel: equal ratios result in their exact limit.
   const double sum = omega1 + omega2, slope = omega1 * (zeta1 - zeta2) / (omega2 - omega1);
   return {std::max(2.0 * omega1 * omega2 / sum * (zeta1 + slope), 0.0), std::max(2.0 / sum * (zeta2 - slope), 0.0)};
 }

@@ -19,10 +19,10 @@ using Complex = std::complex<double>;
 
 constexpr double eigen_tolerance = 1e-11;  // of SLEPc, relative to the inverted eigenvalue
 constexpr int restarts = 2000;
-constexpr int few_unknowns = 64;   // by LAPACK, all modes at once
-constexpr double farthest = 1e-4;  // of lambda: what polishing may change
-constexpr double spoiled = 1e-10;  // error of 1/lambda, relative to the largest one, in ill-conditioned cases
-constexpr double crowd = 0.95;     // of 1/b: where the modes begin to crowd that mean nothing
+constexpr int few_unknowns = 64;         // up to here by LAPACK, all modes at once
+constexpr double max_change = 1e-4;      // relative to lambda: largest change by refinement
+constexpr double inverse_error = 1e-10;  // error of 1/lambda, relative to the largest one, in ill-conditioned cases
+constexpr double dense_from = 0.95;      // of 1/b: from here on the meaningless modes are dense
 
 PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
   return base::guard([&] {
@@ -65,11 +65,11 @@ class Spectrum {
     check(EPSSolve(eps_));
   }
 
-  /// How many eigenvalues have converged: always the lowest ones.
+  /// Number of converged eigenvalues, which are always the lowest ones.
   int converged() const {
     PetscInt count = 0;
     check(EPSGetConverged(eps_, &count));
-    return std::min(static_cast<int>(count), inverse_.moving());
+    return std::min(static_cast<int>(count), inverse_.nonrigid());
   }
 
   std::vector<DampedPair> modes() const {
@@ -79,7 +79,7 @@ class Spectrum {
     for (int i = 0; i < converged(); ++i) {
       PetscScalar re = 0.0, im = 0.0;
       check(EPSGetEigenpair(eps_, i, &re, &im, real, imaginary));
-      if (im > 0.0) continue;  // 1/lambda, so this is the conjugate
+      if (im > 0.0) continue;  // 1/lambda of the conjugate
       const Complex lambda = im == 0.0 ? Complex(1.0 / re, 0.0) : 1.0 / Complex(re, im);
       found.push_back({lambda, shape(real, imaginary)});
     }
@@ -105,7 +105,7 @@ class Spectrum {
 
 struct Form {
   Complex value;      // x^T A x, without conjugation
-  double size = 0.0;  // of its terms: times the machine's epsilon its rounding
+  double size = 0.0;  // magnitude of its terms; times the machine epsilon the rounding error
 };
 
 Form form(const Band& A, const std::vector<Complex>& x) {
@@ -121,11 +121,11 @@ Form form(const Band& A, const std::vector<Complex>& x) {
   return sum;
 }
 
-/// lambda as the root of x^T (lambda^2 M + lambda C + K) x = 0 next to it, by Newton's method. The matrices being
-/// symmetric, the root's error is the square of that of x, and the rounding of x^T K x. That is done where the latter
-/// is the smaller error: A^-1 has errors like its largest eigenvalue, so one slow mode spoils the others. Left alone
-/// too where two modes are about to merge, and the root is far.
-Complex polished(const Segment& s, const beam::Rayleigh& ab, const DampedPair& mode, double lowest) {
+/// Refines lambda as a root of x^T (lambda^2 M + lambda C + K) x = 0 by Newton's method. The matrices are symmetric, so
+/// that the error of the root is the square of that of x, plus the rounding error of x^T K x. The root is used if the
+/// latter is smaller than the error of lambda: errors of A^-1 are relative to its largest eigenvalue, so that one slow
+/// mode reduces the accuracy of all others. It is not used if two modes almost coincide and the root is far away.
+Complex refined(const Segment& s, const beam::Rayleigh& ab, const DampedPair& mode, double lowest) {
   const Form stiffness = form(s.K, mode.shape);
   const Complex mass = form(s.M, mode.shape).value;
   const Complex damping = ab.a * mass + ab.b * stiffness.value + form(s.D, mode.shape).value;
@@ -133,29 +133,29 @@ Complex polished(const Segment& s, const beam::Rayleigh& ab, const DampedPair& m
   for (int i = 0; i < 3; ++i) {
     lambda -= ((mass * lambda + damping) * lambda + stiffness.value) / (2.0 * mass * lambda + damping);
   }
-  const double size = std::abs(mode.lambda), error = spoiled * size / lowest;
+  const double size = std::abs(mode.lambda), error = inverse_error * size / lowest;
   const double rounding =
       std::numeric_limits<double>::epsilon() * stiffness.size / (size * std::abs(2.0 * mass * mode.lambda + damping));
-  return rounding < error && std::abs(lambda - mode.lambda) < farthest * size ? lambda : mode.lambda;
+  return rounding < error && std::abs(lambda - mode.lambda) < max_change * size ? lambda : mode.lambda;
 }
 
-/// The elastic modes and the decays of rigid motions.
-std::vector<DampedPair> moving(const Segment& s, const beam::Rayleigh& ab, int count) {
+/// The elastic modes and the decay modes of rigid motions.
+std::vector<DampedPair> nonrigid_modes(const Segment& s, const beam::Rayleigh& ab, int count) {
   Inverse inverse(s, ab);
-  if (inverse.moving() == 0) return {};
+  if (inverse.nonrigid() == 0) return {};
   const double end = ab.b != 0.0 ? 1.0 / std::abs(ab.b) : std::numeric_limits<double>::infinity();
   const bool all = s.size() <= few_unknowns || count > s.size() / 2;
-  if (!all && ab.b != 0.0) count = std::min(count, std::max(1, count_below(s.K, s.M, std::pow(crowd * end, 2))));
-  const int eigenvalues = std::min(2 * count, inverse.moving());
+  if (!all && ab.b != 0.0) count = std::min(count, std::max(1, count_below(s.K, s.M, std::pow(dense_from * end, 2))));
+  const int eigenvalues = std::min(2 * count, inverse.nonrigid());
   const Spectrum spectrum(inverse, eigenvalues, all);
   auto found = spectrum.modes();
-  const bool crowded = !found.empty() && std::abs(found.back().lambda) > 0.5 * end;
-  if (spectrum.converged() < eigenvalues && !crowded) {
+  const bool dense = !found.empty() && std::abs(found.back().lambda) > 0.5 * end;
+  if (spectrum.converged() < eigenvalues && !dense) {
     throw SolverError("modes: SLEPc found " + std::to_string(spectrum.converged()) + " of " +
                       std::to_string(eigenvalues) + " damped eigenvalues; use fewer elements or ask for fewer modes");
   }
   const double lowest = found.empty() ? 1.0 : std::abs(found.front().lambda);
-  for (DampedPair& mode : found) mode.lambda = polished(s, ab, mode, lowest);
+  for (DampedPair& mode : found) mode.lambda = refined(s, ab, mode, lowest);
   std::erase_if(found, [&](const DampedPair& mode) { return std::abs(mode.lambda) >= end; });
   return found;
 }
@@ -167,7 +167,7 @@ std::vector<DampedPair> lowest_damped(const Segment& segment, beam::Rayleigh ab,
   for (const auto& motion : segment.rigid) modes.push_back({0.0, {motion.begin(), motion.end()}});
   const int others = count - static_cast<int>(modes.size());
   if (others > 0) {
-    for (DampedPair& mode : moving(segment, ab, others)) modes.push_back(std::move(mode));
+    for (DampedPair& mode : nonrigid_modes(segment, ab, others)) modes.push_back(std::move(mode));
   }
   std::stable_sort(modes.begin(), modes.end(),
                    [](const auto& a, const auto& b) { return std::abs(a.lambda) < std::abs(b.lambda); });

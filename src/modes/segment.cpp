@@ -1,5 +1,5 @@
-// Gathers the global matrices, splits them where neighbouring columns do not couple, groups equal segments, and adds
-// the rigid-body motions of each.
+// Gathers the global matrices, splits them between uncoupled neighbouring columns, groups equal segments, and adds the
+// rigid-body motions of each.
 #include "segment.hpp"
 
 #include <cmath>
@@ -24,7 +24,7 @@ void for_rows(Mat matrix, int size, Row row) {
   }
 }
 
-/// As wide as the matrix's pattern of non-zeros, which M, K* and C* share.
+/// A band with the width of the matrix's pattern of non-zeros, which M, K* and C* share.
 Band band_of(Mat matrix, int size) {
   int width = 0;
   for_rows(matrix, size, [&](PetscInt i, std::span<const PetscInt> columns, const PetscScalar*) {
@@ -37,13 +37,13 @@ Band band_of(Mat matrix, int size) {
   return band;
 }
 
-/// Whether sleepers tie the bridge's bending to motion along x: they hold it at a height above its axis.
-bool bending_pulls(const beam::BeamModel& model) { return model.track && model.axial && model.surface_height != 0.0; }
+/// Whether bending is coupled with motion along x, because sleepers act on the bridge above its axis.
+bool axially_coupled(const beam::BeamModel& model) { return model.track && model.axial && model.surface_height != 0.0; }
 
-/// Global unknowns that move along x, or the others; all of them where they couple.
+/// The global unknowns along x, or the others; all of them if they are coupled.
 std::vector<PetscInt> unknowns_of(const beam::Beam& beam, bool axial) {
   std::vector<PetscInt> wanted;
-  const bool all = bending_pulls(beam.model());
+  const bool all = axially_coupled(beam.model());
   for (int column = 0; column < beam.columns(); ++column) {
     for (int i = 0; i < beam.block(); ++i) {
       if (all || beam::Layout::axial(beam.layout().kind[i]) == axial) wanted.push_back(column * beam.block() + i);
@@ -65,7 +65,7 @@ Band gathered(Mat matrix, const std::vector<PetscInt>& wanted) {
   return band;
 }
 
-/// The unknowns `rows` of a matrix; those in between are held and have no entries.
+/// The unknowns `rows` of a matrix; the unknowns between them are held and have no entries.
 Band part_of(const Band& whole, const std::vector<int>& rows) {
   Band part(static_cast<int>(rows.size()), whole.width());
   for (int i = 0; i < part.size(); ++i) {
@@ -88,7 +88,7 @@ bool equal(const Band& a, const Band& b) {
   return true;
 }
 
-/// D to 1e-9 of its largest entry, whatever the size of b K*, which a weak damper would drown in.
+/// Compares D to 1e-9 of its largest entry, independent of the magnitude of b K*, which would hide a weak damper.
 bool equal_damping(const Segment& a, const Segment& b) {
   double largest = 0.0, difference = 0.0;
   for (int i = 0; i < a.D.size(); ++i) {
@@ -100,16 +100,16 @@ bool equal_damping(const Segment& a, const Segment& b) {
   return difference <= 1e-9 * largest;
 }
 
-/// C - a M - b K, with 0 for what is no more than the rounding of C.
-Band beyond_rayleigh(const Band& C, const Band& M, const Band& K, const beam::Rayleigh& ab) {
+/// C - a M - b K, with 0 for entries that do not exceed the rounding error of C.
+Band nonproportional_damping(const Band& C, const Band& M, const Band& K, const beam::Rayleigh& ab) {
   Band D(C.size(), C.width());
   for (int i = 0; i < D.size(); ++i) {
     for (int j = std::max(0, i - D.width()); j <= i; ++j) {
       const double mass_part = ab.a * M.at(i, j), stiffness_part = ab.b * K.at(i, j);
       const double rounding =
           4.0 * std::numeric_limits<double>::epsilon() * (std::abs(mass_part) + std::abs(stiffness_part));
-      const double rest = C.at(i, j) - mass_part - stiffness_part;
-      if (std::abs(rest) > rounding) D.at(i, j) = rest;
+      const double difference = C.at(i, j) - mass_part - stiffness_part;
+      if (std::abs(difference) > rounding) D.at(i, j) = difference;
     }
   }
   return D;
@@ -133,7 +133,7 @@ class Splitter {
         M_(gathered(beam.mass(), unknowns_)),
         motions_(beam::rigid_motions(beam.model())) {
     if (damping == Damping::included)
-      D_ = beyond_rayleigh(gathered(beam.damping(), unknowns_), M_, K_, beam.rayleigh());
+      D_ = nonproportional_damping(gathered(beam.damping(), unknowns_), M_, K_, beam.rayleigh());
   }
 
   std::vector<Segment> split() {
@@ -141,13 +141,13 @@ class Splitter {
     for (int first = 0; first < M_.size();) {
       int past = first;
       while (past < M_.size() && column(past) == column(first)) ++past;
-      if (!joins_left(first, past)) finish(rows);
+      if (!coupled_to_left(first, past)) add_segment(rows);
       for (int i = first; i < past; ++i) {
         if (M_.at(i, i) != 0.0) rows.push_back(i);
       }
       first = past;
     }
-    finish(rows);
+    add_segment(rows);
     return std::move(segments_);
   }
 
@@ -157,8 +157,8 @@ class Splitter {
     return beam_.layout().kind[unknowns_[static_cast<std::size_t>(row)] % beam_.block()];
   }
 
-  /// Whether an unknown of the column [first, past) couples to one of the column before.
-  bool joins_left(int first, int past) const {
+  /// Whether an unknown of the column [first, past) is coupled to one of the column before.
+  bool coupled_to_left(int first, int past) const {
     for (int i = first; i < past; ++i) {
       for (int j = std::max(0, i - M_.width()); j < first; ++j) {
         if (M_.at(i, j) != 0.0 || K_.at(i, j) != 0.0) return true;
@@ -167,14 +167,14 @@ class Splitter {
     return false;
   }
 
-  void finish(std::vector<int>& rows) {
+  void add_segment(std::vector<int>& rows) {
     if (rows.empty()) return;
     Segment s;
     s.axial = axial_;
     for (int row : rows) {
       s.nodes.push_back(column(row) - beam_.bridge().first_column);
       s.unknowns.push_back(static_cast<int>(unknowns_[static_cast<std::size_t>(row)]));
-      // On the ground a layered track's ballast takes the place of the bridge's deflection.
+      // On the ground the ballast of a layered track uses the place of the bridge's deflection.
       const bool bridge = s.nodes.back() >= 0 && s.nodes.back() < beam_.mesh().nodes();
       s.slope.push_back(bridge && kind(row) == (axial_ ? beam::Kind::u : beam::Kind::v) ? 0 : 1);
     }
@@ -184,16 +184,16 @@ class Splitter {
     s.offsets = {0};
     add_rigid_motions(s, rows);
     rows.clear();
-    for (Segment& known : segments_) {
-      if (!equal(known, s)) continue;
-      known.offsets.push_back(s.nodes[0] - known.nodes[0]);
+    for (Segment& existing : segments_) {
+      if (!equal(existing, s)) continue;
+      existing.offsets.push_back(s.nodes[0] - existing.nodes[0]);
       return;
     }
     segments_.push_back(std::move(s));
   }
 
-  /// The rigid motions of the part of the beam that the segment is. (A segment that is only a piece of its part ends
-  /// at a node that is held altogether, and its part has none.)
+  /// Adds the rigid motions of the segment's part of the beam. (A segment that is only a piece of its part ends at a
+  /// completely held node, and its part has no rigid motion.)
   void add_rigid_motions(Segment& s, const std::vector<int>& rows) const {
     for (const beam::RigidMotion& motion : motions_) {
       const double left = beam_.mesh().x(s.nodes.front()), right = beam_.mesh().x(s.nodes.back());
@@ -222,7 +222,7 @@ std::vector<Segment> transverse_segments(const beam::Beam& beam, Damping damping
 }
 
 std::vector<Segment> axial_segments(const beam::Beam& beam, Damping damping) {
-  if (!beam.model().axial || bending_pulls(beam.model())) return {};
+  if (!beam.model().axial || axially_coupled(beam.model())) return {};
   return Splitter(beam, true, damping).split();
 }
 

@@ -1,4 +1,4 @@
-// A beam taken apart for its modes: what does not couple is solved by itself, and what is equal only once.
+// Division of a beam for its modes: uncoupled segments are solved separately, and equal segments only once.
 #pragma once
 
 #include <vector>
@@ -8,25 +8,25 @@
 
 namespace traverse::modes {
 
-/// Free unknowns of neighbouring nodes that couple, all axial or all transverse: a span of its own, or what lies
-/// between two nodes that supports hold altogether.
+/// Coupled free unknowns of neighbouring nodes, all axial or all transverse: those of a separate span, or those between
+/// two completely held nodes.
 struct Segment {
   bool axial = false;
-  std::vector<int> nodes;     // of the bridge, of each unknown; counted on under a layered track's approaches
-  std::vector<int> unknowns;  // of each unknown: its global number
-  std::vector<char> slope;    // of each unknown: non-zero for theta, and for what is not the bridge's
+  std::vector<int> nodes;  // of the bridge, for each unknown; on the approaches of a layered track the numbers continue
+  std::vector<int> unknowns;  // global number of each unknown
+  std::vector<char> slope;    // for each unknown: 0 for v (u of an axial segment) of the bridge, otherwise non-zero
   Band K, M;                  // of the same width
-  Band D;  // C* - a M - b K*: what the foundation adds to Rayleigh damping. Empty where it was not asked for
-  std::vector<std::vector<double>> rigid;  // its rigid motions, one vector each
-  std::vector<int> offsets;                // of the nodes, one for each equal segment; the first is 0
+  Band D;  // C* - a M - b K*: the foundation's contribution besides Rayleigh damping; empty if damping is ignored
+  std::vector<std::vector<double>> rigid;  // rigid motions, one vector each
+  std::vector<int> offsets;                // offset of the nodes for each equal segment; the first is 0
 
   int size() const { return K.size(); }
 };
 
 enum class Damping { ignored, included };
 
-/// Collective; the same on every rank. From left to right; equal ones (entries to 1e-9) as one with several offsets.
-/// Damping can be included after Beam::set_rayleigh; segments are equal then only with equal damping.
+/// Collective; the same on every rank. From left to right; equal segments (entries to 1e-9) are one segment with
+/// several offsets. Damping can be included after Beam::set_rayleigh; equal segments then have equal damping too.
 std::vector<Segment> transverse_segments(const beam::Beam& beam, Damping damping = Damping::ignored);
 std::vector<Segment> axial_segments(const beam::Beam& beam, Damping damping = Damping::ignored);
 

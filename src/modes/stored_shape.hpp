@@ -1,4 +1,4 @@
-// From the unknowns of a segment to the shape of the bridge.
+// Conversion of the unknowns of a segment to the stored shape of the bridge.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace traverse::modes {
 
-/// The largest becomes 1; all become 0 where the largest magnitude is not above `rounding`.
+/// Divides all values by the one of largest magnitude; they become 0 if its magnitude is not above `rounding`.
 template <class Number>
 void scale_to_one(std::vector<Number>& shape, double rounding) {
   Number largest = 0.0;
@@ -19,8 +19,8 @@ void scale_to_one(std::vector<Number>& shape, double rounding) {
   for (Number& v : shape) v = std::abs(largest) > rounding ? v / largest : 0.0;
 }
 
-/// Displacements at the points of a mode (real or complex) of the copy of a segment at `offset`, the largest 1; zero
-/// where a mode has none there (at the nodes of one element a span: slopes only).
+/// The displacements of a mode (real or complex) at the points, for the copy of a segment at `offset`, with the largest
+/// value 1. They are zero if the mode has none there (nodes, with one element per span: slopes only).
 template <class Number>
 std::vector<Number> stored_shape(const beam::Beam& beam, const Segment& s, int offset, const std::vector<Number>& mode,
                                  const beam::ShapePoints& points) {

@@ -9,7 +9,7 @@ namespace traverse::modes {
 
 base::Handle<Vec> vector(const std::vector<double>& values);
 
-/// A start that hardly any mode is orthogonal to, always the same. (-1, 1), by a linear congruential generator.
+/// A reproducible start vector, orthogonal to hardly any mode: values in (-1, 1) by a linear congruential generator.
 std::vector<double> start_vector(int size, unsigned seed);
 
 }  // namespace traverse::modes

@@ -1,4 +1,4 @@
-// Gaussian elimination on sparse rows, one pivot at a time: for choosing pivots, not for speed of numbers.
+// Gaussian elimination on sparse rows, one pivot at a time, for the choice of pivots.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,18 +14,18 @@ class ActiveRows {
     double value;
   };
 
-  /// The non-zero entries of A.
+  /// Stores the non-zero entries of A.
   void assign(const Eigen::MatrixXd& A);
 
   int rows() const { return static_cast<int>(rows_.size()); }
   int columns() const { return static_cast<int>(count_.size()); }
   bool active(int row) const { return active_[row] != 0; }
-  /// Entries of an active row, ascending in column.
+  /// Entries of an active row, in ascending order of columns.
   const std::vector<Entry>& row(int i) const { return rows_[i]; }
-  /// Active rows with an entry in this column.
+  /// Number of active rows with an entry in this column.
   int count(int column) const { return count_[column]; }
 
-  /// Takes the pivot out: its row becomes inactive, its column vanishes from the others.
+  /// Eliminates a pivot: its row becomes inactive, and the other rows have no entry in its column.
   void eliminate(int row, int column);
 
  private:

@@ -12,7 +12,7 @@ namespace traverse::multibody {
 
 namespace {
 
-/// Speaks for one part of a vehicle: "vehicle 'x', joint 'y': ...".
+/// Checks one part of a vehicle, with messages such as "vehicle 'x', joint 'y': ...".
 class Part {
  public:
   Part(const MechanismModel& model, const std::string& kind, const std::string& name)
@@ -105,10 +105,11 @@ void check_driver(const Part& part, const Driver& driver) {
 void check_law(const Part& part, const ForceLaw& law, double stiffness, double damping) {
   if (stiffness != 0.0 || damping != 0.0) part.fail("give a law or stiffness and damping, not both");
   part.not_negative("gap", law.gap);
-  const std::string gains = law.damper.opposing();
-  if (!gains.empty()) part.fail("damper table: force and rate must not have opposite signs, " + gains);
-  const std::string pushes = law.lets_go() ? law.elastic.opposing() : std::string();
-  if (!pushes.empty()) part.fail("table: with a gap or a side force and elongation must not differ in sign, " + pushes);
+  const std::string damper_error = law.damper.opposing();
+  if (!damper_error.empty()) part.fail("damper table: force and rate must not have opposite signs, " + damper_error);
+  const std::string elastic_error = law.can_disengage() ? law.elastic.opposing() : std::string();
+  if (!elastic_error.empty())
+    part.fail("table: with a gap or a side force and elongation must not differ in sign, " + elastic_error);
 }
 
 void check_spring(const Part& part, const Spring& spring) {

@@ -1,11 +1,11 @@
-// The checks of a mechanism as described by the user.
+// Checks of a mechanism as the user describes it.
 #pragma once
 
 #include "traverse/multibody/model.hpp"
 
 namespace traverse::multibody {
 
-/// Throws InputError naming the vehicle, the part and the value that cannot be.
+/// Throws InputError that names the vehicle, the part and the invalid value.
 void check_model(const MechanismModel& model);
 
 }  // namespace traverse::multibody

@@ -1,4 +1,4 @@
-// Phi, Phi_q and gamma of a whole mechanism, and the Newton iteration for the dependent coordinates.
+// Phi, Phi_q and gamma of a mechanism, and Newton's method for the dependent coordinates.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,10 +9,10 @@ namespace traverse::multibody {
 
 namespace {
 
-constexpr int most_iterations = 40;
-constexpr double longest_turn = 0.5;        // rad in one Newton step
-constexpr double poor_contraction = 0.1;    // of the residual, with an old factorisation
-constexpr double dropped_tolerance = 1e-6;  // of the mechanism's size
+constexpr int max_iterations = 40;
+constexpr double max_rotation = 0.5;        // rad, in one Newton step
+constexpr double poor_contraction = 0.1;    // of the residual in one step: a worse one requires a new factorisation
+constexpr double dropped_tolerance = 1e-6;  // of dropped rows, relative to the mechanism's size
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void Mechanism::compute_Phi(MechanismState& s) const {
   }
 }
 
-/// And notes where it has changed: a mechanism that does not turn keeps its factors.
+/// Computes Phi_q and records whether it has changed: a mechanism that does not rotate keeps its factors.
 void Mechanism::compute_Phi_q(MechanismState& s) const {
   JointJacobian rows;
   bool same = true;
@@ -65,7 +65,7 @@ void Mechanism::compute_Phi_q(MechanismState& s) const {
     const Driver& driver = model_.drivers[k];
     set(driver_row(static_cast<int>(k)), 3 * driver.body + driver.coordinate, 1.0);
   }
-  if (!same) s.factors_belong = s.sensitivity_belongs = false;
+  if (!same) s.factors_current = s.sensitivity_current = false;
 }
 
 void Mechanism::compute_gamma(MechanismState& s) const {
@@ -77,9 +77,9 @@ void Mechanism::compute_gamma(MechanismState& s) const {
   }
 }
 
-/// Moves the dependent coordinates to where they are expected at p: along Taylor's series from the last accepted
-/// instant at a new time, along the last velocities' sensitivity within a time. Near a singular position, where
-/// branches meet, this decides which one Newton finds.
+/// Predicts the dependent coordinates at p: at a new time by Taylor's series from the last accepted instant, at the
+/// same time by the sensitivity at the last velocities. Near a singular position, where branches intersect, the
+/// prediction determines which branch Newton's method finds.
 void Mechanism::predict(MechanismState& s, double t, const double* p) const {
   const int f = freedom();
   const Instant& a = s.accepted;
@@ -95,8 +95,8 @@ void Mechanism::predict(MechanismState& s, double t, const double* p) const {
   for (int k = 0; k < f; ++k) s.q[partition_.independent[k]] = p[k];
 }
 
-/// Gives the workspaces the sizes and the order of elimination of the mechanism's partition.
-void Mechanism::fit(MechanismState& s) const {
+/// Sets the sizes of the workspaces and the order of elimination for the mechanism's partition.
+void Mechanism::prepare_workspaces(MechanismState& s) const {
   if (s.partition_version == partition_version_) return;
   const int f = freedom();
   s.B.setZero(coordinates(), f);
@@ -115,28 +115,28 @@ void Mechanism::fit(MechanismState& s) const {
   s.factored = false;
   s.velocities_set = false;
   s.mass_factored = false;
-  s.factors_belong = s.sensitivity_belongs = false;
+  s.factors_current = s.sensitivity_current = false;
 }
 
 void Mechanism::find_columns(MechanismState& s) const {
   s.columns.assign(model_.bodies.size(), {freedom(), 0});
-  const auto reach = [&](int coordinate, int k) {
+  const auto extend = [&](int coordinate, int k) {
     ColumnRange& range = s.columns[coordinate / 3];
     range.first = std::min(range.first, k);
     range.last = std::max(range.last, k + 1);
   };
-  for (int k = 0; k < freedom(); ++k) reach(partition_.independent[k], k);
+  for (int k = 0; k < freedom(); ++k) extend(partition_.independent[k], k);
   const DependentBlock& block = s.dependent_block;
   for (int i = 0; i < block.size(); ++i)
-    for (const int* k = block.sensitivity_begin(i); k != block.sensitivity_end(i); ++k) reach(block.coordinate(i), *k);
+    for (const int* k = block.sensitivity_begin(i); k != block.sensitivity_end(i); ++k) extend(block.coordinate(i), *k);
   for (ColumnRange& range : s.columns) range.first = std::min(range.first, range.last);
 }
 
-/// Factors the dependent block at the current frames, in a new order when the old one has worn out.
+/// Factorises the dependent block at the current frames, with a new order if the old order has become inaccurate.
 void Mechanism::factor(MechanismState& s) const {
   compute_Phi_q(s);
-  if (s.factors_belong) return;
-  s.sensitivity_belongs = false;
+  if (s.factors_current) return;
+  s.sensitivity_current = false;
   if (!s.dependent_block.factor(s.Phi_q)) {
     s.velocities_set = false;
     s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
@@ -145,51 +145,51 @@ void Mechanism::factor(MechanismState& s) const {
     s.B.setZero();
     for (int k = 0; k < freedom(); ++k) s.B(partition_.independent[k], k) = 1.0;
   }
-  s.factored = s.factors_belong = true;
+  s.factored = s.factors_current = true;
 }
 
-/// The largest kept equation's error, m.
+/// The largest residual of the kept equations, m.
 double Mechanism::kept_residual(const MechanismState& s) const {
   double largest = 0.0;
   for (const int row : partition_.rows) {
     const double size = std::abs(s.Phi[row]) * scaling_.row[row];
-    if (!(size <= largest)) largest = size;  // also when it is not a number
+    if (!(size <= largest)) largest = size;  // also for NaN
   }
   return largest;
 }
 
-/// One Newton step on the dependent coordinates with the factorisation at hand. False when it is not finite.
+/// One Newton step on the dependent coordinates with the present factorisation. Returns false if it is not finite.
 bool Mechanism::correct_dependent(MechanismState& s) const {
   ++s.corrections;
   s.dependent_block.solve(s.Phi, s.work);
-  double turn = 0.0;
+  double rotation = 0.0;
   bool finite = true;
   for (const int i : partition_.dependent) {
     finite = finite && std::isfinite(s.work[i]);
-    if (i % 3 == 2) turn = std::max(turn, std::abs(s.work[i]));
+    if (i % 3 == 2) rotation = std::max(rotation, std::abs(s.work[i]));
   }
   if (!finite) return false;
-  const double part = turn > longest_turn ? longest_turn / turn : 1.0;
+  const double part = rotation > max_rotation ? max_rotation / rotation : 1.0;
   for (const int i : partition_.dependent) s.q[i] -= part * s.work[i];
   return true;
 }
 
-/// Newton on the kept rows from s.q. The last factorisation serves as long as it contracts the error well.
+/// Newton's method on the kept rows from s.q. The last factorisation is used while the residual decreases fast enough.
 bool Mechanism::solve_dependent(MechanismState& s, double t) const {
   s.time = t;
   place_frames(s);
   compute_Phi(s);
   if (partition_.rows.empty()) return true;
-  const double far = s.q.cwiseAbs().maxCoeff();
-  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (length_ + far);
+  const double largest = s.q.cwiseAbs().maxCoeff();
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (length_ + largest);
   double before = std::numeric_limits<double>::infinity();
   bool fresh = false;
-  for (int i = 0; i < most_iterations; ++i) {
+  for (int i = 0; i < max_iterations; ++i) {
     const double residual = kept_residual(s);
     if (!std::isfinite(residual)) return false;
     if (residual <= rounding) return true;
     const bool poor = residual > poor_contraction * before;
-    if (poor && fresh && residual <= 100.0 * rounding) return true;  // as good as it gets
+    if (poor && fresh && residual <= 100.0 * rounding) return true;  // limited by rounding
     if (!s.factored || s.dependent_block.nearly_singular() || (poor && i > 0)) {
       factor(s);
       fresh = true;
@@ -205,7 +205,7 @@ bool Mechanism::solve_dependent(MechanismState& s, double t) const {
 }
 
 bool Mechanism::set_positions(MechanismState& s, double t, const double* p) const {
-  fit(s);
+  prepare_workspaces(s);
   predict(s, t, p);
   if (!solve_dependent(s, t)) return false;
   if (static_cast<int>(partition_.rows.size()) == constraints()) return true;

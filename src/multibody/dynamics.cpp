@@ -9,23 +9,24 @@
 namespace traverse::multibody {
 
 namespace {
-constexpr double safe_way = 0.02;  // of the mechanism's size, from a nearly singular position
+constexpr double interpolation_distance =
+    0.02;  // of the mechanism's size: scale of the distances of interpolation from a nearly singular position
 }  // namespace
 
 void Mechanism::set_velocities(MechanismState& s, double t, const double* pd) const {
-  fit(s);
+  prepare_workspaces(s);
   s.time = t;
   factor(s);
   if (!s.dependent_block.nearly_singular() || !interpolate_velocities(s, t, pd)) velocities_at(s, t, pd);
 }
 
-/// With Phi_q factored: B, b, q', d.
+/// Computes B, b, q' and d; Phi_q must be factorised.
 void Mechanism::velocities_at(MechanismState& s, double t, const double* pd) const {
-  if (!s.sensitivity_belongs) {
+  if (!s.sensitivity_current) {
     s.mass_factored = false;
     s.dependent_block.compute_sensitivity();
     s.dependent_block.scatter(s.B);
-    s.sensitivity_belongs = true;
+    s.sensitivity_current = true;
   }
   s.velocities_set = true;
   for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
@@ -40,10 +41,11 @@ void Mechanism::velocities_at(MechanismState& s, double t, const double* pd) con
   s.dependent_block.solve(s.gamma, s.d);
 }
 
-/// B, b, q', d near a singular position, where rounding of q grows by 1/sigma in B and 1/sigma^3 in d, sigma being the
-/// least singular value of Phi_u: all four-bars flat, a parallelogram in its dead points. On a branch of the motion
-/// they are smooth all the same, so they are interpolated from four instants around, a safe way off at the velocities
-/// of the last accepted one. False when one of them cannot be reached.
+/// Computes B, b, q' and d near a singular position, such as a flat four-bar linkage or a parallelogram at a dead
+/// point. The rounding error of q grows by 1/sigma in B and by 1/sigma^3 in d there, with the smallest singular value
+/// sigma of Phi_u. On one branch of the motion these quantities are smooth. They are therefore interpolated from four
+/// instants around the position, at a sufficient distance, with the velocities of the last accepted instant. Returns
+/// false if one of the instants cannot be reached.
 bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double* pd) const {
   const int f = freedom();
   if (s.accepted.partition_version != partition_version_) return false;
@@ -55,14 +57,14 @@ bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double
   s.interpolated.setZero(coordinates(), f + 2);
   bool reached = true;
   for (int i = 0; i < 4 && reached; ++i) {
-    const double later = place[i] * safe_way * length_ / speed;
-    s.q = s.centre + later * s.accepted.qd;
-    for (int k = 0; k < f; ++k) s.change[k] = later * (pd[k] - s.accepted.qd[partition_.independent[k]]);
+    const double offset = place[i] * interpolation_distance * length_ / speed;
+    s.q = s.centre + offset * s.accepted.qd;
+    for (int k = 0; k < f; ++k) s.change[k] = offset * (pd[k] - s.accepted.qd[partition_.independent[k]]);
     s.accepted.sensitivity.add(s.change, partition_.independent, s.q);
-    reached = solve_dependent(s, t + later);
+    reached = solve_dependent(s, t + offset);
     if (!reached) break;
     factor(s);
-    velocities_at(s, t + later, pd);
+    velocities_at(s, t + offset, pd);
     s.interpolated.leftCols(f) += weight[i] * s.B;
     s.interpolated.col(f) += weight[i] * s.b;
     s.interpolated.col(f + 1) += weight[i] * s.d;
@@ -73,7 +75,7 @@ bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double
   compute_Phi(s);
   factor(s);
   if (!reached) return false;
-  s.factors_belong = s.sensitivity_belongs = false;
+  s.factors_current = s.sensitivity_current = false;
   s.dependent_block.set_sensitivity(s.interpolated.leftCols(f));
   s.dependent_block.scatter(s.B);
   s.mass_factored = false;
@@ -126,28 +128,28 @@ void Mechanism::accelerations(MechanismState& s, const Eigen::VectorXd& Q, doubl
   if (!s.mass_factored) s.reduced_mass.factor(s.dependent_block, mass_);
   s.mass_factored = true;
   s.work = s.g + Q - mass_.cwiseProduct(s.d);
-  if (rubs()) {
+  if (has_friction()) {
     friction_in_motion(s);
-    if (s.friction.jammed) throw SolverError(jam(s) + " (at t = " + std::to_string(s.time) + " s)");
+    if (s.friction.jammed) throw SolverError(describe_jam(s) + " (at t = " + std::to_string(s.time) + " s)");
   }
   s.dependent_block.project(s.work, s.reduced);
   s.reduced_mass.solve(s.reduced);
   for (int k = 0; k < freedom(); ++k) pdd[k] = s.reduced[k];
-  spread(s, pdd);
+  expand_accelerations(s, pdd);
   s.work = s.g + Q - mass_.cwiseProduct(s.qdd);
-  if (rubs()) add_friction(s);
+  if (has_friction()) add_friction(s);
   s.dependent_block.solve_transposed(s.work, s.lambda);
 }
 
 void Mechanism::recover(MechanismState& s, const Eigen::VectorXd& Q, const double* pdd) const {
-  spread(s, pdd);
+  expand_accelerations(s, pdd);
   s.work = s.g + Q - mass_.cwiseProduct(s.qdd);
-  if (rubs()) friction_in_given_motion(s);
+  if (has_friction()) friction_in_given_motion(s);
   s.dependent_block.solve_transposed(s.work, s.lambda);
 }
 
 /// q'' from p''.
-void Mechanism::spread(MechanismState& s, const double* pdd) const {
+void Mechanism::expand_accelerations(MechanismState& s, const double* pdd) const {
   s.qdd = s.d;
   s.dependent_block.expand(pdd, s.qdd);
 }

@@ -1,5 +1,5 @@
 // Tension of a spring from its elongation and elongation rate, its generalized forces on both bodies, and their
-// analytical derivatives by coordinates and velocities.
+// analytical derivatives with respect to coordinates and velocities.
 #include "multibody/force_element.hpp"
 
 #include <cmath>
@@ -11,16 +11,16 @@ using Eigen::Vector2d;
 
 namespace {
 
-constexpr double shortest = 1e-12;  // m; below it a spring has no direction
+constexpr double shortest = 1e-12;  // m; a shorter spring has no direction
 
-/// The line of a spring and its tension.
+/// The geometry and tension of a spring.
 struct Line {
   Vector2d a1, a2;          // arms, global components
   Vector2d d, rate;         // from the first to the second point, and its time derivative
   double length;            // m
-  Vector2d u;               // unit vector along d, zero for a spring shrunk to a point
-  double elastic;           // N, without the damper; meaningless with a law
-  double force_per_length;  // N/m: tension / length, its limit for a zero-length spring
+  Vector2d u;               // unit vector along d, zero for a spring of zero length
+  double elastic;           // N, without the damper; not meaningful with a law
+  double force_per_length;  // N/m: tension/length, or its limit for a zero-length spring
   double stiffness;         // N/m: tangents of the tension
   double damping;           // N s/m
   double dissipation;       // W, in the damper
@@ -35,7 +35,7 @@ struct Line {
         stiffness(s.stiffness),
         damping(s.damping) {
     if (s.law != nullptr) [[unlikely]] {
-      obey(s);
+      apply_law(s);
       return;
     }
     const bool zero_length_spring = s.preload == 0.0 && s.reference_length <= shortest;
@@ -47,8 +47,8 @@ struct Line {
       force_per_length = zero_length_spring ? s.stiffness : 0.0;
     }
   }
-  /// Tension and tangents of a spring with a law.
-  void obey(const SpringGeometry& s) {
+  /// Sets tension and tangents by the law of the spring.
+  void apply_law(const SpringGeometry& s) {
     const Tension t = tension(*s.law, length - s.reference_length, u.dot(rate));
     stiffness = t.by_elongation;
     damping = t.by_rate;
@@ -111,7 +111,7 @@ PairForce spring_force(const SpringGeometry& spring, const Frame& first, const F
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second, double& dissipation) {
   const Line line(spring, first, second);
   dissipation += line.dissipation;
-  const Vector2d f = line.force();  // on the first body; the second is pulled the other way
+  const Vector2d f = line.force();  // on the first body; the opposite acts on the second
   PairForce g;
   g << f, quarter_turn(line.a1).dot(f), -f, -quarter_turn(line.a2).dot(f);
   return g;

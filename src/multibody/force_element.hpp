@@ -1,5 +1,5 @@
 // Springs, dampers and torsion springs between two bodies, with their derivatives and energies.
-// Generalized forces are those of the paper's g in eq. 42, columns x1 y1 phi1 x2 y2 phi2.
+// Generalized forces are those of g in eq. 42 of the paper, columns x1 y1 phi1 x2 y2 phi2.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ namespace traverse::multibody {
 using PairForce = Eigen::Matrix<double, 6, 1>;
 using PairMatrix = Eigen::Matrix<double, 6, 6>;
 
-/// A spring in body-fixed terms: tension = preload + stiffness*(length - reference_length) + damping*rate, or
+/// A spring in body-fixed components: tension = preload + stiffness*(length - reference_length) + damping*rate, or
 /// law(length - reference_length, rate).
 struct SpringGeometry {
   int first = ground;
@@ -40,25 +40,25 @@ struct TorsionGeometry {
 SpringGeometry spring_geometry(const Spring& spring, const Frame& first, const Frame& second);
 TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first, const Frame& second);
 
-/// Generalized force on both bodies. A spring shrunk to a point has no direction: it then only pulls with
-/// stiffness times displacement when it is a zero-length spring, and not at all otherwise.
+/// Generalized force on both bodies. A spring whose length is zero has no direction: its force is stiffness times
+/// displacement if it is a zero-length spring, and zero otherwise.
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second);
-/// The same, with the power lost in the damper added to `dissipation`, W.
+/// The same; the power dissipated in the damper, W, is added to `dissipation`.
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second, double& dissipation);
-/// Tension along the spring, N, damper included.
+/// Tension along the spring, N, including the damper.
 double spring_tension(const SpringGeometry& spring, const Frame& first, const Frame& second);
 /// Derivatives of spring_force with respect to the coordinates and to the velocities.
 void spring_derivatives(const SpringGeometry& spring, const Frame& first, const Frame& second, PairMatrix& g_q,
                         PairMatrix& g_qd);
-/// Stored energy, J: its slope over length is the elastic tension. Zero where that tension is zero; with a
-/// preload and no stiffness, and with a law, zero at the reference length.
+/// Stored energy, J; its derivative over length is the elastic tension. It is zero where that tension is zero; with a
+/// preload and no stiffness, and with a law, it is zero at the reference length.
 double spring_strain_energy(const SpringGeometry& spring, const Frame& first, const Frame& second);
-/// Power lost in the damper, W, >= 0.
+/// Power dissipated in the damper, W, >= 0.
 double spring_dissipation(const SpringGeometry& spring, const Frame& first, const Frame& second);
 
 /// Moment on the second body; the opposite acts on the first.
 double torsion_moment(const TorsionGeometry& spring, const Frame& first, const Frame& second);
-/// What the moment on the second body falls by with the twist and with its rate.
+/// Decrease of the moment on the second body per twist and per rate of twist.
 struct TorsionTangent {
   double stiffness = 0.0;  // N m/rad
   double damping = 0.0;    // N m s/rad

@@ -28,7 +28,7 @@ void Mechanism::compute_forces(MechanismState& s) const {
     }
   }
   if (applied_.size() > 0) s.g += applied_;
-  if (rubs()) place_friction(s);
+  if (has_friction()) place_friction(s);
 }
 
 void Mechanism::apply(int body, const Eigen::Vector3d& action) {
@@ -67,7 +67,7 @@ void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by
     K(2, 5) = K(5, 2) = k;
     add_pair_times_B(spring.first, spring.second, K, s, product);
   }
-  if (rubs()) multiply_friction_tangent(s, by_q, by_qd, product);
+  if (has_friction()) multiply_friction_tangent(s, by_q, by_qd, product);
   if (by_lambda == 0.0) return;
   for (const JointGeometry& joint : joints_) {
     joint_curvature(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row, K);

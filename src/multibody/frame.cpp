@@ -6,7 +6,7 @@
 namespace traverse::multibody {
 namespace {
 
-constexpr double small_angle = 0.1;  // rad: up to it the series below are exact to rounding
+constexpr double small_angle = 0.1;  // rad: for smaller angles the series below are exact to rounding
 
 }  // namespace
 

@@ -1,10 +1,10 @@
-// Dry friction in sliding joints, whose normal forces depend on the accelerations and so on the friction itself.
+// Dry friction in sliding joints, whose normal forces depend on the accelerations and thus on the friction itself.
 //
-// Along the axis of joint k acts f_k = -(mu_k |lambda_k| + F_k) tanh(v_k/v0_k). All else being given, lambda is linear
-// in f: lambda = lambda_0 + G f, in a motion that follows the forces as in one that is given (G differs). With signs
-// assumed for the lambda_k this is a small linear system; the signs that solve it are found by repeating it (Newton on
-// a function of straight pieces: it ends after finitely many). Friction that outgrows what causes it, G_kk mu_k >= 1,
-// jams: then there is no solution or more than one (Painleve's paradox).
+// The friction along the axis of joint k is f_k = -(mu_k |lambda_k| + F_k) tanh(v_k/v0_k). lambda is linear in f,
+// lambda = lambda_0 + G f, both for accelerations that follow from the forces and for given accelerations (G differs).
+// With assumed signs of the lambda_k this is a small linear system. The correct signs are found by repeated solution
+// (Newton's method for a piecewise linear function, which ends after finitely many steps). If friction exceeds its
+// cause, G_kk mu_k >= 1, a joint jams: there is no solution or more than one (Painleve's paradox).
 #include <cmath>
 
 #include "multibody/mechanism.hpp"
@@ -13,11 +13,11 @@
 namespace traverse::multibody {
 
 namespace {
-constexpr int most_signs = 30;             // tried
-constexpr double least_determined = 1e-6;  // determinant of what solves for lambda; without friction it is 1
+constexpr int max_trials = 30;            // number of trial solutions
+constexpr double min_determinant = 1e-6;  // determinant of the system for lambda; without friction it is 1
 
-/// Gauss and Jordan with pivots from the column; `matrix` is used up. Returns the determinant. Without memory of its
-/// own.
+/// Gauss-Jordan inversion with partial pivoting and without memory allocation; `matrix` is overwritten. Returns the
+/// determinant.
 double invert(Eigen::MatrixXd& matrix, Eigen::MatrixXd& inverse) {
   double determinant = 1.0;
   inverse.setIdentity();
@@ -47,12 +47,12 @@ double invert(Eigen::MatrixXd& matrix, Eigen::MatrixXd& inverse) {
 
 }  // namespace
 
-/// With positions and velocities set: what friction needs of them.
+/// Computes the quantities of friction that depend on positions and velocities only.
 void Mechanism::place_friction(MechanismState& s) const {
   FrictionState& r = s.friction;
-  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+  for (std::size_t i = 0; i < friction_joints_.size(); ++i) {
     const int k = static_cast<int>(i);
-    const JointGeometry& joint = joints_[rubbing_[i]];
+    const JointGeometry& joint = joints_[friction_joints_[i]];
     const PairForce gradient = slide_gradient(joint, frame(s, joint.first), frame(s, joint.second));
     if (joint.first != ground) r.A.col(k).segment<3>(3 * joint.first) = gradient.head<3>();
     if (joint.second != ground) r.A.col(k).segment<3>(3 * joint.second) = gradient.tail<3>();
@@ -67,11 +67,11 @@ void Mechanism::place_friction(MechanismState& s) const {
   }
 }
 
-/// The part that does not depend on normal forces: into r.force, and onto s.work.
-void Mechanism::add_level(MechanismState& s) const {
+/// Sets r.force to the friction that is independent of normal forces and adds it to s.work.
+void Mechanism::add_constant_friction(MechanismState& s) const {
   FrictionState& r = s.friction;
   r.jammed = false;
-  for (int k = 0; k < r.force.size(); ++k) r.force[k] = -joints_[rubbing_[k]].friction.force * r.share[k];
+  for (int k = 0; k < r.force.size(); ++k) r.force[k] = -joints_[friction_joints_[k]].friction.force * r.share[k];
   add_friction(s);
 }
 
@@ -81,13 +81,13 @@ void Mechanism::add_friction(MechanismState& s) const {
 }
 
 /// Solves lambda = start - gain diag(mu share) |lambda|. The signs of the last lambda are tried first.
-void Mechanism::settle(MechanismState& s) const {
+void Mechanism::solve_normal_forces(MechanismState& s) const {
   FrictionState& r = s.friction;
-  const auto count = static_cast<int>(rubbing_.size());
-  const auto slope = [&](int k) { return joints_[rubbing_[k]].friction.coefficient * r.share[k]; };
+  const auto count = static_cast<int>(friction_joints_.size());
+  const auto slope = [&](int k) { return joints_[friction_joints_[k]].friction.coefficient * r.share[k]; };
   for (int k = 0; k < count; ++k)
     if (std::abs(r.gain(k, k) * slope(k)) >= 1.0) r.jammed = true;
-  for (int i = 0; i < most_signs; ++i) {
+  for (int i = 0; i < max_trials; ++i) {
     for (int k = 0; k < count; ++k) r.by_lambda[k] = std::signbit(r.normal_force[k]) ? -slope(k) : slope(k);
     for (int k = 0; k < count; ++k) r.system.col(k) = r.by_lambda[k] * r.gain.col(k);
     r.system.diagonal().array() += 1.0;
@@ -99,14 +99,14 @@ void Mechanism::settle(MechanismState& s) const {
       r.normal_force[k] = lambda;
     }
     if (!same) continue;
-    if (!(determinant > least_determined)) r.jammed = true;
+    if (!(determinant > min_determinant)) r.jammed = true;
     return;
   }
   r.jammed = true;
 }
 
-/// With normal forces known: the part of the friction that they cause, into r.force and onto s.work.
-void Mechanism::force_of_normals(MechanismState& s) const {
+/// Adds the friction due to the known normal forces to r.force and s.work.
+void Mechanism::add_normal_friction(MechanismState& s) const {
   FrictionState& r = s.friction;
   for (int k = 0; k < r.force.size(); ++k) {
     const double force = -r.by_lambda[k] * r.normal_force[k];
@@ -115,8 +115,8 @@ void Mechanism::force_of_normals(MechanismState& s) const {
   }
 }
 
-/// r.work = force - N q'', the motion following from the force alone. With the reduced mass factored.
-void Mechanism::respond(MechanismState& s, const Eigen::Ref<const Eigen::VectorXd>& force) const {
+/// r.work = force - N q'' for the motion that follows from the force alone. The reduced mass must be factorised.
+void Mechanism::compute_response(MechanismState& s, const Eigen::Ref<const Eigen::VectorXd>& force) const {
   FrictionState& r = s.friction;
   s.dependent_block.project(force, s.reduced);
   s.reduced_mass.solve(s.reduced);
@@ -125,39 +125,39 @@ void Mechanism::respond(MechanismState& s, const Eigen::Ref<const Eigen::VectorX
   r.work = force - mass_.cwiseProduct(r.work);
 }
 
-/// s.work = g + Q - N d: adds friction to it, the accelerations being free.
+/// s.work = g + Q - N d: adds friction to it, with unknown accelerations.
 void Mechanism::friction_in_motion(MechanismState& s) const {
   FrictionState& r = s.friction;
-  add_level(s);
-  if (!presses_) return;
-  respond(s, s.work);
+  add_constant_friction(s);
+  if (!has_normal_friction_) return;
+  compute_response(s, s.work);
   for (int k = 0; k < r.start.size(); ++k) r.start[k] = r.H.col(k).dot(r.work);
   for (int k = 0; k < r.start.size(); ++k) {
-    respond(s, r.A.col(k));
+    compute_response(s, r.A.col(k));
     for (int j = 0; j < r.start.size(); ++j) r.gain(j, k) = r.H.col(j).dot(r.work);
   }
-  settle(s);
-  force_of_normals(s);
+  solve_normal_forces(s);
+  add_normal_friction(s);
 }
 
-/// s.work = g + Q - N q'': adds friction to it, the accelerations being given.
+/// s.work = g + Q - N q'': adds friction to it, with given accelerations.
 void Mechanism::friction_in_given_motion(MechanismState& s) const {
   FrictionState& r = s.friction;
-  add_level(s);
-  if (!presses_) return;
+  add_constant_friction(s);
+  if (!has_normal_friction_) return;
   for (int k = 0; k < r.start.size(); ++k) r.start[k] = r.H.col(k).dot(s.work);
   for (int k = 0; k < r.start.size(); ++k)
     for (int j = 0; j < r.start.size(); ++j) r.gain(j, k) = r.H.col(j).dot(r.A.col(k));
-  settle(s);
-  force_of_normals(s);
+  solve_normal_forces(s);
+  add_normal_friction(s);
 }
 
-// A change r of the residual at fixed lambda makes lambda change by -(1 + gain by_lambda)^-1 H^T r in the joints with
-// friction, and the friction with it: the projection sees B^T (r - A by_lambda (1 + gain by_lambda)^-1 H^T r).
+// A change r of the residual at fixed lambda changes lambda by -(1 + gain by_lambda)^-1 H^T r in the joints with
+// friction, and thus the friction. The projection is then B^T (r - A by_lambda (1 + gain by_lambda)^-1 H^T r).
 void Mechanism::friction_projector(const MechanismState& s, Eigen::MatrixXd& projector) const {
   const FrictionState& r = s.friction;
   projector = s.B;
-  if (!presses_) return;
+  if (!has_normal_friction_) return;
   for (int k = 0; k < r.start.size(); ++k) {
     if (r.by_lambda[k] == 0.0) continue;
     for (int column = 0; column < projector.cols(); ++column) {
@@ -167,15 +167,15 @@ void Mechanism::friction_projector(const MechanismState& s, Eigen::MatrixXd& pro
   }
 }
 
-std::string Mechanism::jam(const MechanismState& s) const {
+std::string Mechanism::describe_jam(const MechanismState& s) const {
   const FrictionState& r = s.friction;
   int worst = 0;
   const auto growth = [&](int k) {
-    return std::abs(r.gain(k, k) * r.share[k]) * joints_[rubbing_[k]].friction.coefficient;
+    return std::abs(r.gain(k, k) * r.share[k]) * joints_[friction_joints_[k]].friction.coefficient;
   };
   for (int k = 1; k < r.share.size(); ++k)
     if (growth(k) > growth(worst)) worst = k;
-  return "vehicle '" + model_.name + "': friction jams joint '" + model_.joints[rubbing_[worst]].name +
+  return "vehicle '" + model_.name + "': friction jams joint '" + model_.joints[friction_joints_[worst]].name +
          "', it causes more normal force than it needs; take a lower friction coefficient or a shorter arm";
 }
 
@@ -183,9 +183,9 @@ void Mechanism::multiply_friction_tangent(const MechanismState& s, double by_q, 
                                           Eigen::MatrixXd& product) const {
   const FrictionState& r = s.friction;
   JointCurvature curvature;
-  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+  for (std::size_t i = 0; i < friction_joints_.size(); ++i) {
     const int k = static_cast<int>(i);
-    const JointGeometry& joint = joints_[rubbing_[i]];
+    const JointGeometry& joint = joints_[friction_joints_[i]];
     const Frame &first = frame(s, joint.first), &second = frame(s, joint.second);
     const PairForce gradient = slide_gradient(joint, first, second);
     slide_curvature(joint, first, second, curvature);

@@ -1,6 +1,6 @@
-// Constraint equations of the joints with their derivatives (the paper's eqs. 42-44), one joint at a time.
+// Constraint equations of a joint with their derivatives (eqs. 42-44 of the paper).
 //
-// Every joint is made of kinds of equations between a first and a second body, each in a file of its own:
+// A joint consists of one or more kinds of equations between a first and a second body. Each kind has a separate file:
 //   point     P2 - P1 = 0                   2 equations, m                                  equations/point.hpp
 //   normal    n . (P2 - r1) - offset = 0    1 equation, m; n is fixed in the first body,    equations/normal.hpp
 //                                           r1 its centre of mass
@@ -8,10 +8,10 @@
 //                                           so that lambda is a force
 //   angle     phi2 - phi1 - angle = 0       1 equation, rad                                 equations/angle.hpp
 //   gear      phi2 + ratio phi1 - angle = 0 1 equation, rad                                 equations/gear.hpp
-// A kind has its number of rows, whether they are about an angle, what it needs to know of the joint (JointNeeds), and
-// the functions prepare, residual, gradient, gamma, curvature and reaction, of which the functions below are made.
-// Which types of joints there are stands in joint_types.cpp. With N q'' + Phi_q^T lambda = g, the joint acts on the
-// second body with -lambda.
+// Each kind defines its number of rows, whether they are angles, the members of Joint that it needs (JointNeeds), and
+// the functions prepare, residual, gradient, gamma, curvature and reaction, which the functions below combine.
+// joint_types.cpp contains the table of joint types. With N q'' + Phi_q^T lambda = g, the joint acts on the second body
+// with -lambda.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@
 
 namespace traverse::multibody {
 
-/// A joint in body-fixed terms.
+/// A joint in body-fixed components.
 struct JointGeometry {
   JointType type = JointType::revolute;
   int first = ground;
@@ -29,18 +29,18 @@ struct JointGeometry {
   int row = 0;                                           // of Phi
   Eigen::Vector2d first_arm = Eigen::Vector2d::Zero();   // m, to the joint's point, in the first body
   Eigen::Vector2d second_arm = Eigen::Vector2d::Zero();  // m, in the second body
-  Eigen::Vector2d normal = Eigen::Vector2d::UnitX();     // across the axis, in the first body
+  Eigen::Vector2d normal = Eigen::Vector2d::UnitX();     // normal to the axis, in the first body
   double offset = 0.0;                                   // m, normal . first_arm
   double angle = 0.0;                                    // rad, phi2 - phi1 at t = 0
-  double length = 0.0;                                   // m, of a distance
-  std::array<double, most_joint_numbers> numbers = {};   // of the type's own
+  double length = 0.0;                                   // m, of a distance joint
+  std::array<double, most_joint_numbers> numbers = {};   // additional numbers of the type
   SlidingFriction friction;
 };
 
 /// `first` and `second` are the bodies' frames at t = 0.
 JointGeometry joint_geometry(const Joint& joint, const Frame& first, const Frame& second, int row);
 
-/// Phi of the joint, one value a row of its type.
+/// Phi of the joint, one value per row of its type.
 inline void joint_residual(const JointGeometry& joint, const Frame& first, const Frame& second, double* Phi) {
   joint.type->residual(joint, first, second, Phi);
 }
@@ -57,14 +57,14 @@ inline void joint_curvature(const JointGeometry& joint, const Frame& first, cons
                             JointCurvature& curvature) {
   joint.type->curvature(joint, first, second, lambda, curvature);
 }
-/// The sliding of a joint that slides is that of the joint's point on the second body along the axis, as seen
-/// from the first. Its gradient, columns x1 y1 phi1 x2 y2 phi2: times the velocities it is the sliding speed, times a
-/// force along the axis it is the generalized force of that on the second body and its opposite on the first, both at
-/// this point.
+/// The gradient of the sliding displacement, columns x1 y1 phi1 x2 y2 phi2. This displacement is that of the joint's
+/// point on the second body along the axis, relative to the first body. The gradient times the velocities is the
+/// sliding speed. Times a force along the axis, it is the generalized force of this force on the second body and its
+/// opposite on the first, both at this point.
 Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& joint, const Frame& first, const Frame& second);
 /// The derivative of slide_gradient; symmetric.
 void slide_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, JointCurvature& curvature);
-/// Force on the second body and moment on it about the joint's point there (about `to` where it has one).
+/// Force on the second body, and moment on it about the joint's point on this body (about `to` if the joint has one).
 inline Eigen::Vector3d joint_reaction(const JointGeometry& joint, const Frame& first, const Frame& second,
                                       const double* lambda) {
   return joint.type->reaction(joint, first, second, lambda);

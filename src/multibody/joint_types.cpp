@@ -15,14 +15,14 @@ namespace {
 
 using namespace equations;
 
-/// A joint made of these kinds of equations, one after the other.
+/// A joint of these kinds of equations, in this order.
 template <class First, class... Others>
-struct MadeOf {
+struct Combination {
   static constexpr int rows = (First::rows + ... + Others::rows);
   static_assert(rows <= most_joint_rows, "most_joint_rows has to be larger");
   static_assert(!(false || ... || Others::needs.axis), "the equation of the normal force has to be the first one");
 
-  /// Calls use(kind, first row of it) for every kind.
+  /// Calls use(kind, its first row) for every kind.
   template <class Use>
   static constexpr void each(Use use) {
     int row = 0;
@@ -76,7 +76,7 @@ struct MadeOf {
 
 template <class... Kinds>
 constexpr JointRow row(std::string_view name, std::string_view text, std::span<const JointNumber> numbers = {}) {
-  using Joint = MadeOf<Kinds...>;
+  using Joint = Combination<Kinds...>;
   return {name,
           text,
           numbers,
@@ -129,10 +129,10 @@ JointType JointType::named(std::string_view name) {
 
 std::string joint_names(bool (*fits)(const JointRow&), std::string_view between, std::string_view last) {
   std::string names;
-  const auto left = [&](const JointRow* from) { return std::any_of(from, std::end(table), fits); };
+  const auto any_from = [&](const JointRow* from) { return std::any_of(from, std::end(table), fits); };
   for (const JointRow* row = table; row != std::end(table); ++row) {
     if (!fits(*row)) continue;
-    if (!names.empty()) names += left(row + 1) ? between : last;
+    if (!names.empty()) names += any_from(row + 1) ? between : last;
     names += row->name;
   }
   return names;

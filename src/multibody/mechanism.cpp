@@ -1,4 +1,4 @@
-// A mechanism's fixed data, its states, and what is read from them.
+// The constant data of a mechanism, its states, and the results in a state.
 #include "multibody/mechanism.hpp"
 
 #include <algorithm>
@@ -36,8 +36,8 @@ Mechanism::Mechanism(MechanismModel model) : model_(std::move(model)) {
                                      joint_row_count_));
     joint_row_count_ += joint.type->rows;
     if (!joint.friction.acts()) continue;
-    rubbing_.push_back(static_cast<int>(joints_.size()) - 1);
-    presses_ = presses_ || joint.friction.coefficient > 0.0;
+    friction_joints_.push_back(static_cast<int>(joints_.size()) - 1);
+    has_normal_friction_ = has_normal_friction_ || joint.friction.coefficient > 0.0;
   }
   for (const Spring& spring : model_.springs) {
     springs_.push_back(
@@ -49,25 +49,25 @@ Mechanism::Mechanism(MechanismModel model) : model_(std::move(model)) {
   }
   find_scaling();
   find_pattern();
-  if (constraints() == 0) {  // nothing to choose
+  if (constraints() == 0) {  // all coordinates are independent
     for (int i = 0; i < coordinates(); ++i) partition_.independent.push_back(i);
     partition_version_ = 1;
   }
 }
 
 int Mechanism::coordinates() const { return 3 * static_cast<int>(model_.bodies.size()); }
-bool Mechanism::take_pieces(double t) {
-  bool other = false;
+bool Mechanism::select_pieces(double t) {
+  bool changed = false;
   for (Driver& driver : model_.drivers)
-    if (driver.value.jumps()) other = driver.value.take_piece(t) || other;
-  return other;
+    if (driver.value.jumps()) changed = driver.value.select_piece(t) || changed;
+  return changed;
 }
 
 int Mechanism::constraints() const { return joint_row_count_ + static_cast<int>(model_.drivers.size()); }
 int Mechanism::freedom() const { return static_cast<int>(partition_.independent.size()); }
 
-/// Angles count at twice the longest arm of a joint, so that pivoting prefers to keep angles independent: a crank's
-/// angle serves through its dead points, where the slider's position does not.
+/// Scales angles by twice the longest arm of a joint, so that pivoting prefers angles as independent coordinates: the
+/// angle of a crank is a valid coordinate at its dead points, the position of the slider is not.
 void Mechanism::find_scaling() {
   double arm = 0.0;
   for (const JointGeometry& joint : joints_) {
@@ -90,7 +90,7 @@ void Mechanism::find_scaling() {
   }
 }
 
-/// Probes Phi_q with the bodies moved about: what is zero in such a position is zero in all.
+/// Evaluates Phi_q in two arbitrary positions of the bodies: entries that are zero in both are zero in all positions.
 void Mechanism::find_pattern() {
   pattern_.assign(static_cast<std::size_t>(constraints()) * coordinates(), 0);
   MechanismState s = make_state();
@@ -116,8 +116,8 @@ MechanismState Mechanism::make_state() const {
     s.qd.segment<3>(3 * i) = model_.bodies[i].velocity;
     s.frames[i + 1] = start_frame(model_, i);
   }
-  if (rubs()) {
-    const auto r = static_cast<int>(rubbing_.size());
+  if (has_friction()) {
+    const auto r = static_cast<int>(friction_joints_.size());
     FrictionState& friction = s.friction;
     for (Eigen::MatrixXd* matrix : {&friction.A, &friction.H}) matrix->setZero(n, r);
     for (Eigen::MatrixXd* matrix : {&friction.gain, &friction.system, &friction.inverse}) matrix->setZero(r, r);
@@ -127,7 +127,7 @@ MechanismState Mechanism::make_state() const {
     friction.unit.setZero(m);
     friction.work.setZero(n);
   }
-  fit(s);
+  prepare_workspaces(s);
   return s;
 }
 
@@ -141,8 +141,8 @@ const std::string& Mechanism::part_name(int row) const {
 const char* Mechanism::row_unit(int row) const {
   if (row >= joint_row_count_) return model_.drivers[row - joint_row_count_].coordinate == 2 ? "rad" : "m";
   for (const JointGeometry& joint : joints_) {
-    const int own = row - joint.row;
-    if (own >= 0 && own < joint.type->rows) return joint.type->angle[static_cast<std::size_t>(own)] ? "rad" : "m";
+    const int local = row - joint.row;
+    if (local >= 0 && local < joint.type->rows) return joint.type->angle[static_cast<std::size_t>(local)] ? "rad" : "m";
   }
   return "m";
 }
@@ -155,9 +155,9 @@ Eigen::Vector3d Mechanism::joint_reaction(const MechanismState& s, int j) const 
   const JointGeometry& joint = joints_[j];
   Eigen::Vector3d reaction =
       multibody::joint_reaction(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row);
-  const auto rubbing = std::find(rubbing_.begin(), rubbing_.end(), j);
-  if (rubbing != rubbing_.end()) {
-    const double force = s.friction.force[rubbing - rubbing_.begin()];
+  const auto found = std::find(friction_joints_.begin(), friction_joints_.end(), j);
+  if (found != friction_joints_.end()) {
+    const double force = s.friction.force[found - friction_joints_.begin()];
     reaction.head<2>() += force * frame(s, joint.first).to_global(quarter_turn(joint.normal));
   }
   return reaction;

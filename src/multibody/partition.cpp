@@ -1,4 +1,4 @@
-// The choice of independent coordinates by full pivoting, and the checks of what it leaves out.
+// The choice of independent coordinates by full pivoting, and the checks of dropped rows.
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -11,15 +11,15 @@ namespace traverse::multibody {
 
 namespace {
 
-constexpr double rank_tolerance = 1e-8;      // scaled pivots below are rounding or sloppy geometry
-constexpr double tie = 1e-9;                 // pivots closer than this are equal, so that rounding decides nothing
-constexpr double nearly_singular = 1e-2;     // scaled pivots of a new choice must be larger
-constexpr double poor_quality = 0.05;        // of a partition, over that when it was chosen
+constexpr double rank_tolerance = 1e-8;  // scaled pivots below are due to rounding or inaccurate geometry
+constexpr double tie = 1e-9;  // pivots closer than this are equal, so that the choice is independent of rounding
+constexpr double nearly_singular = 1e-2;     // smallest scaled pivot of a new choice
+constexpr double poor_quality = 0.05;        // of a partition, relative to its quality when it was chosen
 constexpr double position_tolerance = 1e-6;  // of the mechanism's size
-constexpr double rate_tolerance = 1e-6;      // of the terms that should cancel
-constexpr double rate_floor = 1e-9;          // of the mechanism's size, per s or s2: less is rest
-constexpr double moved_far = 1e-3;           // of the mechanism's size: then the choice is made again
-constexpr double probe = 1e-3;               // of the mechanism's size: the step that tells a dead point
+constexpr double rate_tolerance = 1e-6;      // relative to the terms that should cancel
+constexpr double rate_floor = 1e-9;          // of the mechanism's size, per s or s2: smaller rates are zero
+constexpr double repeat_distance = 1e-3;     // of the mechanism's size: after a larger motion the choice is repeated
+constexpr double probe = 1e-3;               // of the mechanism's size: the step that detects a dead point
 constexpr double probe_tolerance = 1e-9;     // of the mechanism's size
 
 /// Gaussian elimination with full pivoting on a scaled copy of Phi_q.
@@ -27,7 +27,7 @@ class FullPivoting {
  public:
   explicit FullPivoting(const Eigen::MatrixXd& scaled) : column_used_(scaled.cols(), false) { A_.assign(scaled); }
 
-  /// Eliminates with the rows in [from, to) as long as there is a pivot.
+  /// Eliminates with the rows in [from, to) while there is a pivot.
   void eliminate(int from, int to) {
     int row, column;
     while (find(from, to, row, column)) {
@@ -37,7 +37,7 @@ class FullPivoting {
     }
   }
 
-  double least_pivot() const { return least_; }
+  double least_pivot() const { return least_pivot_; }
 
   Partition partition() const {
     Partition p;
@@ -48,7 +48,8 @@ class FullPivoting {
   }
 
  private:
-  /// Of equal pivots the last column and the first row: a body listed first keeps its coordinates independent.
+  /// Finds the largest pivot: of equal ones the last column and the first row, so that the coordinates of a body listed
+  /// first remain independent.
   bool find(int from, int to, int& row, int& column) {
     double best = 0.0;
     for (int i = from; i < to; ++i) {
@@ -65,14 +66,14 @@ class FullPivoting {
         row = i;
       }
     }
-    least_ = std::min(least_, best);
+    least_pivot_ = std::min(least_pivot_, best);
     return true;
   }
 
   ActiveRows A_;
   std::vector<int> row_used_;
   std::vector<bool> column_used_;
-  double least_ = 1.0;
+  double least_pivot_ = 1.0;
 };
 
 std::string number(double value) {
@@ -104,7 +105,7 @@ std::vector<std::string> Mechanism::choose_partition(MechanismState& s, double t
   }
   std::vector<std::string> names;
   for (const int row : dropped) {
-    const std::string& name = part_name(row);  // a part's rows stand together
+    const std::string& name = part_name(row);  // the rows of a part are consecutive
     if (names.empty() || names.back() != name) names.push_back(name);
   }
   chosen_quality_ = partition_quality(s);
@@ -130,29 +131,29 @@ void Mechanism::adopt_partition(MechanismState& s, const Partition& partition) {
   if (partition.independent == partition_.independent) return;
   partition_ = partition;
   ++partition_version_;
-  fit(s);
+  prepare_workspaces(s);
   Eigen::VectorXd pd(freedom());
   for (int k = 0; k < freedom(); ++k) pd[k] = s.qd[partition_.independent[k]];
   set_velocities(s, s.time, pd.data());
   chosen_quality_ = partition_quality(s);
 }
 
-/// Chooses the partition and solves the constraints; again when the bodies moved far in doing so.
+/// Chooses the partition and solves the constraints; repeats this if the bodies move far.
 void Mechanism::assemble(MechanismState& s, double t) {
   for (int pass = 0; pass < 4; ++pass) {
     place_frames(s);
     compute_Phi_q(s);
     partition_ = pivot(s).partition;
     ++partition_version_;
-    fit(s);
-    s.factored = s.factors_belong = false;
+    prepare_workspaces(s);
+    s.factored = s.factors_current = false;
     const Eigen::VectorXd start = s.q;
     if (!solve_dependent(s, t)) {
       throw InputError("vehicle '" + model_.name + "' cannot be put together at t = " + number(t) +
                        " s: " + worst_row(s) + "; check positions and drivers");
     }
     const double moved = (s.q - start).cwiseQuotient(scaling_.column).cwiseAbs().maxCoeff();
-    if (moved <= moved_far * length_) return;
+    if (moved <= repeat_distance * length_) return;
   }
 }
 
@@ -163,17 +164,17 @@ std::string Mechanism::worst_row(const MechanismState& s) const {
   return row_name(worst) + " is off by " + number(s.Phi[worst]) + " " + row_unit(worst);
 }
 
-/// Velocities that satisfy the constraints: the given ones, or the nearest in the metric of the masses, as after an
-/// impact of the joints.
+/// Sets velocities that satisfy the constraints: the given ones, or the nearest ones in the metric of the masses, as
+/// after an impact of the joints.
 void Mechanism::fit_velocities(MechanismState& s) const {
   const Eigen::VectorXd wanted = s.qd;
   Eigen::VectorXd pd(freedom());
   for (int k = 0; k < freedom(); ++k) pd[k] = wanted[partition_.independent[k]];
   set_velocities(s, s.time, pd.data());
-  const Eigen::VectorXd missed = wanted - s.qd;
-  if (missed.cwiseAbs().maxCoeff() <= 1e-9 * wanted.cwiseAbs().maxCoeff()) return;
+  const Eigen::VectorXd error = wanted - s.qd;
+  if (error.cwiseAbs().maxCoeff() <= 1e-9 * wanted.cwiseAbs().maxCoeff()) return;
   s.reduced_mass.factor(s.dependent_block, mass_);
-  s.dependent_block.project(mass_.cwiseProduct(missed), s.reduced);
+  s.dependent_block.project(mass_.cwiseProduct(error), s.reduced);
   s.reduced_mass.solve(s.reduced);
   pd += s.reduced;
   set_velocities(s, s.time, pd.data());
@@ -186,13 +187,14 @@ std::vector<int> Mechanism::dropped_rows() const {
   return dropped;
 }
 
-/// "vehicle 'x': driver 'b' contradicts driver 'a'": a dropped row and the kept ones that it follows from.
+/// A message such as "vehicle 'x': driver 'b' contradicts driver 'a'": a dropped row and the kept rows that it depends
+/// on.
 std::string Mechanism::conflict(MechanismState& s, int row, const std::string& verb) const {
   factor(s);
   Eigen::VectorXd share = Eigen::VectorXd::Zero(constraints());
   s.dependent_block.solve_transposed(s.Phi_q.row(row).transpose(), share);
   std::string others;
-  std::string last = row_name(row);  // a part's rows stand together
+  std::string last = row_name(row);  // the rows of a part are consecutive
   for (const int kept : partition_.rows) {
     const bool shares = std::abs(share[kept]) * scaling_.row[row] / scaling_.row[kept] > 1e-6;
     if (!shares || row_name(kept) == last || row_name(kept) == row_name(row)) continue;
@@ -212,28 +214,28 @@ void Mechanism::check_dropped_positions(MechanismState& s) const {
 
 void Mechanism::check_dropped_rates(MechanismState& s) const {
   for (const int row : dropped_rows()) {
-    const double missed = s.Phi_q.row(row).dot(s.b) + s.Phi_t[row];
+    const double error = s.Phi_q.row(row).dot(s.b) + s.Phi_t[row];
     const double terms = s.Phi_q.row(row).cwiseAbs().dot(s.b.cwiseAbs()) + std::abs(s.Phi_t[row]);
-    if (std::abs(missed) <= rate_tolerance * terms + rate_floor * length_ / scaling_.row[row]) continue;
-    throw InputError(conflict(s, row, "contradicts") + ": their speeds differ by " + number(missed) + " " +
+    if (std::abs(error) <= rate_tolerance * terms + rate_floor * length_ / scaling_.row[row]) continue;
+    throw InputError(conflict(s, row, "contradicts") + ": their speeds differ by " + number(error) + " " +
                      row_unit(row) + "/s at t = " + number(s.time) + " s");
   }
 }
 
 void Mechanism::check_dropped_accelerations(MechanismState& s) const {
   for (const int row : dropped_rows()) {
-    const double missed = s.Phi_q.row(row).dot(s.d) - s.gamma[row];
+    const double error = s.Phi_q.row(row).dot(s.d) - s.gamma[row];
     const double terms = s.Phi_q.row(row).cwiseAbs().dot(s.d.cwiseAbs()) + std::abs(s.gamma[row]);
-    if (std::abs(missed) <= rate_tolerance * terms + rate_floor * length_ / scaling_.row[row]) continue;
-    throw InputError(conflict(s, row, "contradicts") + ": their accelerations differ by " + number(missed) + " " +
+    if (std::abs(error) <= rate_tolerance * terms + rate_floor * length_ / scaling_.row[row]) continue;
+    throw InputError(conflict(s, row, "contradicts") + ": their accelerations differ by " + number(error) + " " +
                      row_unit(row) + "/s2 at t = " + number(s.time) + " s");
   }
 }
 
-/// A normal force that the other joints could take as well is not determined, nor is its friction.
+/// A normal force that other joints can carry as well is not determined, and neither is its friction.
 void Mechanism::check_dropped_friction() const {
   const std::vector<int> dropped = dropped_rows();
-  for (const int j : rubbing_) {
+  for (const int j : friction_joints_) {
     if (joints_[j].friction.coefficient == 0.0) continue;
     if (std::binary_search(dropped.begin(), dropped.end(), joints_[j].row))
       throw InputError("vehicle '" + model_.name + "', joint '" + model_.joints[j].name +
@@ -242,7 +244,7 @@ void Mechanism::check_dropped_friction() const {
   }
 }
 
-/// Rows that depend on others at a dead point only do so no more a small step away.
+/// Detects a dead point, where rows depend on others: after a small step they are independent.
 void Mechanism::check_dead_point(MechanismState& s) const {
   const Eigen::VectorXd q = s.q;
   const Eigen::VectorXd Phi = s.Phi;

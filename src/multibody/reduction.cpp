@@ -12,11 +12,11 @@ namespace traverse::multibody {
 
 namespace {
 
-constexpr double acceptable_pivot = 0.1;  // of the largest in its row, when the order is chosen
-constexpr double worn_pivot = 0.1;        // of what it was when the order was chosen
-constexpr double no_pivot = 1e-13;        // scaled: its direction is then left as it is
+constexpr double acceptable_pivot = 0.1;  // of the largest entry in its row, for the choice of the order
+constexpr double degraded_pivot = 0.1;    // of its value when the order was chosen
+constexpr double zero_pivot = 1e-13;      // scaled: with a smaller pivot, the solution is zero in its direction
 
-/// The pivot that fills least (Markowitz) among those large enough in their row; the larger one of two that fill alike.
+/// The pivot with the least fill (Markowitz) among those large enough in their row; of equal fill the larger one.
 void find_pivot(const ActiveRows& A, int& row, int& column) {
   long best_fill = std::numeric_limits<long>::max();
   double best_size = 0.0;
@@ -73,25 +73,25 @@ void DependentBlock::choose_order(const Eigen::MatrixXd& Phi_q, const Partition&
     }
   ActiveRows active;
   active.assign(scaled);
-  std::vector<char> row_taken(m, 0), column_taken(m, 0);
+  std::vector<char> row_used(m, 0), column_used(m, 0);
   row_of_.clear();
   column_of_.clear();
-  const auto take = [&](int row, int column) {
+  const auto append = [&](int row, int column) {
     row_of_.push_back(partition.rows[row]);
     column_of_.push_back(partition.dependent[column]);
-    row_taken[row] = column_taken[column] = 1;
+    row_used[row] = column_used[column] = 1;
   };
   for (int k = 0; k < m; ++k) {
     int row = -1, column = -1;
     find_pivot(active, row, column);
     if (row < 0) break;  // singular to the last bit
     active.eliminate(row, column);
-    take(row, column);
+    append(row, column);
   }
-  for (int row = 0, column = 0; row < m; ++row) {  // what is left has no pivot
-    if (row_taken[row]) continue;
-    while (column_taken[column]) ++column;
-    take(row, column);
+  for (int row = 0, column = 0; row < m; ++row) {  // the other rows have no pivot
+    if (row_used[row]) continue;
+    while (column_used[column]) ++column;
+    append(row, column);
   }
   pivot_scale_.resize(m);
   for (int k = 0; k < m; ++k) pivot_scale_[k] = scaling.row[row_of_[k]] * scaling.column[column_of_[k]];
@@ -160,7 +160,7 @@ bool DependentBlock::factor(const Eigen::MatrixXd& Phi_q) {
   const double* numbers = Phi_q.data();
   for (const Source& s : block_sources_) block_[s.to] = numbers[s.from];
   for (const Source& s : sensitivity_sources_) sensitivity_[s.to] = -numbers[s.from];
-  bool sound = true;
+  bool accurate = true;
   least_pivot_ = 1.0;
   for (int i = 0; i < m; ++i) {
     for (const int* k = lower_.begin(i); k != lower_.end(i); ++k) {
@@ -170,10 +170,10 @@ bool DependentBlock::factor(const Eigen::MatrixXd& Phi_q) {
     }
     const double size = std::abs(block(i, i));
     least_pivot_ = std::min(least_pivot_, size * pivot_scale_[i]);
-    if (size < worn_pivot * planned_pivot_[i]) sound = false;
-    inverse_pivot_[i] = size * pivot_scale_[i] > no_pivot ? 1.0 / block(i, i) : 0.0;
+    if (size < degraded_pivot * planned_pivot_[i]) accurate = false;
+    inverse_pivot_[i] = size * pivot_scale_[i] > zero_pivot ? 1.0 / block(i, i) : 0.0;
   }
-  return sound && !nearly_singular();
+  return accurate && !nearly_singular();
 }
 
 void DependentBlock::compute_sensitivity() {
@@ -258,7 +258,7 @@ double DependentBlock::largest_sensitivity(const Scaling& scaling) const {
     for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j) {
       const double scaled =
           std::abs(sensitivity_[i * freedom() + *j]) * scaling.column[independent_[*j]] / scaling.column[column_of_[i]];
-      if (!(scaled <= largest)) largest = scaled;  // also when it is not a number
+      if (!(scaled <= largest)) largest = scaled;  // also for NaN
     }
   return largest;
 }
@@ -303,10 +303,10 @@ void ReducedMass::plan(const DependentBlock& block) {
   ldl_.plan(f, filled_);
   diagonal_.clear();
   target_.clear();
-  for (int k = 0; k < f; ++k) diagonal_.push_back(ldl_.where(k, k));
+  for (int k = 0; k < f; ++k) diagonal_.push_back(ldl_.entry_index(k, k));
   for (int i = 0; i < block.size(); ++i)
     for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a)
-      for (const int* b = a; b != block.sensitivity_end(i); ++b) target_.push_back(ldl_.where(*a, *b));
+      for (const int* b = a; b != block.sensitivity_end(i); ++b) target_.push_back(ldl_.entry_index(*a, *b));
 }
 
 void ReducedMass::factor(const DependentBlock& block, const Eigen::VectorXd& mass) {

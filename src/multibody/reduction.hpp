@@ -1,7 +1,7 @@
-// The two small factorisations behind generalized coordinate partitioning, made for mechanisms whose equations touch
-// few coordinates each. The order of elimination and the places that can be non-zero are found once (`plan`), the
-// numbers are then computed without a search, without touching a zero and without allocating. Measured on a coach
-// (21 coordinates, 11 constraints): a whole evaluation takes 1.4 us, dense factorisations and B^T N B alone 2.4 us
+// The two small factorisations of generalized coordinate partitioning, for mechanisms whose equations contain few
+// coordinates each. `plan` determines the order of elimination and the possible non-zeros once. The numerical
+// operations then need no search, no operations with zeros and no allocation. Measured on a coach (21 coordinates, 11
+// constraints): a whole evaluation takes 1.4 us, dense factorisations and B^T N B alone 2.4 us
 // (benchmarks/multibody_benchmark.cpp).
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace traverse::multibody {
 
-/// Which coordinates are independent, and which rows of Phi are kept (redundant ones are dropped).
+/// The independent coordinates, and the kept rows of Phi (redundant rows are dropped).
 struct Partition {
   std::vector<int> independent;  // f indices into q, ascending
   std::vector<int> dependent;    // as many as kept rows, ascending
@@ -20,25 +20,24 @@ struct Partition {
   void keep(base::Bytes& bytes) { bytes(independent, dependent, rows); }
 };
 
-/// Weights that make the entries of Phi_q comparable: an angle counts as the way it makes at a typical arm.
+/// Factors that make the entries of Phi_q comparable: an angle is scaled by a typical arm.
 struct Scaling {
-  Eigen::VectorXd row;     // times a row of Phi: m
-  Eigen::VectorXd column;  // times q's unit: 1 for x and y, 1/length for an angle
+  Eigen::VectorXd row;     // of a row of Phi: m
+  Eigen::VectorXd column;  // of a column of Phi_q: 1 for x and y, 1/length for an angle
 };
 
-/// How dependent coordinates follow the independent ones: coordinate[i] by value[j] for every j in its list.
+/// The sensitivity of dependent to independent coordinates: value[j] of coordinate[i] for every j in list i.
 struct Sensitivity {
-  std::vector<int> coordinate;  // of list i, in the numbering of q
+  std::vector<int> coordinate;  // of list i, as index into q
   IndexLists independent;       // 0..f-1, ascending
   std::vector<double> value;
 
   void keep(base::Bytes& bytes) { bytes(coordinate, independent, value); }
-  /// Moves q by a change of the independent coordinates, which stand at `places`.
+  /// Adds a change of the independent coordinates, whose indices in q are `places`, and its effect on the others to q.
   void add(const Eigen::VectorXd& change, const std::vector<int>& places, Eigen::VectorXd& q) const;
 };
 
-/// How many floating-point operations (+, -, *, / and square roots count one each) a call takes, from the places that
-/// are computed with.
+/// Number of floating-point operations (+, -, *, / and square roots) of a call, for the planned non-zeros.
 struct BlockOperations {
   long factor = 0, sensitivity = 0;  // compute_sensitivity
   long solve = 0;                    // or solve_transposed
@@ -48,33 +47,33 @@ struct MassOperations {
   long factor = 0, solve = 0;
 };
 
-/// LU of Phi_u, the kept rows and dependent columns of Phi_q, and the sensitivity -Phi_u^-1 Phi_p of the dependent
-/// to the independent coordinates. Vectors are given in the numbering of Phi's rows and of q.
+/// LU of Phi_u, the kept rows and dependent columns of Phi_q, and the sensitivity -Phi_u^-1 Phi_p of the dependent to
+/// the independent coordinates. Vectors have the numbering of Phi's rows and of q.
 class DependentBlock {
  public:
-  /// Chooses the order of elimination at the current numbers. `pattern` (rows x coordinates) is true where Phi_q can
-  /// ever be non-zero.
+  /// Chooses the order of elimination for the current values. `pattern` (rows x coordinates) is true where Phi_q may be
+  /// non-zero.
   void plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>& pattern, const Partition& partition,
             const Scaling& scaling);
-  /// Factors. False when a pivot has shrunk so much since the plan was made that a new one is due, or is small: in its
-  /// order at least the block is nearly singular then.
+  /// Factorises. Returns false if a pivot is so much smaller than in the plan that a new plan is needed, or if a pivot
+  /// is small: at least in this order the block is then nearly singular.
   bool factor(const Eigen::MatrixXd& Phi_q);
-  /// Computes the sensitivity; after factor.
+  /// Computes the sensitivity; factor must be called before.
   void compute_sensitivity();
 
-  /// x_u = Phi_u^-1 rhs; only the dependent places of x are written.
+  /// x_u = Phi_u^-1 rhs; only the dependent entries of x are written.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x);
-  /// y = Phi_u^-T r_u; only the kept places of y are written.
+  /// y = Phi_u^-T r_u; only the kept entries of y are written.
   void solve_transposed(const Eigen::VectorXd& r, Eigen::VectorXd& y);
   /// x_p = p and x_u = x_u + sensitivity * p.
   void expand(const double* p, Eigen::VectorXd& x) const;
   /// The projection B^T r.
   void project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced) const;
-  /// Writes the sensitivity into the dependent rows of B (n x f); the rest of B is left alone.
+  /// Writes the sensitivity into the dependent rows of B (n x f); the other rows of B remain unchanged.
   void scatter(Eigen::MatrixXd& B) const;
   /// The largest scaled sensitivity.
   double largest_sensitivity(const Scaling& scaling) const;
-  /// Whether some scaled pivot of the last factorisation has become so small that rounding shows in accelerations.
+  /// Whether a scaled pivot of the last factorisation is so small that rounding errors affect accelerations.
   bool nearly_singular() const { return least_pivot_ < small_pivot; }
   void copy_sensitivity(Sensitivity& copy) const;
   BlockOperations operations() const;
@@ -83,12 +82,13 @@ class DependentBlock {
   int freedom() const { return static_cast<int>(independent_.size()); }
   int coordinate(int pivot) const { return column_of_[pivot]; }
   int independent(int k) const { return independent_[k]; }
-  /// The independent coordinates (0..f-1, ascending) that pivot's coordinate depends on, and how much on each of them.
+  /// The independent coordinates (0..f-1, ascending) that affect the coordinate of a pivot, and the sensitivities to
+  /// them.
   const int* sensitivity_begin(int pivot) const { return sensitive_.begin(pivot); }
   const int* sensitivity_end(int pivot) const { return sensitive_.end(pivot); }
   const double* sensitivities(int pivot) const { return sensitivity_.data() + pivot * freedom(); }
   double sensitivity(int pivot, int k) const { return sensitivities(pivot)[k]; }
-  /// Takes the sensitivity from B (n x f).
+  /// Sets the sensitivity from B (n x f).
   void set_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& B);
   void keep(base::Bytes& bytes) {
     bytes(row_of_, column_of_, independent_, lower_, upper_, sensitive_, block_sources_, sensitivity_sources_, block_,
@@ -98,8 +98,8 @@ class DependentBlock {
  private:
   static constexpr double small_pivot = 3e-3;
   struct Source {
-    int from;  // in Phi_q's storage
-    int to;    // in block_ or sensitivity_
+    int from;  // index in Phi_q's storage
+    int to;    // index in block_ or sensitivity_
   };
   void choose_order(const Eigen::MatrixXd& Phi_q, const Partition& partition, const Scaling& scaling);
   void find_fill(const std::vector<char>& pattern, int rows);
@@ -112,14 +112,14 @@ class DependentBlock {
   std::vector<double> block_, sensitivity_;  // size x size, size x freedom, by rows
   std::vector<double> inverse_pivot_, planned_pivot_, pivot_scale_, work_;
   double least_pivot_ = 1.0;
-  std::vector<char> filled_;  // scratch of plan
+  std::vector<char> filled_;  // workspace of plan
 };
 
-/// L D L^T of the projected mass matrix B^T N B, eliminated in the order of least fill.
+/// L D L^T of the projected mass matrix B^T N B, with the elimination order of least fill.
 class ReducedMass {
  public:
   void plan(const DependentBlock& block);
-  /// After compute_sensitivity.
+  /// compute_sensitivity must be called before.
   void factor(const DependentBlock& block, const Eigen::VectorXd& mass);
   void solve(Eigen::VectorXd& x);  // in place
   MassOperations operations(const DependentBlock& block) const;
@@ -127,8 +127,8 @@ class ReducedMass {
 
  private:
   SparseLdl ldl_;
-  std::vector<int> diagonal_, target_;  // where the products of factor go, in their order
-  std::vector<char> filled_;            // scratch of plan
+  std::vector<int> diagonal_, target_;  // indices of the results of factor, in the order of its operations
+  std::vector<char> filled_;            // workspace of plan
 };
 
 }  // namespace traverse::multibody

@@ -1,4 +1,4 @@
-// What observers see of a state, as numbers in a row.
+// The numbers of a state that observers use, as one array.
 #include <algorithm>
 
 #include "multibody/mechanism.hpp"
@@ -7,7 +7,7 @@ namespace traverse::multibody {
 namespace {
 
 template <class State, class Visit>
-void visit_seen(State& s, Visit visit) {
+void visit_observed(State& s, Visit visit) {
   visit(&s.time, 1);
   visit(&s.dissipation, 1);
   for (auto* x : {&s.q, &s.qd, &s.qdd, &s.lambda, &s.friction.force, &s.friction.speed})
@@ -16,16 +16,16 @@ void visit_seen(State& s, Visit visit) {
 
 }  // namespace
 
-int Mechanism::seen_numbers() const {
-  return 2 + 3 * coordinates() + constraints() + 2 * static_cast<int>(rubbing_.size());
+int Mechanism::observed_size() const {
+  return 2 + 3 * coordinates() + constraints() + 2 * static_cast<int>(friction_joints_.size());
 }
 
-void Mechanism::write_seen(const MechanismState& s, double* to) const {
-  visit_seen(s, [&to](const double* x, int size) { to = std::copy_n(x, size, to); });
+void Mechanism::write_observed(const MechanismState& s, double* to) const {
+  visit_observed(s, [&to](const double* x, int size) { to = std::copy_n(x, size, to); });
 }
 
-void Mechanism::read_seen(MechanismState& s, const double* from) const {
-  visit_seen(s, [&from](double* x, int size) {
+void Mechanism::read_observed(MechanismState& s, const double* from) const {
+  visit_observed(s, [&from](double* x, int size) {
     std::copy_n(from, size, x);
     from += size;
   });

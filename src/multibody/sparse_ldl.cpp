@@ -8,7 +8,7 @@ namespace traverse::multibody {
 
 namespace {
 
-/// The index not yet placed that is coupled with the fewest others that are not.
+/// The index without a place that is coupled with the fewest others without a place.
 int least_coupled(const std::vector<char>& filled, const std::vector<int>& place) {
   const int n = static_cast<int>(place.size());
   int best = -1;
@@ -40,7 +40,7 @@ void SparseLdl::plan(int n, std::vector<char>& filled) {
     order_.push_back(next);
     for (int i = 0; i < n; ++i) {
       if (place_[i] >= 0 || !filled[next * n + i]) continue;
-      below_.index.push_back(i);  // renumbered when all places are known
+      below_.index.push_back(i);  // renumbered after all places are known
       for (int j = 0; j < n; ++j)
         if (filled[next * n + j]) filled[i * n + j] = 1;
     }
@@ -67,7 +67,7 @@ void SparseLdl::factor() {
     for (const int* j = below_.begin(k); j != below_.end(k); ++j) {
       const double l = column[*j] * inverse_[k];
       for (const int* i = j; i != below_.end(k); ++i) entries_[*j * n + *i] -= l * column[*i];
-      column[*j] = l;  // the rows further down are still to be scaled, this one is not needed again
+      column[*j] = l;  // entries below are scaled later; this entry is not read again
     }
   }
 }

@@ -1,6 +1,6 @@
-// L D L^T of a small symmetric positive definite matrix with few non-zeros, eliminated in the order of least fill. The
-// order and the places that can be non-zero are found once; numbers are then computed without touching a zero and
-// without allocating.
+// L D L^T of a small symmetric positive definite matrix with few non-zeros, with the elimination order of least fill.
+// The order and the possible non-zeros are determined once. The numerical operations then process no zeros and allocate
+// no memory.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,13 +26,13 @@ struct IndexLists {
 
 class SparseLdl {
  public:
-  /// `filled` (size x size, symmetric) is true where the matrix can be non-zero; it is overwritten.
+  /// `filled` (size x size, symmetric) is true where the matrix may be non-zero; it is overwritten.
   void plan(int size, std::vector<char>& filled);
   void set_zero();
-  /// Entry (i, j) of the matrix, to be added to; call it for one of (i, j) and (j, i) only, whichever.
-  double& entry(int i, int j) { return entries_[where(i, j)]; }
-  /// The same in two steps: the entry's place, which stays the same, and the entry at a place.
-  int where(int i, int j) const {
+  /// Entry (i, j) of the matrix, for additions; of (i, j) and (j, i) use only one, in any order.
+  double& entry(int i, int j) { return entries_[entry_index(i, j)]; }
+  /// The same in two steps: the constant index of the entry, and the entries by index.
+  int entry_index(int i, int j) const {
     const int a = place_[i], b = place_[j];
     return a < b ? a * size() + b : b * size() + a;
   }
@@ -47,10 +47,10 @@ class SparseLdl {
   void keep(base::Bytes& bytes) { bytes(order_, place_, below_, entries_, inverse_); }
 
  private:
-  std::vector<int> order_, place_;  // the index eliminated k-th, and the other way round
+  std::vector<int> order_, place_;  // index of the k-th elimination, and the inverse
   IndexLists below_;                // non-zero rows below the diagonal, by columns
   std::vector<double> entries_;     // size x size, by columns
-  std::vector<double> inverse_;     // of D
+  std::vector<double> inverse_;     // 1/D
   std::vector<double> work_;
 };
 

@@ -1,5 +1,5 @@
 // Dynamic factors phi'_dyn from the peaks of computed passages, the greatest effects of trains and load models times
-// their factors, and the findings for limits of EN 1991-2.
+// their factors, and the quantities of limits of EN 1991-2.
 #include "norm/dynamic_verdict.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 namespace traverse::norm {
 namespace {
 
-constexpr double counts_from = 0.25;  // of the greatest static effect
+constexpr double min_static_share = 0.25;  // relative to the greatest static effect
 
 }  // namespace
 
@@ -23,8 +23,10 @@ NormCheck::NormCheck(const beam::BeamModel& model, const options::NormRules& rul
   StaticBridge bridge(model);
   n0_ = bridge.first_frequency();
   const bool continuous = lengths_ != model.spans;
-  const auto asked = [&](const char* name) { return std::find(models_.begin(), models_.end(), name) != models_.end(); };
-  if (asked("lm71") && continuous && !asked("sw0")) models_.emplace_back("sw0");
+  const auto selected = [&](const char* name) {
+    return std::find(models_.begin(), models_.end(), name) != models_.end();
+  };
+  if (selected("lm71") && continuous && !selected("sw0")) models_.emplace_back("sw0");
   if (rules.length) std::fill(lengths_.begin(), lengths_.end(), *rules.length);
   std::vector<LoadModel> loads = std::move(trains);
   for (const std::string& name : models_) loads.push_back(load_model(name));
@@ -42,29 +44,30 @@ double NormCheck::factor(std::size_t load, const Place& place) const {
   return phi_at(place) * (classified(models_[load - trains_]) ? rules_.alpha : 1.0);
 }
 
-DynamicFactor NormCheck::dynamic_factor(const Passed& passed, std::size_t train, Effect effect) const {
+DynamicFactor NormCheck::dynamic_factor(const ComputedPeaks& computed, std::size_t train, Effect effect) const {
   const std::vector<Place>& places = effects_.places[static_cast<std::size_t>(effect)];
   const std::vector<double>& peaks =
-      effect == Effect::deflection ? passed.trains[train].deflection : passed.trains[train].moment;
-  std::vector<double> at_rest;
-  for (const double x : passed.probes) {
+      effect == Effect::deflection ? computed.trains[train].deflection : computed.trains[train].moment;
+  std::vector<double> static_effect;
+  for (const double x : computed.probes) {
     const auto place = std::find_if(places.begin(), places.end(), [x](const Place& p) { return p.x == x; });
-    at_rest.push_back(effects_.at(effect, train, static_cast<std::size_t>(place - places.begin())).size());
+    static_effect.push_back(effects_.at(effect, train, static_cast<std::size_t>(place - places.begin())).size());
   }
-  const double least = counts_from * *std::max_element(at_rest.begin(), at_rest.end());
-  DynamicFactor found;
-  for (std::size_t v = 0; v < passed.speeds.size(); ++v)
-    for (std::size_t p = 0; p < passed.probes.size(); ++p) {
-      if (!(at_rest[p] > 0.0 && at_rest[p] >= least)) continue;
-      const double value = peaks[v * passed.probes.size() + p] / at_rest[p] - 1.0;
-      if (value > found.value || found.speed == 0.0) found = {std::max(value, 0.0), passed.speeds[v], passed.probes[p]};
+  const double least = min_static_share * *std::max_element(static_effect.begin(), static_effect.end());
+  DynamicFactor factor;
+  for (std::size_t v = 0; v < computed.speeds.size(); ++v)
+    for (std::size_t p = 0; p < computed.probes.size(); ++p) {
+      if (!(static_effect[p] > 0.0 && static_effect[p] >= least)) continue;
+      const double value = peaks[v * computed.probes.size() + p] / static_effect[p] - 1.0;
+      if (value > factor.value || factor.speed == 0.0)
+        factor = {std::max(value, 0.0), computed.speeds[v], computed.probes[p]};
     }
-  return found;
+  return factor;
 }
 
-void NormCheck::judge(const Passed& passed) {
+void NormCheck::compare(const ComputedPeaks& computed) {
   rows_.clear();
-  speed_ = *std::max_element(passed.speeds.begin(), passed.speeds.end());
+  speed_ = *std::max_element(computed.speeds.begin(), computed.speeds.end());
   std::vector<std::size_t> models;
   for (std::size_t i = 0; i < models_.size(); ++i)
     if (models_[i] != "sw2") models.push_back(trains_ + i);
@@ -74,14 +77,14 @@ void NormCheck::judge(const Passed& passed) {
     const std::vector<Place>& places = effects_.places[e];
     if (places.empty()) continue;
     for (std::size_t train = 0; train < trains_; ++train) {
-      // Of shear, reactions and rotations no peaks are known: they take the factor of the deflection.
+      // Shear, reactions and rotations have no computed peaks: they get the factor of the deflection.
       const DynamicFactor dynamic =
-          dynamic_factor(passed, train, row.effect == Effect::moment ? Effect::moment : Effect::deflection);
-      const auto whole = [&](const Place& p) {
+          dynamic_factor(computed, train, row.effect == Effect::moment ? Effect::moment : Effect::deflection);
+      const auto factor_at = [&](const Place& p) {
         return 1.0 + dynamic.value + 0.5 * phi_of_track(speed_, length_at(p), n0_);
       };
-      const std::size_t worst = effects_.worst(row.effect, train, whole);
-      const double size = effects_.at(row.effect, train, worst).size(), value = whole(places[worst]) * size;
+      const std::size_t worst = effects_.worst(row.effect, train, factor_at);
+      const double size = effects_.at(row.effect, train, worst).size(), value = factor_at(places[worst]) * size;
       if (train > 0 && value <= row.of_train) continue;
       row.train = train;
       row.dynamic = dynamic;
@@ -90,9 +93,9 @@ void NormCheck::judge(const Passed& passed) {
       row.train_x = places[worst].x;
     }
     for (const std::size_t model : models) {
-      const auto whole = [&](const Place& p) { return factor(model, p); };
-      const std::size_t worst = effects_.worst(row.effect, model, whole);
-      const double size = effects_.at(row.effect, model, worst).size(), value = whole(places[worst]) * size;
+      const auto factor_at = [&](const Place& p) { return factor(model, p); };
+      const std::size_t worst = effects_.worst(row.effect, model, factor_at);
+      const double size = effects_.at(row.effect, model, worst).size(), value = factor_at(places[worst]) * size;
       if (model != models.front() && value <= row.of_model) continue;
       row.model = model;
       row.of_model = value;
@@ -104,50 +107,50 @@ void NormCheck::judge(const Passed& passed) {
 }
 
 results::EvaluatedQuantity NormCheck::of_lm71(Effect effect, bool over_span) const {
-  results::EvaluatedQuantity found;
+  results::EvaluatedQuantity quantity;
   if (effects_.places[static_cast<std::size_t>(effect)].empty()) {
-    found.why = "no two decks meet at a joint";
-    return found;
+    quantity.why = "the bridge has no joint between two decks";
+    return quantity;
   }
   for (std::size_t load = trains_; load < effects_.loads.size(); ++load) {
     if (models_[load - trains_] == "sw2") continue;
-    const auto whole = [&](const Place& p) { return factor(load, p) / (over_span ? p.span : 1.0); };
-    const std::size_t worst = effects_.worst(effect, load, whole);
+    const auto factor_at = [&](const Place& p) { return factor(load, p) / (over_span ? p.span : 1.0); };
+    const std::size_t worst = effects_.worst(effect, load, factor_at);
     const Place& place = effects_.places[static_cast<std::size_t>(effect)][worst];
-    const double value = effects_.at(effect, load, worst).size() * whole(place);
-    if (value <= found.value) continue;  // of none yet it is not
-    found = {value, results::EvaluatedQuantity::unknown, place.x,
-             fmt::format("{} with alpha = {:g} and Phi{} = {:.4g}", effects_.loads[load].name, rules_.alpha,
-                         rules_.careful ? 2 : 3, phi_at(place)),
-             ""};
+    const double value = effects_.at(effect, load, worst).size() * factor_at(place);
+    if (value <= quantity.value) continue;  // false if no value was found yet
+    quantity = {value, results::EvaluatedQuantity::unknown, place.x,
+                fmt::format("{} with alpha = {:g} and Phi{} = {:.4g}", effects_.loads[load].name, rules_.alpha,
+                            rules_.careful ? 2 : 3, phi_at(place)),
+                ""};
   }
-  if (std::isnan(found.value)) found.why = "LM71 is not among norm_load_models";
-  return found;
+  if (std::isnan(quantity.value)) quantity.why = "LM71 is not among norm_load_models";
+  return quantity;
 }
 
 results::EvaluatedQuantity NormCheck::of_trains() const {
-  results::EvaluatedQuantity found;
+  results::EvaluatedQuantity quantity;
   for (const Row& row : rows_) {
-    if (row.ratio() <= found.value) continue;
-    found = {row.ratio(), results::EvaluatedQuantity::unknown, row.train_x,
-             fmt::format("{} of {} at {:.4g} km/h", effect_rows[static_cast<std::size_t>(row.effect)].words,
-                         effects_.loads[row.train].name, 3.6 * row.dynamic.speed),
-             ""};
+    if (row.ratio() <= quantity.value) continue;
+    quantity = {row.ratio(), results::EvaluatedQuantity::unknown, row.train_x,
+                fmt::format("{} of {} at {:.4g} km/h", effect_rows[static_cast<std::size_t>(row.effect)].words,
+                            effects_.loads[row.train].name, 3.6 * row.dynamic.speed),
+                ""};
   }
-  if (rows_.empty()) found.why = "no passages of a train were compared with LM71";
-  return found;
+  if (rows_.empty()) quantity.why = "no passages of a train were compared with LM71";
+  return quantity;
 }
 
 void NormCheck::find(std::vector<results::Verdict>& verdicts) const {
   for (results::Verdict& verdict : verdicts) {
-    const std::string& quantity = verdict.limit.quantity;
-    if (options::limit_quantity(quantity)->finder != options::LimitFinder::norm) continue;
-    verdict.found = quantity == "train_over_lm71"       ? of_trains()
-                    : quantity == "lm71_end_rotation"   ? of_lm71(Effect::end_rotation, false)
-                    : quantity == "lm71_joint_rotation" ? of_lm71(Effect::joint_rotation, false)
-                                                        : of_lm71(Effect::deflection, true);
+    const std::string& name = verdict.limit.quantity;
+    if (options::limit_quantity(name)->finder != options::LimitFinder::norm) continue;
+    verdict.found = name == "train_over_lm71"       ? of_trains()
+                    : name == "lm71_end_rotation"   ? of_lm71(Effect::end_rotation, false)
+                    : name == "lm71_joint_rotation" ? of_lm71(Effect::joint_rotation, false)
+                                                    : of_lm71(Effect::deflection, true);
     verdict.runs = 1;
-    verdict.broken_in = 0;
+    verdict.exceeded_in = 0;
   }
 }
 

@@ -1,5 +1,5 @@
-// EN 1991-2, 6.4.6.5: the worse of (1 + phi'_dyn + phi''/2) times the static effect of a train and of Phi times that of
-// LM71, or of SW/0 on continuous bridges; and what limits ask of LM71.
+// EN 1991-2, 6.4.6.5: the larger of (1 + phi'_dyn + phi''/2) times the static effect of a train and of Phi times that
+// of LM71, or of SW/0 on continuous bridges; and the limited quantities of LM71.
 #pragma once
 
 #include <span>
@@ -13,34 +13,34 @@
 
 namespace traverse::norm {
 
-/// What the runs of one train have shown: the peaks of deflection (m) and moment (N m), magnitudes, [speed][probe].
-struct PassedTrain {
+/// Results of the runs of one train: the peaks of deflection (m) and moment (N m), magnitudes, [speed][probe].
+struct TrainPeaks {
   std::vector<double> deflection, moment;
 };
-struct Passed {
+struct ComputedPeaks {
   std::vector<double> speeds, probes;  // m/s, m
-  std::vector<PassedTrain> trains;     // in the order of the loads that are trains
+  std::vector<TrainPeaks> trains;      // in the order of the loads that are trains
 };
 
-/// phi'_dyn = max |dynamic/static| - 1, not below 0, of one train and effect: over all speeds, and the probes with at
-/// least a quarter of its greatest static effect, since nearer to supports and points of contraflexure two small
-/// numbers are compared.
+/// phi'_dyn = max |dynamic/static| - 1, not below 0, of one train and effect: over all speeds, and over the probes with
+/// at least a quarter of its greatest static effect, because the ratio of two small numbers near supports and points of
+/// contraflexure is meaningless.
 struct DynamicFactor {
   double value = 0.0, speed = 0.0, x = 0.0;  // m/s, m
 };
 
 class NormCheck {
  public:
-  /// The loads are the trains, then the rules' load models, with SW/0 beside LM71 on continuous bridges.
+  /// The loads are the trains, then the rules' load models; on continuous bridges SW/0 is added to LM71.
   NormCheck(const beam::BeamModel& model, const options::NormRules& rules, std::vector<LoadModel> trains,
             const std::vector<double>& probes);
 
-  /// Judges trains whose runs are known: 6.4.6.5. Runs that have not ended are NaN.
-  void judge(const Passed& passed);
-  /// One effect: the train that is worst, LM71 or SW/0, and which of the two governs.
+  /// Compares trains with computed runs by 6.4.6.5. Values of incomplete runs are NaN.
+  void compare(const ComputedPeaks& computed);
+  /// One effect: the governing train, LM71 or SW/0, and the ratio of both.
   struct Row {
     Effect effect = Effect::deflection;
-    std::size_t train = 0, model = 0;  // loads
+    std::size_t train = 0, model = 0;  // indices of loads
     DynamicFactor dynamic;
     double of_train = 0.0, train_x = 0.0;  // (1 + phi'_dyn + phi''/2) times static
     double of_model = 0.0, model_x = 0.0;  // Phi times alpha times static
@@ -51,17 +51,17 @@ class NormCheck {
   const std::vector<Row>& rows() const { return rows_; }
   const StaticEffects& effects() const { return effects_; }
 
-  /// Puts findings in the place of those of limits that static effects find.
+  /// Sets the quantities of the limits that follow from static effects.
   void find(std::vector<results::Verdict>& verdicts) const;
   void print() const;
-  /// /static and /norm of the file.
+  /// /static and /norm of the results file.
   void record(results::Recorder& recorder) const;
 
  private:
   double length_at(const Place& place) const;
   double phi_at(const Place& place) const;
   double factor(std::size_t load, const Place& place) const;
-  DynamicFactor dynamic_factor(const Passed& passed, std::size_t train, Effect effect) const;
+  DynamicFactor dynamic_factor(const ComputedPeaks& computed, std::size_t train, Effect effect) const;
   results::EvaluatedQuantity of_lm71(Effect effect, bool over_span) const;
   results::EvaluatedQuantity of_trains() const;
   std::string length_text() const;
@@ -71,8 +71,8 @@ class NormCheck {
   options::NormRules rules_;
   std::vector<double> lengths_;  // L_Phi of each span, m
   double n0_ = 0.0;              // Hz
-  double speed_ = 0.0;           // m/s, the greatest that was run; 0: none
-  std::size_t trains_ = 0;       // loads that are; the others are load models
+  double speed_ = 0.0;           // m/s, the greatest of the runs; 0: none
+  std::size_t trains_ = 0;       // number of loads that are trains; the others are load models
   std::vector<std::string> models_;
   StaticEffects effects_;
   std::vector<Row> rows_;

@@ -12,7 +12,7 @@ namespace {
 constexpr double percent = 0.01;
 constexpr double bounds_from = 4.0, bounds_change = 20.0, bounds_to = 100.0;  // m, of the limits of n0
 constexpr double damping_changes = 20.0, vehicles_damp_below = 30.0;          // m
-constexpr double full_speed = 22.0;  // m/s, from which on irregularities count in full
+constexpr double full_speed = 22.0;  // m/s, from which irregularities are counted in full
 
 /// c/(sqrt(L) - 0.2) + d in [1, most].
 double phi_of_length(double length, double c, double d, double most) {
@@ -31,10 +31,10 @@ double determinant_length(std::span<const double> spans) {
 std::vector<double> determinant_lengths(const beam::BeamModel& model) {
   std::vector<double> lengths;
   for (std::size_t first = 0; first < model.spans.size();) {
-    std::size_t past = first + 1;
-    while (past < model.spans.size() && model.joint(static_cast<int>(past)) != beam::Joint::separate) ++past;
-    lengths.resize(past, determinant_length(std::span(model.spans).subspan(first, past - first)));
-    first = past;
+    std::size_t end = first + 1;
+    while (end < model.spans.size() && model.joint(static_cast<int>(end)) != beam::Joint::separate) ++end;
+    lengths.resize(end, determinant_length(std::span(model.spans).subspan(first, end - first)));
+    first = end;
   }
   return lengths;
 }
@@ -67,8 +67,8 @@ double least_damping(options::BridgeMaterial material, double span) {
 
 double additional_damping(double span) {
   if (span >= vehicles_damp_below) return 0.0;
-  const double L = span, over = 0.0187 * L - 0.00064 * L * L;
-  return percent * std::max(0.0, over / (1.0 - 0.0441 * L - 0.0044 * L * L + 0.000255 * L * L * L));
+  const double L = span, numerator = 0.0187 * L - 0.00064 * L * L;
+  return percent * std::max(0.0, numerator / (1.0 - 0.0441 * L - 0.0044 * L * L + 0.000255 * L * L * L));
 }
 
 }  // namespace traverse::norm

@@ -1,4 +1,4 @@
-// Splits the cubics at their zeros and integrates them; between two breaks a load model's effect is a quartic, whose
+// Splits the cubics at their zeros and integrates them. Between two breaks a load model's effect is a quartic, whose
 // maxima are found by bisection between the zeros of its derivatives.
 #include "norm/influence_line.hpp"
 
@@ -10,13 +10,14 @@
 namespace traverse::norm {
 namespace {
 
-constexpr double negligible = 1e-10;  // of the line's greatest value: spans far away
-constexpr double shortest = 1e-13;    // of the line's length: a piece
+constexpr double negligible = 1e-10;  // relative to the line's greatest value: of distant spans
+constexpr double shortest = 1e-13;    // shortest piece, relative to the line's length
 constexpr int halvings = 60;
-constexpr std::size_t renewed_each = 64;  // stops: sums are made anew, so that rounding does not gather in them
-constexpr std::size_t before = static_cast<std::size_t>(-1);  // a piece: the line has not begun
+constexpr std::size_t renewal_interval =
+    64;  // stops: sums are computed anew, so that rounding errors do not accumulate
+constexpr std::size_t before = static_cast<std::size_t>(-1);  // index of a piece: before the line
 
-using Quartic = std::array<double, 5>;  // by powers
+using Quartic = std::array<double, 5>;  // coefficients by powers
 
 double at(std::span<const double> c, double x) {
   double sum = 0.0;
@@ -29,26 +30,26 @@ std::vector<double> sign_changes(std::span<const double> c, double h) {
   if (c.size() < 2) return {};
   std::array<double, 4> slope{};
   for (std::size_t k = 1; k < c.size(); ++k) slope[k - 1] = static_cast<double>(k) * c[k];
-  std::vector<double> ends = sign_changes(std::span(slope).first(c.size() - 1), h), found;
+  std::vector<double> ends = sign_changes(std::span(slope).first(c.size() - 1), h), zeros;
   ends.push_back(h);
-  double left = 0.0, of_left = c[0];
+  double start = 0.0, start_value = c[0];
   for (const double end : ends) {
-    const double of_right = at(c, end);
-    if (of_left * of_right < 0.0) {
-      double low = left, high = end;
+    const double end_value = at(c, end);
+    if (start_value * end_value < 0.0) {
+      double low = start, high = end;
       for (int i = 0; i < halvings; ++i) {
         const double middle = 0.5 * (low + high);
-        (at(c, middle) * of_left > 0.0 ? low : high) = middle;
+        (at(c, middle) * start_value > 0.0 ? low : high) = middle;
       }
-      found.push_back(0.5 * (low + high));
+      zeros.push_back(0.5 * (low + high));
     }
-    left = end;
-    of_left = of_right;
+    start = end;
+    start_value = end_value;
   }
-  return found;
+  return zeros;
 }
 
-/// The area below c from 0 on, as a quartic that begins with `constant`.
+/// The area below c from 0 on, plus `constant`, as a quartic.
 Quartic area_of(const beam::Cubic& c, double constant) { return {constant, c[0], c[1] / 2.0, c[2] / 3.0, c[3] / 4.0}; }
 
 Quartic shifted(const Quartic& c, double d) {
@@ -69,41 +70,41 @@ double largest_in(const beam::Cubic& c, double h) {
 InfluenceLine::InfluenceLine(std::vector<double> breaks, std::vector<beam::Cubic> pieces)
     : breaks_(std::move(breaks)), pieces_(std::move(pieces)) {
   trim();
-  split_where_it_changes_sign();
+  split_at_zeros();
   integrate();
 }
 
-// Spans that do not feel the force, or nearly so.
+// Removes spans at both ends on which the line is negligible.
 void InfluenceLine::trim() {
   std::vector<double> size;
   for (std::size_t i = 0; i < pieces_.size(); ++i) size.push_back(largest_in(pieces_[i], breaks_[i + 1] - breaks_[i]));
   const double least = negligible * *std::max_element(size.begin(), size.end());
-  const auto counts = [least](double one) { return one > least; };
-  const auto past = std::find_if(size.rbegin(), size.rend(), counts).base() - size.begin();
-  const auto first = std::min(std::find_if(size.begin(), size.end(), counts) - size.begin(), past);
-  if (first == past) {
+  const auto matters = [least](double one) { return one > least; };
+  const auto end = std::find_if(size.rbegin(), size.rend(), matters).base() - size.begin();
+  const auto first = std::min(std::find_if(size.begin(), size.end(), matters) - size.begin(), end);
+  if (first == end) {
     pieces_ = {beam::Cubic{}};
     breaks_ = {breaks_.front(), breaks_.back()};
     return;
   }
-  pieces_ = {pieces_.begin() + first, pieces_.begin() + past};
-  breaks_ = {breaks_.begin() + first, breaks_.begin() + past + 1};
+  pieces_ = {pieces_.begin() + first, pieces_.begin() + end};
+  breaks_ = {breaks_.begin() + first, breaks_.begin() + end + 1};
 }
 
-void InfluenceLine::split_where_it_changes_sign() {
+void InfluenceLine::split_at_zeros() {
   std::vector<double> breaks = {breaks_.front()};
   std::vector<beam::Cubic> pieces;
   const double least = shortest * (breaks_.back() - breaks_.front());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const double h = breaks_[i + 1] - breaks_[i];
-    double left = 0.0;
+    double start = 0.0;
     for (const double x : sign_changes(pieces_[i], h)) {
-      if (x - left < least || h - x < least) continue;
-      pieces.push_back(beam::shifted(pieces_[i], left));
+      if (x - start < least || h - x < least) continue;
+      pieces.push_back(beam::shifted(pieces_[i], start));
       breaks.push_back(breaks_[i] + x);
-      left = x;
+      start = x;
     }
-    pieces.push_back(beam::shifted(pieces_[i], left));
+    pieces.push_back(beam::shifted(pieces_[i], start));
     breaks.push_back(breaks_[i + 1]);
   }
   breaks_ = std::move(breaks);
@@ -120,8 +121,8 @@ void InfluenceLine::integrate() {
 }
 
 std::size_t InfluenceLine::piece_at(double x) const {
-  const auto past = std::upper_bound(breaks_.begin() + 1, breaks_.end() - 1, x);
-  return static_cast<std::size_t>(past - breaks_.begin()) - 1;
+  const auto next = std::upper_bound(breaks_.begin() + 1, breaks_.end() - 1, x);
+  return static_cast<std::size_t>(next - breaks_.begin()) - 1;
 }
 
 double InfluenceLine::value(double x) const {
@@ -138,16 +139,16 @@ InfluenceLine InfluenceLine::times(double factor) const {
   return line;
 }
 
-/// A load model on its way along a line: the sum of terms factor*f(s + x), where s is the place of the model's x = 0
+/// A load model that moves along a line: the sum of terms factor*f(s + x), where s is the position of the model's x = 0
 /// and f the line itself, its area, or its area above 0.
-struct Passing {
+struct MovingLoadModel {
   enum Kind { value, area, above };
   struct Term {
     double factor, x;
     Kind kind;
   };
 
-  Passing(const InfluenceLine& of, const LoadModel& model) : line(of) {
+  MovingLoadModel(const InfluenceLine& of, const LoadModel& model) : line(of) {
     for (const LoadModel::Force& f : model.forces) terms.push_back({f.force, f.x, value});
     const auto add = [&](double load, double from, double to, Kind kind) {
       terms.push_back({load, to, kind});
@@ -159,10 +160,10 @@ struct Passing {
     constant = model.free_load * line.area_above();
   }
 
-  /// Where a term passes a break, ascending.
+  /// The positions at which a term passes a break, ascending.
   struct Stop {
     double s;
-    std::size_t term, piece;  // that begins there for the term
+    std::size_t term, piece;  // the piece that begins there for the term
   };
   std::vector<Stop> stops() const {
     std::vector<Stop> all;
@@ -173,7 +174,7 @@ struct Passing {
     return all;
   }
 
-  /// Adds sign times a term on a piece (one past the last: behind the line) as a polynomial of the way from s on.
+  /// Adds sign times a term on a piece (one past the last: behind the line) as a polynomial of the distance from s on.
   void add(double sign, const Term& term, std::size_t piece, double s, Quartic& sum) const {
     if (piece == line.pieces_.size()) {
       if (term.kind != value) sum[0] += sign * term.factor * (term.kind == area ? line.area() : line.area_above());
@@ -196,31 +197,31 @@ struct Passing {
 };
 
 Placed greatest(const InfluenceLine& line, const LoadModel& model) {
-  const Passing passing(line, model);
-  const std::vector<Passing::Stop> stops = passing.stops();
-  std::vector<std::size_t> piece(passing.terms.size(), before);
+  const MovingLoadModel moving(line, model);
+  const std::vector<MovingLoadModel::Stop> stops = moving.stops();
+  std::vector<std::size_t> piece(moving.terms.size(), before);
   Placed best;
-  Quartic c{};  // of the way since the last stop
+  Quartic c{};  // polynomial of the distance from the last stop
   for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
     const double from = stops[i].s, h = stops[i + 1].s - from;
-    const std::size_t passes = stops[i].term;
-    if (i % renewed_each == 0) {
-      piece[passes] = stops[i].piece;
-      c = {passing.constant};
+    const std::size_t term = stops[i].term;
+    if (i % renewal_interval == 0) {
+      piece[term] = stops[i].piece;
+      c = {moving.constant};
       for (std::size_t t = 0; t < piece.size(); ++t)
-        if (piece[t] != before) passing.add(1.0, passing.terms[t], piece[t], from, c);
+        if (piece[t] != before) moving.add(1.0, moving.terms[t], piece[t], from, c);
     } else {
-      if (piece[passes] != before) passing.add(-1.0, passing.terms[passes], piece[passes], from, c);
-      piece[passes] = stops[i].piece;
-      passing.add(1.0, passing.terms[passes], piece[passes], from, c);
+      if (piece[term] != before) moving.add(-1.0, moving.terms[term], piece[term], from, c);
+      piece[term] = stops[i].piece;
+      moving.add(1.0, moving.terms[term], piece[term], from, c);
     }
     double bound = c[0], power = h;
     for (std::size_t k = 1; k < c.size(); ++k, power *= h) bound += std::max(0.0, c[k] * power);
     if (bound > best.value) {
       const Quartic slope = {c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4]};
-      std::vector<double> tops = sign_changes(std::span(slope).first(4), h);
-      tops.insert(tops.end(), {0.0, h});
-      for (const double x : tops)
+      std::vector<double> candidates = sign_changes(std::span(slope).first(4), h);
+      candidates.insert(candidates.end(), {0.0, h});
+      for (const double x : candidates)
         if (const double value = at(c, x); value > best.value) best = {value, from + x};
     }
     c = shifted(c, h);

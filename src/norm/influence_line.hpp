@@ -1,9 +1,9 @@
-// An influence line: what a unit downward force does to one quantity, over the place of the force; and the greatest
-// that loads which move along it together can do.
+// An influence line: the value of one quantity under a unit downward force, over the position of the force; and the
+// greatest value under loads that move along it together.
 //
-// On every piece the line is a cubic polynomial of x and of one sign. Its area up to x, and that of its part above 0,
-// are then polynomials too, and what a train does is a polynomial of its way between the places where one of its
-// forces passes a break. The greatest of it is found exactly.
+// On every piece the line is a cubic polynomial of x with one sign. Its area up to x, and that of its part above 0, are
+// then polynomials too, and the effect of a train is a polynomial of its position between the positions where one of
+// its forces passes a break. Therefore its greatest value is computed exactly.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace traverse::norm {
 class InfluenceLine {
  public:
   InfluenceLine() = default;
-  /// A cubic of x - breaks[i] between breaks[i] and breaks[i + 1], m; outside it is zero.
+  /// A cubic of x - breaks[i] between breaks[i] and breaks[i + 1], m; zero outside.
   InfluenceLine(std::vector<double> breaks, std::vector<beam::Cubic> pieces);
 
   double value(double x) const;
@@ -24,15 +24,15 @@ class InfluenceLine {
   InfluenceLine times(double factor) const;
 
   const std::vector<double>& breaks() const { return breaks_; }
-  /// m times its unit: the whole area, and that of what lies above 0.
+  /// m times its unit: the whole area, and the area of the part above 0.
   double area() const { return area_.back(); }
   double area_above() const { return above_.back(); }
 
  private:
-  friend struct Passing;
+  friend struct MovingLoadModel;
 
   void trim();
-  void split_where_it_changes_sign();
+  void split_at_zeros();
   void integrate();
   std::size_t piece_at(double x) const;
 
@@ -41,10 +41,10 @@ class InfluenceLine {
   std::vector<double> area_, above_;  // from the first break to each break
 };
 
-/// Downward loads that pass together; x from a place that they share.
+/// Downward loads that move together; x is relative to a common origin.
 struct LoadModel {
   std::string name;    // LM71
-  std::string clause;  // where it is defined; empty: a train of the user's
+  std::string clause;  // clause of its definition; empty: a train of the user
   struct Force {
     double force, x;  // N, m
   };
@@ -53,14 +53,14 @@ struct LoadModel {
   };
   std::vector<Force> forces;
   std::vector<Uniform> uniform;
-  /// Beyond [free_from, free_to] a uniform load stands wherever it is unfavourable, N/m.
+  /// A uniform load outside [free_from, free_to], only where it is unfavourable, N/m.
   double free_load = 0.0, free_from = 0.0, free_to = 0.0;
 };
 
-/// The greatest value of what a load does, not below 0: it need not be on the bridge.
+/// The greatest effect of a load, not below 0, because it may be outside the bridge.
 struct Placed {
   double value = 0.0;
-  double x = 0.0;  // m, where the model's x = 0 stands
+  double x = 0.0;  // m, position of the model's x = 0
 };
 Placed greatest(const InfluenceLine& line, const LoadModel& model);
 

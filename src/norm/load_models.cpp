@@ -5,8 +5,8 @@ namespace traverse::norm {
 
 LoadModel load_model(std::string_view name) {
   if (name == "lm71") {
-    constexpr double axle = 250e3, distance = 1.6, load = 80e3, beyond = 0.8;  // N, m, N/m, m
-    LoadModel model{"LM71", "EN 1991-2 6.3.2", {}, {}, load, -beyond, 3.0 * distance + beyond};
+    constexpr double axle = 250e3, distance = 1.6, load = 80e3, margin = 0.8;  // N, m, N/m, m
+    LoadModel model{"LM71", "EN 1991-2 6.3.2", {}, {}, load, -margin, 3.0 * distance + margin};
     for (int i = 0; i < 4; ++i) model.forces.push_back({axle, i * distance});
     return model;
   }

@@ -1,4 +1,4 @@
-// The load models of EN 1991-2, clause 6.3: static loads that stand for rail traffic.
+// The load models of EN 1991-2, clause 6.3: static loads that represent rail traffic.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace traverse::norm {
 
-/// Of a model's name as the user writes it: lm71, sw0 or sw2. Characteristic values, without alpha and Phi.
+/// The load model with the user's name lm71, sw0 or sw2. Characteristic values, without alpha and Phi.
 LoadModel load_model(std::string_view name);
-/// Whether alpha multiplies it: 6.3.2 (3).
+/// Whether alpha applies: 6.3.2 (3).
 bool classified(std::string_view name);
 
 /// A train of forces (N, downward) at x, m.

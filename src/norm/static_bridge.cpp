@@ -12,10 +12,11 @@
 namespace traverse::norm {
 namespace {
 
-// Of uniform spans on supports alone the nodes move exactly, whatever the mesh; the first frequency is right to 1e-5.
-constexpr int of_uniform_spans = 8, of_others = 64, most_elements = 4000;  // a span
-constexpr double wanted_in_fading = 8.0;                                   // elements in the length of 1/lambda
-constexpr int deflection = 1, rotation = 2, rotation_right = 3;            // of a node
+// With uniform spans on supports only the nodal displacements are exact for any mesh; the first frequency has an error
+// of 1e-5.
+constexpr int elements_of_uniform_span = 8, min_elements = 64, max_elements = 4000;  // a span
+constexpr double elements_per_decay_length = 8.0;                // elements in the length of 1/lambda
+constexpr int deflection = 1, rotation = 2, rotation_right = 3;  // unknowns of a node
 
 beam::BeamModel model_for_statics(const beam::BeamModel& given) {
   beam::BeamModel model = given.track ? bridge_alone(given) : given;
@@ -23,20 +24,22 @@ beam::BeamModel model_for_statics(const beam::BeamModel& given) {
   model.temperature.reset();
   model.settlement.clear();
   if (const std::string floating = floating_motion(model); !floating.empty())
-    throw InputError("support_types: the beam can float away (" + floating + "); static effects need it held");
+    throw InputError("support_types: the beam can float away (" + floating +
+                     "); static effects require a supported beam");
   const beam::Foundation& f = model.foundation;
-  const bool plain = model.EI.uniform() && (!model.GA || model.GA->uniform()) && model.cracks.empty() &&
-                     f.vertical.empty() && f.rotational.empty() && !f.vertical_bed && !f.rotational_bed &&
-                     model.hinges.empty();
-  double fading = 0.0;
+  const bool uniform = model.EI.uniform() && (!model.GA || model.GA->uniform()) && model.cracks.empty() &&
+                       f.vertical.empty() && f.rotational.empty() && !f.vertical_bed && !f.rotational_bed &&
+                       model.hinges.empty();
+  double decay = 0.0;
   beam::for_beds(f, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
-    fading = std::max(fading, beam::fading_of_bending(kind.direction, bed.k.maximum(), model.EI.minimum()));
+    decay = std::max(decay, beam::bending_decay_rate(kind.direction, bed.k.maximum(), model.EI.minimum()));
   });
   model.elements.clear();
   for (const double span : model.spans)
-    model.elements.push_back(plain ? of_uniform_spans
-                                   : static_cast<int>(std::clamp<double>(std::ceil(wanted_in_fading * fading * span),
-                                                                         of_others, most_elements)));
+    model.elements.push_back(
+        uniform ? elements_of_uniform_span
+                : static_cast<int>(std::clamp<double>(std::ceil(elements_per_decay_length * decay * span), min_elements,
+                                                      max_elements)));
   return model;
 }
 
@@ -55,13 +58,13 @@ double StaticBridge::first_frequency() const {
   return modes::distinct_frequencies(beam_, 1).front() / (2.0 * std::numbers::pi);
 }
 
-/// The line whose nodal values are given, with what a force does on the element of the recovery's station.
+/// The line with these nodal values, plus the direct effect of a force on the element of the recovery's station.
 InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const beam::Recovery* recovery,
                                     double beam::Response::*direct) {
   const beam::Mesh& mesh = beam_.mesh();
   const std::size_t count = static_cast<std::size_t>(mesh.elements());
   const double section = recovery != nullptr ? recovery->stations().front() : 0.0;
-  const int own = recovery != nullptr ? mesh.locate(section).element : -1;
+  const int loaded_element = recovery != nullptr ? mesh.locate(section).element : -1;
   std::vector<double> breaks = {mesh.start()};
   std::vector<beam::Cubic> pieces;
   breaks.reserve(count + 2);
@@ -72,20 +75,21 @@ InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const beam::Recov
     std::array<double, 4> ends{};
     for (std::size_t k = 0; k < 4; ++k) ends[k] = nodal[static_cast<std::size_t>(unknowns[k])];
     const beam::Cubic cubic = beam::hermite_cubic(ends, element.length, element.shear);
-    double left = 0.0;
-    const auto add_piece = [&](double right) {
-      beam::Cubic piece = beam::shifted(cubic, left);
-      if (e == own) {
-        const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {
-          return recovery->inside_response(0, {e, (left + x) / element.length, 0.0, -1.0, 0.0}).*direct;
+    double start = 0.0;
+    const auto add_piece = [&](double end) {
+      beam::Cubic piece = beam::shifted(cubic, start);
+      if (e == loaded_element) {
+        const beam::Cubic more = beam::cubic_through(end - start, [&](double x) {
+          return recovery->inside_response(0, {e, (start + x) / element.length, 0.0, -1.0, 0.0}).*direct;
         });
         for (std::size_t k = 0; k < 4; ++k) piece[k] += more[k];
       }
       pieces.push_back(piece);
-      breaks.push_back(right == element.length ? mesh.x(element.left + 1) : element.x + right);
-      left = right;
+      breaks.push_back(end == element.length ? mesh.x(element.left + 1) : element.x + end);
+      start = end;
     };
-    if (e == own && section > element.x && section < element.x + element.length) add_piece(section - element.x);
+    if (e == loaded_element && section > element.x && section < element.x + element.length)
+      add_piece(section - element.x);
     add_piece(element.length);
   }
   return {std::move(breaks), std::move(pieces)};
@@ -97,12 +101,12 @@ std::array<InfluenceLine, 3> StaticBridge::lines_at(double x) {
   const std::vector<double> zero(static_cast<std::size_t>(beam_.local_unknowns()), 0.0);
   std::vector<double> unit = zero;
   std::array<beam::Response, 4> forms;
-  std::vector<beam::Response> seen;
+  std::vector<beam::Response> responses;
   for (std::size_t k = 0; k < 4; ++k) {
     unit[static_cast<std::size_t>(unknowns[k])] = 1.0;
-    recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, seen);
+    recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, responses);
     unit[static_cast<std::size_t>(unknowns[k])] = 0.0;
-    forms[k] = seen.front();
+    forms[k] = responses.front();
   }
   std::array<InfluenceLine, 3> lines;
   constexpr double beam::Response::*quantities[] = {&beam::Response::deflection, &beam::Response::moment,
@@ -119,7 +123,7 @@ std::array<InfluenceLine, 3> StaticBridge::lines_at(double x) {
   return lines;
 }
 
-// The deflection of the bridge when the support is raised by one (Mueller-Breslau).
+// The deflection of the bridge under a unit displacement of the support (Mueller-Breslau).
 InfluenceLine StaticBridge::reaction(const Bearing& bearing) {
   if (bearing.span_end < 0) return lines_at(bearing.x)[0].times(-bearing.stiffness);
   std::vector<double> nodal(static_cast<std::size_t>(beam_.local_unknowns()), 0.0);
@@ -131,7 +135,7 @@ InfluenceLine StaticBridge::reaction(const Bearing& bearing) {
   return line_of(std::move(nodal), nullptr, nullptr);
 }
 
-/// Of a sum of rotations: unknown and factor.
+/// The influence line of a sum of rotations: unknowns and factors.
 InfluenceLine StaticBridge::rotation_of(const std::vector<std::pair<int, double>>& form) {
   std::vector<double> nodal(static_cast<std::size_t>(beam_.local_unknowns()), 0.0);
   for (const auto& [unknown, factor] : form)
@@ -145,11 +149,11 @@ InfluenceLine StaticBridge::end_rotation(bool right) {
 }
 
 std::vector<int> StaticBridge::joints() const {
-  std::vector<int> found;
+  std::vector<int> joint_ends;
   for (int i = 1; i < beam_.mesh().spans(); ++i)
     if (const auto [left, right] = beam_.mesh().nodes_at(i); left != right || beam_.mesh().hinged(left))
-      found.push_back(i);
-  return found;
+      joint_ends.push_back(i);
+  return joint_ends;
 }
 
 InfluenceLine StaticBridge::joint_rotation(int span_end) {

@@ -1,7 +1,8 @@
-// The bridge at rest under vertical loads: its influence lines, from one factorisation and one solution each.
+// The bridge under static vertical loads: its influence lines, each by one solution with a common factorisation.
 //
-// What the nodal values of a section's element give of a quantity is a load on the structure, whose deflections are the
-// influence line (Maxwell and Betti); a force on that element does more between its nodes, which is added.
+// The coefficients by which a quantity depends on the nodal values of its element are a load on the structure, whose
+// deflections are the influence line (Maxwell and Betti). A force on that element has an additional direct effect
+// between its nodes, which is added.
 #pragma once
 
 #include <array>
@@ -19,25 +20,25 @@ class StaticBridge {
  public:
   static constexpr std::size_t most_spans = 200;
 
-  /// Of linear foundations, on this rank alone, with a mesh of its own. A layered track counts by its mass alone: loads
-  /// stand on the bridge. InputError where the beam floats.
+  /// For linear foundations, on this rank only, with its own mesh. A layered track contributes its mass only, and loads
+  /// act on the bridge. InputError if the beam has no support.
   explicit StaticBridge(const beam::BeamModel& model);
   StaticBridge(const StaticBridge&) = delete;
   StaticBridge& operator=(const StaticBridge&) = delete;
 
-  /// At a station: deflection (m/N, upward), moment (m, sagging) and shear (1, d moment/dx).
+  /// Lines at a station: deflection (m/N, upward), moment (m, sagging) and shear (1, d moment/dx).
   std::array<InfluenceLine, 3> lines_at(double x);
-  /// What a support or a spring at a station bears of a unit force, upward on the bridge.
+  /// A support or a point spring, whose force on the bridge under a unit force is positive upward.
   struct Bearing {
     double x = 0.0;
-    int span_end = -1;       // of a support; -1: a spring
+    int span_end = -1;       // number of a support's span end; -1: a spring
     double stiffness = 0.0;  // N/m, of a spring
   };
   const std::vector<Bearing>& bearings() const { return bearings_; }
   InfluenceLine reaction(const Bearing& bearing);
   /// Rotation of the deck at the left or right end of the bridge, 1/N.
   InfluenceLine end_rotation(bool right);
-  /// Inner span ends at which the slope may jump, and the difference of the rotations on both sides there, 1/N.
+  /// Inner span ends at which the slope may jump, and the difference of the rotations of both sides there, 1/N.
   std::vector<int> joints() const;
   InfluenceLine joint_rotation(int span_end);
 

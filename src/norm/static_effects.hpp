@@ -1,5 +1,5 @@
-// What trains and load models do to the bridge at rest, wherever they stand: the least and the greatest of every effect
-// along the bridge.
+// Static effects of trains and load models over all their positions: the least and the greatest of every effect along
+// the bridge.
 #pragma once
 
 #include <array>
@@ -25,21 +25,21 @@ inline constexpr EffectRow effect_rows[] = {
 };
 inline constexpr std::size_t effect_count = std::size(effect_rows);
 
-/// Of one load at one place, each with the place x = 0 of the load.
+/// Extremes of one load at one place, each with the position of the load's x = 0.
 struct Extremes {
-  Placed least, greatest;  // the former as it is, not above 0
+  Placed least, greatest;  // signed; the former not above 0
 
   double size() const { return greatest.value > -least.value ? greatest.value : -least.value; }
 };
 
-/// A place of the bridge, and the length of its span; at a support the shorter one.
+/// A place of the bridge with the length of its span; at a support the shorter one.
 struct Place {
   double x = 0.0, span = 0.0;  // m
-  std::size_t number = 0;      // of the span
+  std::size_t number = 0;      // index of the span
 };
 
 struct StaticEffects {
-  static constexpr double alike = 1.0 + 1e-9;
+  static constexpr double tie_factor = 1.0 + 1e-9;
 
   std::vector<LoadModel> loads;
   std::array<std::vector<Place>, effect_count> places;
@@ -56,7 +56,7 @@ struct StaticEffects {
     std::size_t best = 0;
     double most = -1.0;
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (const double one = at(effect, load, i).size() * weight(all[i]); one > most * alike) {
+      if (const double one = at(effect, load, i).size() * weight(all[i]); one > most * tie_factor) {
         most = one;
         best = i;
       }
@@ -64,9 +64,9 @@ struct StaticEffects {
   }
 };
 
-/// At stations at most `spacing` m apart in each span (0: at its twentieths) and at those of `also`; beside each
-/// support on both sides, a millionth of the span away.
+/// Evaluates the effects at stations at most `spacing` m apart in each span (0: at its twentieths) and at the given
+/// ones; next to each support on both sides, at a distance of a millionth of the span.
 StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads, double spacing,
-                             const std::vector<double>& also);
+                             const std::vector<double>& given_stations);
 
 }  // namespace traverse::norm

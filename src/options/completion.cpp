@@ -1,4 +1,4 @@
-// Completion of options and of values that are words in bash, from the option table.
+// The bash completion of option names and of values that are words, from the option table.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,10 +12,11 @@ namespace {
 
 using Words = std::set<std::string>;
 
+/// The prefixes of options with a name that users choose.
 constexpr const char* user_named[] = {"vehicle_NAME_PART_", "vehicle_NAME_", "train_NAME_", "track_NAME_",
                                       "study_vary_NAME_"};
 
-/// "beam_EI", or of what users name themselves "vehicle_*_mass": a pattern of the shell.
+/// The shell pattern of an option: "beam_EI", or "vehicle_*_mass" for a name that users choose.
 std::string pattern_of(std::string name) {
   for (const std::string_view word : {"NAME_PART", "NAME"})
     if (const std::size_t at = name.find(word); at != std::string::npos) return name.replace(at, word.size(), "*");
@@ -47,7 +48,7 @@ _traverse() {
   words='@NAMES@'
   # shellcheck disable=SC2207
   COMPREPLY=($(compgen -W "$words" -- "$cur"))
-  # What users name themselves: the rest of the name after each underscore.
+  # Names that users choose: the part of the name after each underscore.
 @USER_NAMED@}
 complete -F _traverse traverse
 )";
@@ -70,7 +71,7 @@ void replace(std::string& text, std::string_view what, const std::string& with) 
 
 std::string bash_completion(const std::vector<std::string>& ts_types) {
   Words names, files;
-  std::map<std::string, Words> choices, ends;  // of a pattern; of what stands before NAME
+  std::map<std::string, Words> choices, ends;  // by pattern; by the text before NAME
   for (const HelpGroup& group : help_groups())
     for (const auto& [name, row] : group.options) {
       const std::string pattern = "-" + pattern_of(name);

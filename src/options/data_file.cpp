@@ -26,24 +26,27 @@ std::vector<double> numbers_of(std::string line, const std::string& where) {
   }
   std::vector<double> numbers;
   const bool names = line.find_first_of("0123456789") == std::string::npos;
-  const char* hint = names ? "; a line of names begins with #" : "";
+  const char* hint = names ? "; a line of column names must begin with #" : "";
   std::istringstream words(line);
   for (std::string word; words >> word;) {
     double number = 0.0;
-    if (!parse_number(word, number)) throw InputError(fmt::format("{}'{}' is no finite number{}", where, word, hint));
-    if (!is_quantity(number)) throw InputError(fmt::format("{}'{}' is beyond any quantity in SI units", where, word));
+    if (!parse_number(word, number))
+      throw InputError(fmt::format("{}'{}' is not a finite number{}", where, word, hint));
+    if (!is_quantity(number))
+      throw InputError(fmt::format("{}'{}' is not a possible quantity in SI units", where, word));
     numbers.push_back(number);
   }
   return numbers;
 }
 
-/// Takes a line off the text. A line without end is no table's.
+/// Removes the first line from the text and returns it. InputError for a line that is too long for a table.
 std::string next_line(std::string_view& text, const std::string& path) {
   const std::size_t size = text.find('\n');
   std::string line(text.substr(0, size));
   text.remove_prefix(size == std::string_view::npos ? text.size() : size + 1);
   if (line.size() >= longest_line)
-    throw InputError(fmt::format("{}: a line is longer than {} characters: this is no table", path, longest_line));
+    throw InputError(
+        fmt::format("{}: a line is longer than {} characters, so this is not a table", path, longest_line));
   return line;
 }
 
@@ -76,11 +79,11 @@ bool parse_speed(std::string word, double& number) {
 
 std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most,
                                               Order order) {
-  const std::string text = read_text(path, {"", "table", most_table_characters, true});
+  const std::string text = read_text(path, {"", "a table", most_table_characters, true});
   std::vector<std::vector<double>> columns;
   int number = 0;
-  for (std::string_view rest = text; !rest.empty();) {
-    const std::string line = next_line(rest, path);
+  for (std::string_view remaining = text; !remaining.empty();) {
+    const std::string line = next_line(remaining, path);
     const std::string where = fmt::format("{}:{}: ", path, ++number);
     if (number > most_lines)
       throw InputError(fmt::format("{}: has too many lines; allowed: at most {}", path, most_lines));
@@ -88,11 +91,11 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
     if (row.empty()) continue;
     if (columns.empty()) columns.resize(row.size());
     if (row.size() < least || row.size() > most || row.size() != columns.size()) {
-      const std::string wanted = least == most ? std::to_string(least)
-                                 : columns.size() >= least && columns.size() <= most
-                                     ? std::to_string(columns.size())
-                                     : std::to_string(least) + " to " + std::to_string(most);
-      throw InputError(where + "holds " + std::to_string(row.size()) + " numbers, expected " + wanted);
+      const std::string expected = least == most ? std::to_string(least)
+                                   : columns.size() >= least && columns.size() <= most
+                                       ? std::to_string(columns.size())
+                                       : std::to_string(least) + " to " + std::to_string(most);
+      throw InputError(where + "has " + std::to_string(row.size()) + " numbers, expected " + expected);
     }
     if (order == Order::rising && !columns[0].empty() && !(row[0] > columns[0].back())) {
       throw InputError(fmt::format("{}the first column must increase strictly: row {} has {:g} after {:g}", where,
@@ -100,7 +103,7 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
     }
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
   }
-  if (columns.empty()) throw InputError(path + ": holds no numbers");
+  if (columns.empty()) throw InputError(path + ": contains no numbers");
   return columns;
 }
 

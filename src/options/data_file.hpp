@@ -1,4 +1,4 @@
-// Numbers in columns: text files with blanks, commas or semicolons between numbers and # before comments.
+// Tables: text files with columns of numbers, separated by blanks, commas or semicolons; # begins a comment.
 #pragma once
 
 #include <string>
@@ -6,22 +6,23 @@
 
 namespace traverse::options {
 
-/// Whether the first column has to increase from row to row.
+/// Whether the first column must increase from row to row.
 enum class Order { unsorted, rising };
 
-/// The file by columns, each of the same length. Throws InputError naming file and line when a line does not hold
-/// as many numbers as the first one, fewer than `least` or more than `most`, or something that is no finite number or
-/// no quantity.
+/// The columns of the file, all of the same length. Throws InputError with file and line if a line has not as many
+/// numbers as the first one, fewer than `least` or more than `most`, or a word that is not a finite number or not a
+/// quantity.
 std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most,
                                               Order order = Order::unsorted);
 
-/// Products and powers of SI units stay far from overflow and underflow between these magnitudes; 0 is a quantity, too.
+/// Magnitudes between which products and powers of SI quantities do not overflow or underflow; 0 is a quantity, too.
 inline constexpr double least_quantity = 1e-50, greatest_quantity = 1e50;
+/// Whether the number is 0 or its magnitude is between these two.
 bool is_quantity(double number);
 
-/// A finite number that fills the whole word; false otherwise.
+/// Converts a word that is a finite number as a whole; false for any other word.
 bool parse_number(const std::string& word, double& number);
-/// The same of a speed in m/s, which may be written in km/h: "300 km/h".
+/// Converts a speed in m/s, or in km/h as in "300 km/h"; false for any other word.
 bool parse_speed(std::string word, double& number);
 
 }  // namespace traverse::options

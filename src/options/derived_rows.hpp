@@ -1,4 +1,4 @@
-// Rows of the option table that follow from a table of what there is: of joint types, of kinds of foundation.
+// Rows of the option table that are derived from the tables of joint types, kinds of foundation and track properties.
 #pragma once
 
 #include <span>
@@ -9,15 +9,15 @@
 
 namespace traverse::options {
 
-/// Options vehicle_<name>_<joint>_<row>.
+/// The options vehicle_<name>_<joint>_<row>.
 std::span<const Row> joint_rows();
-/// Options foundation_<kind>_<row>, with their full names.
+/// The options foundation_<kind>_<row>, with their full names.
 std::span<const Row> foundation_rows();
 
-/// Options of a layered track, with their full names.
+/// The options of a layered track, with their full names.
 std::span<const Row> track_rows();
 
-/// Keeps a text for as long as the program runs: rows only look at theirs.
-std::string_view kept(std::string text);
+/// Stores a text until the program ends, because rows have only views of their texts.
+std::string_view permanent(std::string text);
 
 }  // namespace traverse::options

@@ -1,4 +1,4 @@
-// The text of -help.
+// The text of the option -help, by groups of options.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 namespace traverse::options {
 namespace {
 
-/// The first word of options' names, the group that they stand in, and its heading. A word that is not listed is a
-/// group of its own.
+/// The first word of option names, their group in -help, and its heading. A word that is not listed is the name of a
+/// group itself.
 struct Heading {
   std::string_view word, group, heading;
 };
 constexpr Heading headings[] = {
-    {"options", "scene", "Scene: what is computed"},
+    {"options", "scene", "Scene and analysis"},
     {"gravity", "scene", ""},
     {"modes", "scene", ""},
     {"check", "scene", ""},
@@ -34,13 +34,15 @@ constexpr Heading headings[] = {
     {"ts", "step", "Time and steps"},
     {"contact", "step", ""},
     {"accuracy", "accuracy", "Accuracy"},
-    {"model", "model", "What is modelled"},
+    {"model", "model", "Model"},
     {"limits", "norm", "Limits and load models of EN 1990 and EN 1991-2"},
-    {"uic774", "rail", "Rail and bridge together: scene_analysis rail, UIC 774-3"},
+    {"uic774", "rail", "Track-bridge interaction: scene_analysis rail, UIC 774-3"},
     {"output", "output", "Results"},
+    {"checkpoint", "checkpoint", "Checkpoints"},
+    {"restart", "restart", "Restart from a checkpoint"},
     {"sweep", "sweep", "Sweeps over speeds and trains"},
     {"study", "study", "Studies of varied options"},
-    {"log", "petsc", "Options of PETSc besides ts_..."},
+    {"log", "petsc", "Other options of PETSc than ts_..."},
     {"malloc", "petsc", ""},
     {"skip", "petsc", ""},
 };
@@ -67,16 +69,17 @@ void append(const HelpGroup& group, std::string& out) {
 
 std::string everything() {
   std::string out =
-      "traverse predicts how trains and bridges move.\n\n"
+      "traverse computes the motion of trains, vehicles and bridges.\n\n"
       "  [mpirun -n N] traverse -options_file scene.yml [-options_file more.yml] [-option value ...]\n\n"
       "In a YAML file nested keys join with underscores (beam: {spans: [25.0, 30.0]} is -beam_spans 25.0,30.0). SI "
       "units;\n"
-      "x along the track from the bridge's left end, y upward. In lists value*count repeats. Later ones win.\n";
+      "x along the track from the bridge's left end, y upward. In lists value*count repeats. Later options override "
+      "earlier ones.\n";
   for (const HelpGroup& group : help_groups()) append(group, out);
-  return out + "\nOther options of PETSc and SLEPc do not pass on to them.\n";
+  return out + "\nOther options of PETSc and SLEPc are rejected.\n";
 }
 
-/// Underscores and blanks alike: torsion_spring is what -help shows.
+/// The words with underscores instead of blanks: torsion_spring.
 std::string as_name(std::string_view words) {
   std::string name(words);
   std::replace(name.begin(), name.end(), ' ', '_');
@@ -97,7 +100,7 @@ std::vector<HelpGroup> help_groups() {
   const auto add = [&](const std::string& prefix, std::span<const Row> rows) {
     for (const Row& row : rows) groups.back().options.push_back({prefix + std::string(row.name), &row});
   };
-  groups.push_back({"vehicle", "Vehicle NAME; in the file that -vehicle_NAME_file names without vehicle_NAME_", {}});
+  groups.push_back({"vehicle", "Vehicle NAME; without vehicle_NAME_ in the file of -vehicle_NAME_file", {}});
   add("vehicle_NAME_", vehicle_rows());
   for (int kind = 0; kind < part_kinds; ++kind) {
     const auto part = static_cast<Part>(kind);
@@ -107,7 +110,9 @@ std::vector<HelpGroup> help_groups() {
     add("vehicle_NAME_PART_", part_rows(part));
   }
   groups.push_back(
-      {"coupler", "Each coupler NAME in the list of train_couplers, besides what a spring or a joint has", {}});
+      {"coupler",
+       "Each coupler NAME in the list of train_couplers, in addition to the options of a spring or a joint",
+       {}});
   add("train_NAME_", coupler_rows());
   groups.push_back({"stretch", "Each stretch NAME in the list of track_stretches", {}});
   add("track_NAME_", stretch_rows());
@@ -140,8 +145,7 @@ std::string help_text(const std::string& about) {
   if (!out.empty()) return out.substr(1);
   const std::string near = nearest(wanted, candidates);
   throw InputError(
-      fmt::format("help = {}: neither an option nor a group of them{}; allowed: {}integrators, man, bash, or an "
-                  "option",
+      fmt::format("help = {}: not an option or a group of options{}; allowed: {}integrators, man, bash, or an option",
                   about, near.empty() ? "" : fmt::format("; did you mean {}?", near), names));
 }
 

@@ -1,4 +1,4 @@
-// The option table by groups, as -help, the manual page and the shell's completion show it.
+// The groups of the option table for -help, the manual page and the completion of the shell.
 #pragma once
 
 #include <string>
@@ -12,21 +12,21 @@ namespace traverse::options {
 /// Options under one heading.
 struct HelpGroup {
   struct Option {
-    std::string name;  // whole, with NAME and PART for what users name themselves
+    std::string name;  // complete, with NAME and PART for the names that users choose
     const Row* row;
   };
-  std::string name;     // as -help takes it
-  std::string heading;  // in words
+  std::string name;     // the word after -help
+  std::string heading;  // the text of the heading
   std::vector<Option> options;
 };
 
-/// Every row of the table once. Options with a fixed name are grouped by their first word.
+/// All groups. Each row of the table is in one of them, options with a fixed name by their first word.
 std::vector<HelpGroup> help_groups();
 
-/// The manual page as troff source; integrators: the list of them.
+/// The manual page as troff source. integrators: the text about the time integrators.
 std::string manual_page(const std::string& integrators);
 
-/// A script that completes names and values of options in bash; ts_types: those of -ts_type.
+/// The bash script that completes names and values of options. ts_types: the values of -ts_type.
 std::string bash_completion(const std::vector<std::string>& ts_types);
 
 }  // namespace traverse::options

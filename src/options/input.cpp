@@ -24,15 +24,15 @@
 namespace traverse::options {
 namespace {
 
-// As PETSc's own table: one for the process.
+// There is one set of options per process, as in PETSc.
 Entries last_put;
 std::vector<std::string> last_notes;
 
-/// A word that stands alone on the command line is most likely an options file without -options_file.
+/// The entries of the command line. A first word without a dash is probably an options file without -options_file.
 std::vector<Entry> command_line(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front().find_first_not_of('-') == 0) {
-    throw InputError(fmt::format("command line: '{}' belongs to no option; did you mean -options_file {}?",
+    throw InputError(fmt::format("command line: '{}' is not the value of an option; did you mean -options_file {}?",
                                  words.front(), words.front()));
   }
   return parse_words(words, "command line", 0);
@@ -58,7 +58,8 @@ void add(Input& input, Entry entry) {
   }
 }
 
-/// Values of options that pass to PETSc are numbers, plain words, true or false: no names of files, no viewers.
+/// Refuses options of PETSc that are not permitted, and values that could name a file or a viewer: the permitted values
+/// are numbers, plain words, true and false.
 void check_for_petsc(const Entries& entries) {
   Entries passing;
   for (const Entry& entry : entries) {
@@ -70,7 +71,8 @@ void check_for_petsc(const Entries& entries) {
         if (passes_to_petsc(row.name)) names.emplace_back(row.name);
       const std::string near = nearest(entry.name, names);
       throw InputError(
-          fmt::format("option {}: no option of PETSc's that Traverse lets pass: -help step and -help petsc list them{}",
+          fmt::format("option {}: Traverse does not pass this option to PETSc; -help step and -help petsc list the "
+                      "permitted ones{}",
                       entry.given(), near.empty() ? "" : fmt::format("; did you mean {}?", near)));
     }
   }
@@ -79,12 +81,13 @@ void check_for_petsc(const Entries& entries) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   for (const Entry& entry : passing) {
     const std::string value = find_row(fixed_rows(), entry.name)->kind == Kind::text ? options.text(entry.name) : "";
-    if (!std::all_of(value.begin(), value.end(), plain)) options.refuse(entry.name, "allowed: a word");
+    if (!std::all_of(value.begin(), value.end(), plain))
+      options.refuse(entry.name, "allowed: a word of letters, digits and _");
   }
 }
 
 struct PetscOption {
-  std::string name, value;  // value: empty for an option alone
+  std::string name, value;  // value: empty for an option without one
 };
 
 bool flag_of(const Entry& entry) {
@@ -93,9 +96,9 @@ bool flag_of(const Entry& entry) {
   return Options(alone).flag(entry.name);
 }
 
-/// As PETSc reads it; nothing for one that is switched off.
+/// The option as PETSc reads it; none for a viewer that is switched off.
 std::optional<PetscOption> for_petsc(const Entry& entry) {
-  constexpr std::array viewers = {"ts_monitor", "ts_view", "log_view"};  // any value would name a kind of output
+  constexpr std::array viewers = {"ts_monitor", "ts_view", "log_view"};  // a value would name a kind of output
   PetscOption option{"-" + name_in_petsc(entry.name), entry.value};
   if (std::find(viewers.begin(), viewers.end(), entry.name) == viewers.end()) return option;
   if (!flag_of(entry)) return std::nullopt;
@@ -111,8 +114,8 @@ void put(const Entry& entry) {
         PetscOptionsSetValue(nullptr, option->name.c_str(), option->value.empty() ? nullptr : option->value.c_str()));
 }
 
-/// The options in PETSc's table that nothing has asked for.
-std::vector<std::string> left_over() {
+/// The options in PETSc's table that PETSc has not read.
+std::vector<std::string> unread_options() {
   PetscInt count = 0;
   char **names = nullptr, **values = nullptr;
   base::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
@@ -122,7 +125,7 @@ std::vector<std::string> left_over() {
   return left;
 }
 
-/// Whether it is one of the control of steps that PETSc asks for and does not use.
+/// Whether it is an option of the step-size control that PETSc reads but does not use with this ts_adapt_type.
 bool is_without_control(const Entry& entry, const Entries& entries) {
   constexpr std::array options = {"ts_rtol",         "ts_atol",       "ts_adapt_dt_max",
                                   "ts_adapt_dt_min", "ts_adapt_clip", "ts_adapt_safety"};
@@ -132,8 +135,8 @@ bool is_without_control(const Entry& entry, const Entries& entries) {
          (type == "none" || (type == "ladder" && entry.name != "ts_rtol"));
 }
 
-/// Whether PETSc's message holds the value, as it was written or as a number written otherwise.
-bool speaks_of(const std::string& message, const std::string& value) {
+/// Whether PETSc's message contains the value, as given or as the same number in another notation.
+bool mentions(const std::string& message, const std::string& value) {
   double wanted = 0.0, found = 0.0;
   const bool number = parse_number(value, wanted);
   std::string text = message;
@@ -148,7 +151,7 @@ bool speaks_of(const std::string& message, const std::string& value) {
   return false;
 }
 
-/// "PETSc error 86: what such errors are: what this one is", without all that is said of every such error.
+/// The last part of a message "PETSc error 86: general text: specific text".
 std::string specific_part(const std::string& message) {
   int code = 0, length = 0;
   const char* general = nullptr;
@@ -161,13 +164,14 @@ std::string specific_part(const std::string& message) {
   return begin < reason.size() ? reason.substr(begin) : reason;
 }
 
+/// Adds the entries of the file that an option options_file names.
 void add_file(Input& input, const Entry& named) {
   if (named.value.empty())
     throw InputError(
-        "options_file (command line): wanted: the name of a file; one that starts with a dash is written ./-NAME");
+        "options_file (command line): the name of a file is missing; write ./-NAME for a name that begins with a dash");
   const std::string found = find_file(named.value, "");
   for (Entry& inner : read_options_file(found.empty() ? named.value : found)) {
-    if (inner.name == "skip_petscrc") throw InputError(inner.given() + ": belongs to the command line alone");
+    if (inner.name == "skip_petscrc") throw InputError(inner.given() + ": allowed only on the command line");
     add(input, std::move(inner));
   }
 }
@@ -190,7 +194,7 @@ Input read_input(int argc, char** argv, const std::vector<Entry>& before, bool p
       if (scene_name.empty()) scene_name = name_of_scene(entry.value);
     }
   }
-  take_other_names(input.entries);
+  use_own_names(input.entries);
   if (petscrc) input.notes = add_weakest(read_petscrc(files), input.entries);
   input.entries.set_default({"scene_name", scene_name.empty() ? "scene" : scene_name, "options_file", 0});
   check_for_petsc(input.entries);
@@ -222,12 +226,12 @@ void put_into_petsc(const Input& input) {
 WithoutMonitors::WithoutMonitors() {
   static constexpr std::array names = {"ts_monitor", "ts_view", "ts_max_steps", "ts_adapt_monitor"};
   for (const Entry& entry : last_put)
-    if (std::find(names.begin(), names.end(), entry.name) != names.end()) aside_.push_back(entry);
-  for (const Entry& entry : aside_) base::check(PetscOptionsClearValue(nullptr, ("-" + entry.name).c_str()));
+    if (std::find(names.begin(), names.end(), entry.name) != names.end()) hidden_.push_back(entry);
+  for (const Entry& entry : hidden_) base::check(PetscOptionsClearValue(nullptr, ("-" + entry.name).c_str()));
 }
 
 WithoutMonitors::~WithoutMonitors() {
-  for (const Entry& entry : aside_)
+  for (const Entry& entry : hidden_)
     if (const std::optional<PetscOption> option = for_petsc(entry))
       (void)PetscOptionsSetValue(nullptr, option->name.c_str(),
                                  option->value.empty() ? nullptr : option->value.c_str());
@@ -238,7 +242,7 @@ const std::vector<std::string>& notes_on_petscrc() { return last_notes; }
 const Entries& in_force() { return last_put; }
 
 std::vector<std::string> notes_on_unused(const Entries& entries) {
-  const std::vector<std::string> left = left_over();
+  const std::vector<std::string> left = unread_options();
   const bool vehicles = std::any_of(entries.begin(), entries.end(), [](const Entry& entry) {
     return entry.name.starts_with("vehicle") || entry.name.find("train_vehicles") != std::string::npos;
   });
@@ -257,16 +261,16 @@ std::vector<std::string> notes_on_unused(const Entries& entries) {
 
 void refuse_by_petsc(const std::string& message) {
   const std::string reason = specific_part(message);
-  std::string blamed, all;
+  std::string mentioned, all;
   const auto add = [](std::string& list, const Entry& entry) { list += (list.empty() ? "" : ", ") + entry.given(); };
   for (const Entry& entry : last_put) {
     if (!is_read_by_ts(entry)) continue;
     add(all, entry);
-    const bool value = !entry.value.empty() && speaks_of(reason, entry.value);
-    if (value || speaks_of(reason, "-" + name_in_petsc(entry.name))) add(blamed, entry);
+    const bool value = !entry.value.empty() && mentions(reason, entry.value);
+    if (value || mentions(reason, "-" + name_in_petsc(entry.name))) add(mentioned, entry);
   }
-  if (blamed.empty()) blamed = all.empty() ? "an option of PETSc's solvers" : "one of " + all;
-  throw InputError(blamed + ": PETSc does not allow it: " + reason);
+  if (mentioned.empty()) mentioned = all.empty() ? "an option of PETSc's solvers" : "one of " + all;
+  throw InputError(mentioned + ": PETSc does not allow it: " + reason);
 }
 
 }  // namespace traverse::options

@@ -1,5 +1,5 @@
-// Reads texts from disk or from a results file, checks that they are UTF-8 without control characters, and keeps a copy
-// of each.
+// Reads texts from the disk or from a results file, checks that they are UTF-8 without control characters, and records
+// a copy of each.
 #include "options/input_texts.hpp"
 
 #include <fmt/format.h>
@@ -14,15 +14,15 @@ namespace traverse::options {
 namespace {
 
 struct Mounted {
-  std::string prefix;  // empty: nothing is
+  std::string prefix;  // empty if nothing is mounted
   std::vector<InputText> files;
 };
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
-Mounted mounted_inputs;  // one for the process, as PETSc's options are
-std::vector<InputText> noted;
-std::vector<char> noted_tables;
+Mounted mounted_inputs;  // one per process, as PETSc's options
+std::vector<InputText> recorded;
+std::vector<char> recorded_tables;  // for each recorded text: 1 for a table
 
 const InputText* find_mounted(const std::string& path) {
   if (mounted(path).empty()) return nullptr;
@@ -32,18 +32,18 @@ const InputText* find_mounted(const std::string& path) {
   return found == mounted_inputs.files.end() ? nullptr : &*found;
 }
 
-void note(const std::string& path, const std::string& text, bool table) {
+void record(const std::string& path, const std::string& text, bool table) {
   const std::string name = path.substr(mounted(path).size());
-  if (std::any_of(noted.begin(), noted.end(), [&](const InputText& file) { return file.name == name; })) return;
-  noted.push_back({name, text});
-  noted_tables.push_back(table ? 1 : 0);
+  if (std::any_of(recorded.begin(), recorded.end(), [&](const InputText& file) { return file.name == name; })) return;
+  recorded.push_back({name, text});
+  recorded_tables.push_back(table ? 1 : 0);
 }
 
 std::string text_on_disk(const std::string& path, const TextKind& kind) {
   std::string text, why = base::read_regular_file(path, kind.most_characters, text);
   if (why.empty()) return text;
   if (why == base::too_long)
-    why = fmt::format("longer than {} characters: this is no {}", kind.most_characters, kind.what);
+    why = fmt::format("longer than {} characters, so this is not {}", kind.most_characters, kind.what);
   throw InputError(fmt::format("{}{}{}: {}", kind.option, kind.option.empty() ? "" : " = ", path, why));
 }
 
@@ -56,11 +56,11 @@ void check_characters(std::string_view text, const std::string& name) {
     const std::size_t length = base::length_of_character(text, i);
     if (length == 0)
       throw InputError(
-          fmt::format("{}:{}: byte 0x{:02x} is no text in UTF-8; save the file as UTF-8", name, line, byte));
+          fmt::format("{}:{}: byte 0x{:02x} is not valid UTF-8; save the file as UTF-8", name, line, byte));
     const bool blank = byte == '\n' || byte == '\t' || byte == '\r';
     if ((byte < 0x20 && !blank) || byte == 0x7f)
-      throw InputError(fmt::format("{}:{}: holds the control character 0x{:02x}{}: this is no text", name, line, byte,
-                                   byte == 0 ? " (NUL)" : ""));
+      throw InputError(fmt::format("{}:{}: contains the control character 0x{:02x}{}, so this is not a text", name,
+                                   line, byte, byte == 0 ? " (NUL)" : ""));
     if (byte == '\n') ++line;
     i += length;
   }
@@ -71,18 +71,18 @@ std::string read_text(const std::string& path, const TextKind& kind) {
   std::string text = stored != nullptr ? stored->text : text_on_disk(path, kind);
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   check_characters(text, path);
-  note(path, text, kind.table);
+  record(path, text, kind.table);
   return text;
 }
 
-void record_text(const std::string& path, const std::string& text) { note(path, text, true); }
+void record_text(const std::string& path, const std::string& text) { record(path, text, true); }
 
-const std::vector<InputText>& inputs_read() { return noted; }
+const std::vector<InputText>& inputs_read() { return recorded; }
 
 std::vector<InputText> tables_read() {
   std::vector<InputText> tables;
-  for (std::size_t i = 0; i < noted.size(); ++i)
-    if (noted_tables[i] != 0) tables.push_back(noted[i]);
+  for (std::size_t i = 0; i < recorded.size(); ++i)
+    if (recorded_tables[i] != 0) tables.push_back(recorded[i]);
   return tables;
 }
 

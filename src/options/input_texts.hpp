@@ -1,5 +1,5 @@
-// The texts of the files that a scene is read from. They are stored with the results, from which the scene can be run
-// again.
+// The texts of the input files of a scene. They are stored with the results, so that the scene can be run again from
+// the results file.
 #pragma once
 
 #include <cstddef>
@@ -10,39 +10,39 @@
 namespace traverse::options {
 
 struct InputText {
-  std::string name;  // its path, as it was found
+  std::string name;  // the path at which it was found
   std::string text;
 };
 
-/// What a reader says of a file that it refuses.
+/// The data of a kind of file for the messages of its reader.
 struct TextKind {
-  std::string_view option;  // that names it: "limits"; empty: none, as of tables
+  std::string_view option;  // the option that names the file, such as "limits"; empty for tables
   std::string_view what;    // "a table"
   std::size_t most_characters = 0;
-  bool table = false;  // its entries are not known as options
+  bool table = false;  // its contents are not entries of options
 };
 
-/// The text of a file, from the disk or out of a results file, without a byte-order mark; it is kept as read.
-/// InputError where it is no regular file (a pipe, a device, a folder), cannot be read, is longer than allowed, or
-/// holds what no text holds: a NUL or another control character, bytes that are no UTF-8.
+/// The text of a file, from the disk or from a results file, without a byte-order mark; the text is recorded.
+/// InputError if the file is not a regular file (a pipe, a device, a folder), cannot be read, is longer than permitted,
+/// or contains a NUL, another control character or bytes that are not UTF-8.
 std::string read_text(const std::string& path, const TextKind& kind);
 
-/// The characters of a text, for those that are in memory already: the same refusals, with the line.
+/// Checks the characters of a text in memory in the same way. InputError with the line.
 void check_characters(std::string_view text, const std::string& name);
 
-/// Keeps the text of a table that is not its file's own; once is enough.
+/// Records the text of a table that differs from the contents of its file. A second text for a path is ignored.
 void record_text(const std::string& path, const std::string& text);
 
-/// All that were noted, in their order.
+/// All recorded texts in the order of reading.
 const std::vector<InputText>& inputs_read();
-/// Those among them that are no options files, whose entries are known as options.
+/// The recorded texts except options files, because the entries of these are stored as options.
 std::vector<InputText> tables_read();
 
-/// From now on paths that begin with `prefix` are those of these files.
+/// From now on a path that begins with `prefix` refers to one of these files.
 void mount_inputs(const std::string& prefix, std::vector<InputText> files);
-/// The prefix that a path begins with; empty: none.
+/// The prefix with which a path begins; empty if it has none.
 const std::string& mounted(const std::string& path);
-/// Whether there is such a file among those mounted. path: with the prefix.
+/// Whether there is a mounted file with this path, which includes the prefix.
 bool is_mounted(const std::string& path);
 
 }  // namespace traverse::options

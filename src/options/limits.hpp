@@ -1,4 +1,4 @@
-// How many entries a list may have: so many that nobody misses one, so few that memory holds what is made of them.
+// The greatest permitted number of entries of a list: more than any real scene needs, and few enough for the memory.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,7 @@
 
 namespace traverse::options {
 
+/// The greatest permitted number of entries of an option with this row.
 std::size_t most_entries(std::string_view name, const Row& row);
 
 }  // namespace traverse::options

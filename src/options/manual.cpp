@@ -6,7 +6,7 @@
 namespace traverse::options {
 namespace {
 
-/// Text as troff takes it literally.
+/// The text with all characters escaped that troff would interpret.
 std::string literal(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -24,7 +24,7 @@ std::string literal(std::string_view text) {
 
 constexpr std::string_view before_options = R"troff(.TH TRAVERSE 1 "" "traverse {version}" "User Commands"
 .SH NAME
-traverse \- predicts how trains, lorries and mechanisms cross flexible beams
+traverse \- computes how trains, lorries and mechanisms cross flexible beams
 .SH SYNOPSIS
 .B traverse
 .RB [ \-options_file
@@ -40,24 +40,24 @@ traverse \- predicts how trains, lorries and mechanisms cross flexible beams
 .B traverse \-help
 .RI [ group | option ]
 .SH DESCRIPTION
-A scene, its bridge, track, train and what is asked about them, is put together from options. They come from YAML files,
-in which nested keys merge with underscores (beam: {spans: [25.0, 30.0]} is \-beam_spans 25.0,30.0), from classic options
-files of PETSc and from the command line; later ones win. SI units; x along the track from the bridge's left end, y
-upward. In lists value*count repeats.
+A scene consists of a bridge, a track, trains and the requested analysis, all given by options. They are read from YAML
+files, in which nested keys join with underscores (beam: {spans: [25.0, 30.0]} is \-beam_spans 25.0,30.0), from
+classic options files of PETSc and from the command line; later options override earlier ones. SI units; x along the
+track from the bridge's left end, y upward. In lists value*count repeats.
 .PP
 Results go to an HDF5 file; the terminal shows what was modelled, progress and a summary.
 .SH OPTIONS
 )troff";
 
 constexpr std::string_view after_options = R"troff(.SH FILES
-Files that a scene names are looked for beside the file that names them, then in the working directory, then in
+Files that a scene names are searched beside the file that names them, then in the working directory, then in
 .IR share/traverse ,
 where the scenes of
 .I options
 are installed.
 .SH EXIT STATUS
-0 when the run has reached its end, 128 and the signal's number when a signal has ended it, another number after one line
-that says what is wrong.
+0 if the run has reached its end, 128 plus the number of the signal that ended it, or another number after one line with
+the reason.
 .SH EXAMPLES
 .nf
 traverse \-options_file options/scenes/three_span_train.yml

@@ -11,8 +11,8 @@
 namespace traverse::options {
 namespace {
 
-/// Takes note of where a document begins.
-class Beginning : public YAML::EventHandler {
+/// Records the line in which a document begins.
+class DocumentStart : public YAML::EventHandler {
  public:
   int line() const { return line_; }
 
@@ -32,13 +32,14 @@ class Beginning : public YAML::EventHandler {
 
 }  // namespace
 
-YAML::Node one_document(const std::string& text, const std::string& file, const std::string& said) {
+YAML::Node one_document(const std::string& text, const std::string& file, const std::string& prefix) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
-  Beginning initial_window;
-  if (parser.HandleNextDocument(initial_window) && parser.HandleNextDocument(initial_window))
-    throw InputError(fmt::format("{}:{}: {}holds more than one YAML document (a line of ---), or what is none", file,
-                                 initial_window.line(), said));
+  DocumentStart start;
+  if (parser.HandleNextDocument(start) && parser.HandleNextDocument(start))
+    throw InputError(
+        fmt::format("{}:{}: {}contains more than one YAML document (a line ---), or text that belongs to none", file,
+                    start.line(), prefix));
   return YAML::Load(text);
 }
 

@@ -1,5 +1,5 @@
-// A YAML file is one document. YAML::Load drops those behind the first one in silence, and YAML::LoadAll finds no end
-// behind a document that begins with what belongs to no document ("]", ",").
+// Reads a YAML file that must contain one document. YAML::Load ignores further documents without a message, and
+// YAML::LoadAll does not terminate if a document begins with a character that cannot begin one ("]", ",").
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -8,8 +8,8 @@
 
 namespace traverse::options {
 
-/// The document of a text, null where it is empty. InputError where something follows it: `said` stands in front of
-/// what it says, behind file and line. YAML::Exception where it is not well formed.
-YAML::Node one_document(const std::string& text, const std::string& file, const std::string& said = "");
+/// The document of a text, null for an empty text. InputError if something follows it; the message is file, line,
+/// `prefix` and the reason. YAML::Exception if the text is not well formed.
+YAML::Node one_document(const std::string& text, const std::string& file, const std::string& prefix = "");
 
 }  // namespace traverse::options

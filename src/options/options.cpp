@@ -25,7 +25,7 @@ std::string trim(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
 }
 
-/// The words of a comma list, brackets around it taken off.
+/// The words of a comma list without the brackets around it.
 std::vector<std::string> split(const std::string& value) {
   std::string text = trim(value);
   if (text.size() >= 2 && text.front() == '[' && text.back() == ']') text = trim(text.substr(1, text.size() - 2));
@@ -39,24 +39,24 @@ std::vector<std::string> split(const std::string& value) {
   return words;
 }
 
-/// What most likely stands in the way of a number: a comma, or a unit behind it.
-std::string why_no_number(const std::string& word, const Row& row) {
+/// The probable reason why a word is not a number: a comma, or a unit after it.
+std::string why_not_a_number(const std::string& word, const Row& row) {
   double number = 0.0;
   const bool one = row.kind == Kind::number || row.kind == Kind::integer || row.kind == Kind::number_or_file;
   if (one && word.find(',') != std::string::npos) {
     std::string with_point = word;
     with_point.replace(with_point.find(','), 1, ".");
     if (parse_number(with_point, number))
-      return fmt::format(" (one number is wanted; decimals follow a point: {})", with_point);
-    return " (one number is wanted, not a list)";
+      return fmt::format(" (expected one number; use a decimal point: {})", with_point);
+    return " (expected one number, not a list)";
   }
   const std::size_t end = word.find_first_not_of("+-.0123456789eE");
   if (end == std::string::npos || row.unit.empty() || !parse_number(word.substr(0, end), number)) return "";
-  if (row.unit == "m/s") return " (a speed is in m/s, or in km/h as in 100 km/h)";
-  return fmt::format(" (a number stands without its unit, in {})", row.unit);
+  if (row.unit == "m/s") return " (give a speed in m/s, or in km/h as in 100 km/h)";
+  return fmt::format(" (give the number without its unit, in {})", row.unit);
 }
 
-/// Entries whose value has no type of its own: text as it stands.
+/// Whether a default is empty or a remark in brackets, which is not a value.
 bool is_remark(std::string_view fallback) { return fallback.empty() || fallback.front() == '('; }
 
 Entries entries_of(const std::vector<Entry>& list) {
@@ -113,7 +113,7 @@ const Row* Options::find_known(std::string_view name) const {
 
 const Row& Options::row(std::string_view name) const {
   const Row* known = find_known(name);
-  if (known == nullptr) throw Error(fmt::format("option {} is read but stands in no table", name), 1);
+  if (known == nullptr) throw Error(fmt::format("option {} is read but is not in the option table", name), 1);
   return *known;
 }
 
@@ -123,7 +123,7 @@ std::string Options::nearest_known(const std::string& name) const {
   const auto fixed = static_cast<std::ptrdiff_t>(candidates.size());
   for (const auto& declared : declared_) candidates.push_back(declared.first);
   std::sort(candidates.begin() + fixed, candidates.end());
-  return nearest(name, candidates);  // of equal ones the first of the table
+  return nearest(name, candidates);  // the first of the table among equally near ones
 }
 
 void Options::check_names() const {
@@ -131,9 +131,9 @@ void Options::check_names() const {
     if (knows(entry.name)) continue;
     const std::string near = nearest_known(entry.name);
     const bool part = entry.name.starts_with("vehicle_");
-    throw InputError(fmt::format("unknown option {}{}{}; -help lists them all", entry.given(),
+    throw InputError(fmt::format("unknown option {}{}{}; -help lists all options", entry.given(),
                                  near.empty() ? "" : fmt::format("; did you mean {}?", near),
-                                 part ? " (a part has to stand in a list of its vehicle: bodies, springs, ...)" : ""));
+                                 part ? " (each part must be in a list of its vehicle: bodies, springs, ...)" : ""));
   }
 }
 
@@ -145,12 +145,12 @@ void Options::check_values() const {
 
 void Options::check_value(const Entry& entry, const Row& row) const {
   const std::string_view name = entry.name;
-  // an empty list of parts or vehicles is one, other lists without an entry are forgotten values
+  // an empty list of parts or vehicles is permitted, in other lists the value is missing
   if (row.kind != Kind::flag && row.kind != Kind::texts && split(entry.value).empty()) {
-    refuse(name, "has no value; wanted: " + allowed(row));
+    refuse(name, "has no value; allowed: " + allowed(row));
   }
   if (row.kind == Kind::texts && entry.from_file() && trim(entry.value).empty()) {
-    refuse(name, "has no value; wanted: " + allowed(row) + ", or [] for none");
+    refuse(name, "has no value; allowed: " + allowed(row) + ", or [] for none");
   }
   switch (row.kind) {
     case Kind::number:
@@ -195,11 +195,11 @@ std::string Options::value_or_default(std::string_view name) const {
   const Row& known = row(name);
   if (const Entry* entry = entries_.find(name)) {
     std::string value = trim(entry->value);
-    if (value.empty() && known.kind != Kind::flag) refuse(name, "has no value; wanted: " + allowed(known));
+    if (value.empty() && known.kind != Kind::flag) refuse(name, "has no value; allowed: " + allowed(known));
     return value;
   }
   if (is_remark(known.fallback)) {
-    throw InputError(fmt::format("{} is missing: {}; wanted: {}", name, known.text, allowed(known)));
+    throw InputError(fmt::format("{} is missing: {}; allowed: {}", name, known.text, allowed(known)));
   }
   return std::string(known.fallback);
 }
@@ -218,11 +218,11 @@ std::vector<std::string> Options::list(std::string_view name) const {
       if (code == std::errc::result_out_of_range) count = std::numeric_limits<std::size_t>::max();
       if ((code != std::errc() && code != std::errc::result_out_of_range) || stop != digits.data() + digits.size() ||
           count < 1 || digits.empty()) {
-        refuse(name, fmt::format("'{}': after * comes a whole number, how often the value is repeated", word));
+        refuse(name, fmt::format("'{}': after * there must be a whole number, the number of repetitions", word));
       }
     }
     const std::string value = trim(word.substr(0, star));
-    if (value.empty()) refuse(name, "has an empty entry; wanted: " + allowed(known));
+    if (value.empty()) refuse(name, "has an empty entry; allowed: " + allowed(known));
     if (count > most || expanded.size() + count > most)
       refuse(name, fmt::format("has too many entries; allowed: at most {}", most));
     expanded.insert(expanded.end(), count, value);
@@ -234,18 +234,19 @@ double Options::to_number(std::string_view name, const std::string& word) const 
   double value = 0.0;
   const Row& known = row(name);
   if (!(known.unit == "m/s" ? parse_speed(word, value) : parse_number(word, value))) {
-    refuse(name,
-           fmt::format("'{}' is no finite number{}; allowed: {}", word, why_no_number(word, known), allowed(known)));
+    refuse(name, fmt::format("'{}' is not a finite number{}; allowed: {}", word, why_not_a_number(word, known),
+                             allowed(known)));
   }
-  if (!known.range.holds(value))
-    refuse(name, known.kind == Kind::numbers
-                     ? fmt::format("'{}' is none of what is allowed: {}; a comma parts the numbers of a list, decimals "
-                                   "follow a point",
-                                   word, allowed(known))
-                     : "allowed: " + allowed(known));
+  if (!known.range.contains(value))
+    refuse(name,
+           known.kind == Kind::numbers
+               ? fmt::format("'{}' is not allowed; allowed: {}; a comma separates the numbers of a list, decimals "
+                             "need a point",
+                             word, allowed(known))
+               : "allowed: " + allowed(known));
   if (!is_quantity(value))
-    refuse(name, fmt::format("'{}' is beyond any quantity in SI units; allowed: 0, or {:g} to {:g} in magnitude", word,
-                             least_quantity, greatest_quantity));
+    refuse(name, fmt::format("'{}' is not a possible quantity in SI units; allowed: 0, or {:g} to {:g} in magnitude",
+                             word, least_quantity, greatest_quantity));
   return value;
 }
 
@@ -287,7 +288,7 @@ std::vector<double> Options::numbers(std::string_view name) const {
   for (const std::string& word : list(name)) values.push_back(to_number(name, word));
   const Row& known = row(name);
   if (known.count > 0 && values.size() != static_cast<std::size_t>(known.count)) {
-    refuse(name, fmt::format("has {} entries; wanted: {}", values.size(), allowed(known)));
+    refuse(name, fmt::format("has {} entries; allowed: {}", values.size(), allowed(known)));
   }
   return values;
 }
@@ -309,7 +310,7 @@ std::vector<std::string> Options::texts(std::string_view name) const {
     }
   }
   if (known.count > 0 && words.size() != static_cast<std::size_t>(known.count)) {
-    refuse(name, fmt::format("has {} entries; wanted: {}", words.size(), allowed(known)));
+    refuse(name, fmt::format("has {} entries; allowed: {}", words.size(), allowed(known)));
   }
   return words;
 }
@@ -324,7 +325,8 @@ std::vector<T> Options::spread(std::string_view name, std::vector<T> values, std
                                std::string_view what) const {
   if (values.size() == 1) values.resize(count, values.front());
   if (values.size() != count) {
-    refuse(name, fmt::format("has {} entries; wanted: one, or {}, {}", values.size(), count, what));
+    const std::string allowed_counts = count == 1 ? "1" : fmt::format("one, or {}", count);
+    refuse(name, fmt::format("has {} entries; allowed: {} ({})", values.size(), allowed_counts, what));
   }
   return values;
 }
@@ -357,9 +359,9 @@ std::string Options::path(std::string_view name) const {
   std::string found = find_file(value, entry != nullptr && entry->from_file() ? entry->source : "");
   if (found.empty()) {
     const bool number = row(name).kind == Kind::number_or_file;
-    refuse(name, number ? fmt::format("neither a number nor a file that is there{}; allowed: {}",
-                                      why_no_number(value, row(name)), allowed(row(name)))
-                        : "there is no such file, neither here nor beside the file that names it");
+    refuse(name, number ? fmt::format("neither a number nor a file that exists{}; allowed: {}",
+                                      why_not_a_number(value, row(name)), allowed(row(name)))
+                        : "there is no such file in the working directory or beside the file that names it");
   }
   std::error_code ignored;
   if (std::filesystem::is_directory(found, ignored)) refuse(name, "is a folder, not a file");

@@ -8,12 +8,13 @@
 
 namespace traverse::options {
 
-void take_other_names(Entries& entries) {
+void use_own_names(Entries& entries) {
   for (const base::RenamedOption& option : base::renamed_options) {
     const Entry *one = entries.find(option.name), *other = entries.find(option.newer);
     if (other == nullptr) continue;
     if (one != nullptr)
-      throw InputError(fmt::format("{}: another name of {}; allowed: one of the two", other->given(), one->given()));
+      throw InputError(
+          fmt::format("{}: this is another name of {}; give only one of the two", other->given(), one->given()));
     entries.rename(option.newer, option.name);
   }
 }

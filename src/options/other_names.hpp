@@ -1,4 +1,4 @@
-// Options that PETSc has renamed (base/petsc_versions.hpp): users may write either name, whatever the version of PETSc.
+// Options that PETSc has renamed (base/petsc_versions.hpp). Users may write either name with every version of PETSc.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace traverse::options {
 
-/// Gives entries under a newer name the name that Traverse has for it. InputError where both are given.
-void take_other_names(Entries& entries);
+/// Renames entries with a newer name of PETSc to the name in Traverse. InputError if both names are given.
+void use_own_names(Entries& entries);
 
-/// The name by which the PETSc at hand knows an option of Traverse's or its own.
+/// The name of an option in the linked version of PETSc.
 std::string name_in_petsc(const std::string& name);
-/// The name that Traverse has for an option, by whichever it is called.
+/// The name of an option in Traverse, from either name.
 std::string own_name(const std::string& name);
 
 }  // namespace traverse::options

@@ -1,5 +1,5 @@
-// Collects options from the files and environment variables of PETSc, and adds those meant for Traverse with the lowest
-// precedence and a message on each.
+// Collects options from the files and environment variables of PETSc, and adds the options of Traverse among them with
+// the lowest precedence and a message on each.
 #include "options/petscrc.hpp"
 
 #include <algorithm>
@@ -17,21 +17,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 5> of_command_line = {"options_file", "help", "check", "restart",
-                                                             "skip_petscrc"};
+constexpr std::array<std::string_view, 5> command_line_only = {"options_file", "help", "check", "restart",
+                                                               "skip_petscrc"};
 
 std::string_view kind_of(std::string_view name) { return name.substr(0, name.find('_')); }
 
-/// Whether the name is one of Traverse's or a misspelt one: programs of PETSc's share these places.
-bool is_meant_for_us(std::string_view name) {
-  if (std::find(of_command_line.begin(), of_command_line.end(), name) != of_command_line.end()) return false;
+/// Whether the name is an option of Traverse, possibly misspelt, and not of another program that uses PETSc.
+bool belongs_to_traverse(std::string_view name) {
+  if (std::find(command_line_only.begin(), command_line_only.end(), name) != command_line_only.end()) return false;
   if (owned_by_petsc(name)) return passes_to_petsc(name);
   const auto rows = fixed_rows();
   return kind_of(name) == "vehicle" ||
          std::any_of(rows.begin(), rows.end(), [&](const Row& row) { return kind_of(row.name) == kind_of(name); });
 }
 
-std::vector<std::string> files_there() {
+std::vector<std::string> existing_files() {
   std::vector<std::string> files;
   const char* home = std::getenv("HOME");
   std::error_code ignored;
@@ -42,8 +42,8 @@ std::vector<std::string> files_there() {
   return files;
 }
 
-/// A variable of the environment, taken out of it.
-std::string take_variable(const char* name) {
+/// The value of an environment variable, which is removed from the environment.
+std::string remove_variable(const char* name) {
   const char* value = std::getenv(name);
   std::string text = value == nullptr ? "" : value;
   unsetenv(name);
@@ -58,8 +58,8 @@ std::vector<Entry> read_petscrc(bool files) {
     for (Entry& entry : more) all.push_back(std::move(entry));
   };
   if (files)
-    for (const std::string& file : files_there()) add(read_classic_file(file));
-  const std::string words = take_variable("PETSC_OPTIONS"), yaml = take_variable("PETSC_OPTIONS_YAML");
+    for (const std::string& file : existing_files()) add(read_classic_file(file));
+  const std::string words = remove_variable("PETSC_OPTIONS"), yaml = remove_variable("PETSC_OPTIONS_YAML");
   add(parse_words(split_words(words, "PETSC_OPTIONS: "), "PETSC_OPTIONS", 0));
   add(parse_yaml(yaml, "PETSC_OPTIONS_YAML"));
   return all;
@@ -70,8 +70,8 @@ std::vector<std::string> add_weakest(std::vector<Entry> given, Entries& in_force
   for (std::size_t i = given.size(); i-- > 0;) {
     Entry& entry = given[i];
     entry.name = own_name(entry.name);
-    if (!is_meant_for_us(entry.name)) {
-      notes[i] = entry.given() + " is left out: it is no option that Traverse takes from there";
+    if (!belongs_to_traverse(entry.name)) {
+      notes[i] = entry.given() + " is ignored: Traverse does not read this option from there";
     } else if (const Entry* stronger = in_force.find(entry.name)) {
       notes[i] = entry.given() + " has no effect: " + stronger->given() + " overrides it";
     } else {

@@ -1,5 +1,5 @@
-// Options from where users of PETSc leave them: the files .petscrc and petscrc, the variables PETSC_OPTIONS and
-// PETSC_OPTIONS_YAML. Traverse reads them itself, checks them as all others, and says what each does; PETSc does not.
+// Options from the places that PETSc reads: the files .petscrc and petscrc, the variables PETSC_OPTIONS and
+// PETSC_OPTIONS_YAML. Traverse reads them instead of PETSc, checks them as all others, and reports the effect of each.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace traverse::options {
 
-/// Their options in the order in which later ones win: ~/.petscrc, .petscrc, petscrc, PETSC_OPTIONS,
-/// PETSC_OPTIONS_YAML. Takes the two variables out of the environment, where PETSc would read them again. InputError
-/// where they are not well formed. files: whether the files are read.
+/// The options of ~/.petscrc, .petscrc, petscrc, PETSC_OPTIONS, PETSC_OPTIONS_YAML in this order, in which later ones
+/// override earlier ones. Removes the two variables from the environment, so that PETSc does not read them. InputError
+/// if they are not well formed. files: whether the files are read.
 std::vector<Entry> read_petscrc(bool files);
 
-/// Adds those that are options of Traverse's to the options in force where these do not give them. Returns a line on
-/// each: that it is in force, what overrides it, or that it is left out.
+/// Adds the options of Traverse among them to the options in force, unless these have an entry of the same name.
+/// Returns a line for each: that it is in force, which entry overrides it, or that it is ignored.
 std::vector<std::string> add_weakest(std::vector<Entry> given, Entries& in_force);
 
 }  // namespace traverse::options

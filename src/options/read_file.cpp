@@ -22,12 +22,12 @@ namespace {
 
 constexpr std::size_t deepest_include = 64, most_includes = 1000;
 constexpr int deepest_block = 64;
-constexpr std::size_t most_characters = 16 << 20;  // of a file, and of what its anchors make of it
+constexpr std::size_t most_characters = 16 << 20;  // of a file, and of its text with all anchors expanded
 
 std::string at(const std::string& file, int line) { return fmt::format("{}:{}: ", file, line); }
 
-/// Walks a YAML tree and notes every leaf as an entry. What a merge key (<<) brings counts unless the block itself has
-/// it.
+/// Traverses a YAML tree and adds an entry for each leaf. An entry of a merge key (<<) is used unless the block itself
+/// has an entry of the same name.
 class Flattener {
  public:
   Flattener(const std::string& file, std::vector<Entry>& entries) : file_(file), entries_(entries) {}
@@ -38,7 +38,7 @@ class Flattener {
     std::vector<YAML::Node> merges;
     for (const auto& item : node) {
       const int line = line_of(item.first);
-      if (!item.first.IsScalar()) throw InputError(at(file_, line) + "a key has to be a word");
+      if (!item.first.IsScalar()) throw InputError(at(file_, line) + "a key must be a word");
       const std::string& key = item.first.Scalar();
       count(prefix.size() + key.size() + 1, line);
       if (key == "<<") {  // YAML's merge key; an anchor's block may be kept under a key that starts with $$
@@ -51,21 +51,22 @@ class Flattener {
       if (!is_new) refuse_second(prefix + key, line, first->second);
       if (item.second.IsNull() && std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isdigit(c); }))
         throw InputError(at(file_, line) + "'" + key +
-                         "' stands where a name should: in braces a comma ends a value; decimals follow a point, and a "
-                         "list stands in brackets");
+                         "' is in the place of a name: in braces a comma ends a value; use a decimal point, and "
+                         "brackets for a list");
       value(item.second, prefix + key, line, merged);
     }
     for (const YAML::Node& merge : merges) add_merged(merge, prefix);
   }
 
  private:
-  /// One block in another. One that holds itself, by an alias in it of its own anchor, has no end.
+  /// Counts the depth of nested blocks. A block that contains an alias of its own anchor would be nested without end.
   class Nested {
    public:
     Nested(Flattener& flattener, const YAML::Node& node) : depth_(flattener.depth_) {
       if (++depth_ > deepest_block)
-        throw InputError(fmt::format("{}blocks more than {} deep, or a block that an alias (*) puts into itself",
-                                     at(flattener.file_, line_of(node)), deepest_block));
+        throw InputError(
+            fmt::format("{}blocks are nested more than {} deep, or a block contains itself by an alias (*)",
+                        at(flattener.file_, line_of(node)), deepest_block));
     }
     Nested(const Nested&) = delete;
     Nested& operator=(const Nested&) = delete;
@@ -80,17 +81,18 @@ class Flattener {
   void check_key(const std::string& key, int line) const {
     for (const char c : key) {
       if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') {
-        throw InputError(at(file_, line) + "'" + key + "' is no name of an option: letters, digits and _ only");
+        throw InputError(at(file_, line) + "'" + key +
+                         "' is not the name of an option; allowed: letters, digits and _");
       }
     }
-    if (key.empty()) throw InputError(at(file_, line) + "an empty key");
+    if (key.empty()) throw InputError(at(file_, line) + "a key is empty");
   }
 
   void add_merged(const YAML::Node& node, const std::string& prefix) {
     if (node.IsMap()) return map(node, prefix, true);
     const Nested nested(*this, node);
     count(node.size(), line_of(node));
-    if (!node.IsSequence()) throw InputError(at(file_, line_of(node)) + "<< takes a block, or a list of blocks");
+    if (!node.IsSequence()) throw InputError(at(file_, line_of(node)) + "<< needs a block or a list of blocks");
     for (const auto& item : node) add_merged(item, prefix);
   }
 
@@ -105,15 +107,15 @@ class Flattener {
     }
   }
 
-  /// An anchor that stands for a block of anchors, and so on, may stand for more than any memory holds.
+  /// Limits the characters, because nested anchors can expand to more text than the memory can store.
   void count(std::size_t characters, int line) {
     characters_ += characters;
     if (characters_ > most_characters)
       throw InputError(
-          fmt::format("{}its anchors make more than {} characters of it", at(file_, line), most_characters));
+          fmt::format("{}the anchors expand to more than {} characters", at(file_, line), most_characters));
   }
 
-  /// One file gives an option once: `beam: {mass: 1}` and `beam_mass: 2` are the same one.
+  /// Adds an entry. A file may give an option once; `beam: {mass: 1}` and `beam_mass: 2` are the same option.
   void add(const std::string& name, std::string text, int line, bool merged) {
     const auto [first, is_new] = given_.try_emplace(name, line);
     if (!is_new && merged) return;
@@ -123,15 +125,16 @@ class Flattener {
 
   [[noreturn]] void refuse_second(const std::string& name, int line, int first) const {
     throw InputError(
-        fmt::format("{}{} is given twice, first in line {}; keep one of them", at(file_, line), name, first));
+        fmt::format("{}{} is given twice, first in line {}; remove one of the two", at(file_, line), name, first));
   }
 
   std::string list(const YAML::Node& node, const std::string& name) {
-    if (node.size() == 0) return "[]";  // meant so, unlike a key without a value
+    if (node.size() == 0) return "[]";  // an empty list is permitted, a key without a value is not
     std::string joined;
     for (const auto& item : node) {
       if (!item.IsScalar()) {
-        throw InputError(at(file_, line_of(item)) + name + ": a list holds numbers or words, not lists or blocks");
+        throw InputError(at(file_, line_of(item)) + name +
+                         ": a list may contain numbers or words, not lists or blocks");
       }
       if (!joined.empty()) joined += ',';
       count(item.Scalar().size() + 1, line_of(item));
@@ -142,12 +145,12 @@ class Flattener {
 
   const std::string& file_;
   std::vector<Entry>& entries_;
-  std::unordered_map<std::string, int> given_;  // option: its line
+  std::unordered_map<std::string, int> given_;  // the line of each option
   std::size_t characters_ = 0;
   int depth_ = 0;
 };
 
-/// Begins like a name of an option: a dash or two, then a letter.
+/// Whether a word begins as the name of an option: one or two dashes, then a letter or _.
 bool is_name(const std::string& word) {
   std::size_t dashes = 0;
   while (dashes < word.size() && word[dashes] == '-') ++dashes;
@@ -160,14 +163,14 @@ void check_name(const std::string& word, const std::string& source, int line) {
   if (std::all_of(word.begin(), word.end(), belongs)) return;
   throw InputError(
       (line > 0 ? at(source, line) : source + ": ") + "'" + word +
-      "' is no name of an option: letters, digits and _ only, a blank before the value (-name value); a file "
-      "whose name starts with a dash is written ./" +
+      "' is not the name of an option; allowed: letters, digits and _, and a blank before the value (-name value); "
+      "for a file whose name begins with a dash write ./" +
       word);
 }
 
 bool is_yaml(const std::string& path) { return path.ends_with(".yml") || path.ends_with(".yaml"); }
 
-/// The files that an option `options_file` of a file names; none where it says so.
+/// The files that an option `options_file` of a file names; none for [].
 std::vector<std::string> names_in(const Entry& entry) {
   std::vector<std::string> names;
   if (entry.value == "[]") return names;
@@ -178,7 +181,7 @@ std::vector<std::string> names_in(const Entry& entry) {
     names.push_back(name.substr(first, name.find_last_not_of(" \t") - first + 1));
   }
   if (names.empty())
-    throw InputError("options_file (" + entry.where() + "): has no value; wanted: the name of a file, or leave it out");
+    throw InputError("options_file (" + entry.where() + "): has no value; allowed: the name of a file, or [] for none");
   return names;
 }
 
@@ -187,9 +190,10 @@ bool is_same(const std::string& file, const std::string& other) {
   return file == other || std::filesystem::equivalent(file, other, ignored);
 }
 
-/// above: the files that name each other down to this one. read: how many have been read.
+/// The entries of a file and of the files that it names. above: the chain of files that leads to this one. read: the
+/// number of files read.
 std::vector<Entry> read_nested(const std::string& path, std::vector<std::string> above, std::size_t& read) {
-  const std::string text = read_text(path, {"options_file", "options file", most_characters, false});
+  const std::string text = read_text(path, {"options_file", "an options file", most_characters, false});
   above.push_back(path);
   std::vector<Entry> all;
   for (Entry& entry : is_yaml(path) ? parse_yaml(text, path) : parse_classic(text, path)) {
@@ -198,23 +202,22 @@ std::vector<Entry> read_nested(const std::string& path, std::vector<std::string>
       continue;
     }
     for (const std::string& name : names_in(entry)) {
-      const std::string found = find_file(name, path), said = "options_file = " + name + " (" + entry.where() + "): ";
+      const std::string found = find_file(name, path), option = "options_file = " + name + " (" + entry.where() + "): ";
       if (found.empty()) {
-        throw InputError(said +
-                         "there is no such file, neither beside the file that names it nor in the working directory");
+        throw InputError(option + "there is no such file beside the file that names it or in the working directory");
       }
       if (std::any_of(above.begin(), above.end(), [&](const std::string& file) { return is_same(file, found); }))
-        throw InputError(said + "files name each other in a circle");
+        throw InputError(option + "the files name each other in a circle");
       if (above.size() > deepest_include)
-        throw InputError(fmt::format("{}files name each other more than {} deep", said, deepest_include));
-      if (++read > most_includes) throw InputError(fmt::format("{}more than {} files in all", said, most_includes));
+        throw InputError(fmt::format("{}the files are nested more than {} deep", option, deepest_include));
+      if (++read > most_includes) throw InputError(fmt::format("{}more than {} files in all", option, most_includes));
       for (Entry& inner : read_nested(found, above, read)) all.push_back(std::move(inner));
     }
   }
   return all;
 }
 
-/// Whether a tab stands before the first word of a line, counted from 0, or of the one before it.
+/// Whether a tab is before the first word of a line, counted from 0, or of the line before it.
 bool indented_by_tab(const std::string& text, int line) {
   std::istringstream lines(text);
   int number = 0;
@@ -236,7 +239,7 @@ std::vector<Entry> parse_yaml(const std::string& text, const std::string& name) 
     Flattener(name, entries).map(document, "");
   } catch (const YAML::Exception& error) {
     throw InputError(at(name, error.mark.line + 1) + "not well-formed YAML: " + error.msg +
-                     (indented_by_tab(text, error.mark.line) ? " (a tab; YAML wants blanks)" : ""));
+                     (indented_by_tab(text, error.mark.line) ? " (a tab; YAML permits only blanks)" : ""));
   }
   return entries;
 }
@@ -283,7 +286,7 @@ std::vector<Entry> parse_classic(const std::string& text, const std::string& nam
 
 std::vector<Entry> parse_words(const std::vector<std::string>& words, const std::string& source, int line) {
   std::vector<Entry> entries;
-  bool has_value = true;  // of the last entry: a further word belongs to nothing
+  bool has_value = true;  // of the last entry, so that a further word has no name
   for (const std::string& word : words) {
     if (is_name(word)) {
       check_name(word, source, line);
@@ -294,7 +297,7 @@ std::vector<Entry> parse_words(const std::vector<std::string>& words, const std:
       has_value = true;
     } else {
       throw InputError((line > 0 ? at(source, line) : source + ": ") + "'" + word +
-                       "' belongs to no option; a value follows its name (-name value), a list has no blanks");
+                       "' is not the value of an option; write -name value, and a list without blanks");
     }
   }
   return entries;
@@ -310,7 +313,7 @@ std::string find_file(const std::string& path, const std::string& named_in) {
   std::error_code ignored;
   if (!named_in.empty() && !std::filesystem::path(path).is_absolute()) {
     const std::filesystem::path beside = std::filesystem::path(named_in).parent_path() / path;
-    const std::filesystem::path plain = beside.lexically_normal();  // another file where a folder is a symbolic link
+    const std::filesystem::path plain = beside.lexically_normal();  // a different file if a folder is a symbolic link
     if (std::filesystem::equivalent(beside, plain, ignored)) return plain.string();
     if (std::filesystem::exists(beside, ignored)) return beside.string();
   }

@@ -1,5 +1,5 @@
-// Parses a YAML list of limits entry by entry; a value may be a fraction such as 1/600, and an unknown quantity is
-// refused with the most similar name.
+// Parses a YAML list of limits entry by entry. A value may be a fraction such as 1/600, and the message for an unknown
+// quantity names the most similar one.
 #include "options/read_verdict_limits.hpp"
 
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ class LimitReader {
       } else if (key == "value") {
         limit.value = number(item.second);
       } else {
-        refuse(item.first, fmt::format("'{}' is no key of a limit; allowed: clause, quantity, value, text", key));
+        refuse(item.first, fmt::format("'{}' is not a key of a limit; allowed: clause, quantity, value, text", key));
       }
     }
     for (const char* key : {"clause", "quantity", "value"})
@@ -71,16 +71,16 @@ class LimitReader {
                               : fmt::format("there is no quantity '{}'; did you mean {}?", name, near));
   }
 
-  /// A number above zero, or one over another: 1/600.
+  /// A number above zero, or a fraction of two such numbers: 1/600.
   double number(const YAML::Node& node) const {
     const std::string& word = node.Scalar();
     const std::size_t bar = word.find('/');
-    double above = 0.0, below = 1.0;
-    const bool fits = parse_number(word.substr(0, bar), above) &&
-                      (bar == std::string::npos || parse_number(word.substr(bar + 1), below));
-    if (!fits || !(above > 0.0 && below > 0.0) || !is_quantity(above / below))
+    double numerator = 0.0, denominator = 1.0;
+    const bool fits = parse_number(word.substr(0, bar), numerator) &&
+                      (bar == std::string::npos || parse_number(word.substr(bar + 1), denominator));
+    if (!fits || !(numerator > 0.0 && denominator > 0.0) || !is_quantity(numerator / denominator))
       refuse(node, fmt::format("value '{}'; allowed: a number above 0, or a fraction such as 1/600", word));
-    return above / below;
+    return numerator / denominator;
   }
 
   const std::string& file_;
@@ -95,7 +95,8 @@ std::vector<VerdictLimit> parse_verdict_limits(const std::string& text, const st
     const YAML::Node list = one_document(text, name, "limits: ");
     if (!list.IsSequence() || list.size() == 0)
       reader.refuse(list, "expected a list of entries {clause: ..., quantity: ..., value: ..., text: ...}");
-    if (list.size() > most_limits) reader.refuse(list, fmt::format("more than {} entries", most_limits));
+    if (list.size() > most_limits)
+      reader.refuse(list, fmt::format("{} entries; allowed: at most {}", list.size(), most_limits));
     for (const auto& entry : list) limits.push_back(reader.read(entry));
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("{}:{}: limits: not well-formed YAML: {}", name, error.mark.line + 1, error.msg));
@@ -104,7 +105,7 @@ std::vector<VerdictLimit> parse_verdict_limits(const std::string& text, const st
 }
 
 std::vector<VerdictLimit> read_verdict_limits(const std::string& path) {
-  return parse_verdict_limits(read_text(path, {"limits", "list of limits", longest_file, true}), path);
+  return parse_verdict_limits(read_text(path, {"limits", "a list of limits", longest_file, true}), path);
 }
 
 }  // namespace traverse::options

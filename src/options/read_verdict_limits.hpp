@@ -1,4 +1,4 @@
-// Files of limits: a YAML list of {clause, quantity, value, text}.
+// Reads files of limits: a YAML list of {clause, quantity, value, text}.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace traverse::options {
 
-/// Throws InputError naming file and line for what is no such list.
+/// The limits of a file. Throws InputError with file and line if it is not such a list.
 std::vector<VerdictLimit> read_verdict_limits(const std::string& path);
 
-/// The same from text in memory; `name` stands for the file in messages.
+/// The limits of a text in memory; `name` is the name of the file in messages.
 std::vector<VerdictLimit> parse_verdict_limits(const std::string& text, const std::string& name);
 
 }  // namespace traverse::options

@@ -1,4 +1,4 @@
-// Descriptions of an option's allowed values in words, and the most similar option name by a weighted edit distance.
+// The text of an option's permitted values, and the most similar option name by a weighted edit distance.
 #include "traverse/options/table.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ bool is_list(Kind kind) {
   return kind == Kind::numbers || kind == Kind::integers || kind == Kind::texts || kind == Kind::choice_list;
 }
 
-std::string range_words(const Range& range) {
+std::string range_text(const Range& range) {
   const bool low = range.low > any.low, high = range.high < any.high;
   if (low && high && range.above) return fmt::format("above {:g}, at most {:g}", range.low, range.high);
   if (low && high) return fmt::format("from {:g} to {:g}", range.low, range.high);
@@ -22,7 +22,7 @@ std::string range_words(const Range& range) {
   return "";
 }
 
-std::string kind_words(const Row& row) {
+std::string kind_text(const Row& row) {
   switch (row.kind) {
     case Kind::number:
       return "a number";
@@ -49,28 +49,29 @@ std::string kind_words(const Row& row) {
   return "";
 }
 
-constexpr int an_edit = 4;         // a letter more, less or other, or neighbours that are swapped
-constexpr int other_case = 1;      // a letter that is small for a capital one, or the other way
-constexpr int words_left_out = 2;  // in front or behind, and 1 for each
+constexpr int edit_cost = 4;      // a letter inserted, deleted or replaced, or two neighbours swapped
+constexpr int case_cost = 1;      // a lower-case letter instead of a capital one, or the reverse
+constexpr int omission_cost = 2;  // words missing at the beginning or end, plus 1 for each of them
 
-/// Least cost of the edits that make one word of another.
+/// The least cost of the edits that change one word into another.
 int distance(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
   std::vector<std::vector<int>> d(a.size() + 1, std::vector<int>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = an_edit * static_cast<int>(i);
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = an_edit * static_cast<int>(j);
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = edit_cost * static_cast<int>(i);
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = edit_cost * static_cast<int>(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const char x = a[i - 1], y = b[j - 1];
-      const int change = x == y ? 0 : lower(x) == lower(y) ? other_case : an_edit;
-      d[i][j] = std::min({d[i - 1][j] + an_edit, d[i][j - 1] + an_edit, d[i - 1][j - 1] + change});
-      if (i > 1 && j > 1 && x == b[j - 2] && a[i - 2] == y) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + an_edit);
+      const int change = x == y ? 0 : lower(x) == lower(y) ? case_cost : edit_cost;
+      d[i][j] = std::min({d[i - 1][j] + edit_cost, d[i][j - 1] + edit_cost, d[i - 1][j - 1] + change});
+      if (i > 1 && j > 1 && x == b[j - 2] && a[i - 2] == y) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + edit_cost);
     }
   }
   return d[a.size()][b.size()];
 }
 
-/// The same where `name` may be some of the candidate's words only: beam_damping of beam_damping_ratios, ei of beam_EI.
+/// The distance if `name` may have only some words of the candidate: beam_damping of beam_damping_ratios, ei of
+/// beam_EI.
 int distance_to_words(std::string_view name, std::string_view candidate) {
   std::vector<std::size_t> begins = {0};
   for (std::size_t i = 0; i < candidate.size(); ++i)
@@ -78,12 +79,12 @@ int distance_to_words(std::string_view name, std::string_view candidate) {
   int least = distance(name, candidate);
   const std::size_t words = begins.size();
   for (std::size_t first = 0; first < words; ++first)
-    for (std::size_t behind = first + 1; behind <= words; ++behind) {
-      const std::size_t end = behind == words ? candidate.size() : begins[behind] - 1;
-      const int left_out = static_cast<int>(words - (behind - first));
-      if (left_out == 0) continue;
-      const int rest = distance(name, candidate.substr(begins[first], end - begins[first]));
-      least = std::min(least, rest + words_left_out + left_out);
+    for (std::size_t past = first + 1; past <= words; ++past) {
+      const std::size_t end = past == words ? candidate.size() : begins[past] - 1;
+      const int omitted = static_cast<int>(words - (past - first));
+      if (omitted == 0) continue;
+      const int edits = distance(name, candidate.substr(begins[first], end - begins[first]));
+      least = std::min(least, edits + omission_cost + omitted);
     }
   return least;
 }
@@ -102,9 +103,9 @@ const Row* find_row(std::span<const Row> rows, std::string_view name) {
 }
 
 std::string allowed(const Row& row) {
-  std::string words = kind_words(row);
+  std::string words = kind_text(row);
   if (row.kind == Kind::choice || row.kind == Kind::choice_list) words += " " + replace_blanks(row.choices);
-  const std::string range = range_words(row.range);
+  const std::string range = range_text(row.range);
   if (!range.empty()) words += (is_list(row.kind) ? ", each " : " ") + range;
   if (!row.unit.empty() && row.unit != "1") words += fmt::format(" ({})", row.unit);
   return words;
@@ -116,9 +117,9 @@ std::string allowed_in_short(const Row& row) {
                       : row.kind == Kind::number_or_file ? "number or file"
                       : row.kind == Kind::flag           ? "true, false"
                       : row.name == "help"               ? ""
-                                                         : kind_words(row);
+                                                         : kind_text(row);
   if (!row.unit.empty() && row.unit != "1") words += fmt::format(" [{}]", row.unit);
-  const std::string range = range_words(row.range);
+  const std::string range = range_text(row.range);
   if (!range.empty()) words += ", " + range;
   if (!row.fallback.empty()) words += fmt::format("; default {}", row.fallback);
   return words;
@@ -126,7 +127,7 @@ std::string allowed_in_short(const Row& row) {
 
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
   std::string best;
-  int least = an_edit * (std::max<int>(2, static_cast<int>(name.size()) / 2) + 1);
+  int least = edit_cost * (std::max<int>(2, static_cast<int>(name.size()) / 2) + 1);
   for (const std::string& candidate : candidates) {
     const int d = distance_to_words(name, candidate);
     if (d < least) {

@@ -1,4 +1,4 @@
-// Rows of the option table: a layered track, whose properties may change along x, and its stretches.
+// Rows of the option table: a layered track, whose properties may vary along x, and its stretches.
 #include <fmt/format.h>
 
 #include <string>
@@ -14,44 +14,46 @@ using enum Kind;
 
 // clang-format off
 constexpr Row rail_rows[] = {
-  {"track_rail_EI", number_or_file, "N m2", "", positive, "", 0, "layered track: rail's bending stiffness (both rails), or a file x,value"},
-  {"track_rail_EA", number_or_file, "N", "", positive, "", 0, "layered track: rail's axial stiffness, or a file x,value; needed for longitudinal action only"},
-  {"track_rail_GA", number, "N", "", positive, "", 0, "layered track: rail's shear stiffness; left out: it does not shear"},
-  {"track_rail_mass", number_or_file, "kg/m", "", positive, "", 0, "layered track: rail's mass per length, or a file x,value"},
-  {"track_rail_area", number, "m2", "", positive, "", 0, "layered track: cross-section of both rails, for their stress along x"},
-  {"track_rail_temperature", number, "K", "0", any, "", 0, "layered track: warmer than when the rail was laid"},
-  {"track_rail_expansion", number, "1/K", "1.2e-5", not_negative, "", 0, "layered track: rail's coefficient of expansion"},
-  {"track_rail_ends", choice, "", "free", any, "free held", 0, "layered track: whether the ends of the modelled rail are held along x, as where the track goes on"},
-  {"track_rail_hinges", numbers, "m", "", any, "", 0, "layered track: stations of rail joints that carry no moment, at nodes of the rail"},
-  {"track_rail_expansion_devices", numbers, "m", "", any, "", 0, "layered track: stations of rail expansion devices, which carry no axial force, at nodes of the rail between sleepers"},
-  {"track_spacing", number, "m", "", positive, "", 0, "layered track: from sleeper to sleeper"},
-  {"track_offset", number, "m", "0", any, "", 0, "layered track: x of one of the sleepers"},
-  {"track_elements_per_bay", integer, "", "2", {1, 100}, "", 0, "layered track: rail elements from sleeper to sleeper; the bridge has as many"},
+  {"track_rail_EI", number_or_file, "N m2", "", positive, "", 0, "layered track: bending stiffness of both rails, or a file x,value"},
+  {"track_rail_EA", number_or_file, "N", "", positive, "", 0, "layered track: axial stiffness of both rails, or a file x,value; only needed for longitudinal action"},
+  {"track_rail_GA", number, "N", "", positive, "", 0, "layered track: shear stiffness of both rails; without it: no shear deformation"},
+  {"track_rail_mass", number_or_file, "kg/m", "", positive, "", 0, "layered track: mass of both rails per length, or a file x,value"},
+  {"track_rail_area", number, "m2", "", positive, "", 0, "layered track: cross-section area of both rails, for their axial stress"},
+  {"track_rail_temperature", number, "K", "0", any, "", 0, "layered track: temperature change since the rail was laid, positive: warmer"},
+  {"track_rail_expansion", number, "1/K", "1.2e-5", not_negative, "", 0, "layered track: coefficient of thermal expansion of the rails"},
+  {"track_rail_ends", choice, "", "free", any, "free held", 0, "layered track: ends of the modelled rail along x; held: fixed, as where the track continues"},
+  {"track_rail_hinges", numbers, "m", "", any, "", 0, "layered track: stations of rail joints that transmit no moment, at nodes of the rail"},
+  {"track_rail_expansion_devices", numbers, "m", "", any, "", 0, "layered track: stations of rail expansion devices, which transmit no axial force, at nodes of the rail between sleepers"},
+  {"track_spacing", number, "m", "", positive, "", 0, "layered track: sleeper spacing"},
+  {"track_offset", number, "m", "0", any, "", 0, "layered track: x of one sleeper"},
+  {"track_elements_per_bay", integer, "", "2", {1, 100}, "", 0, "layered track: rail elements between two sleepers; the bridge has the same number"},
 };
 
 constexpr Row further_rows[] = {
-  {"track_ballast_own_mass", flag, "", "false", any, "", 0, "layered track: on the bridge too the ballast is a mass by itself on the sub-ballast's spring; false: it rides on the bridge"},
-  {"track_shear_k", number, "N/m", "0", not_negative, "", 0, "layered track: stiffness between neighbouring masses of ballast that move by themselves"},
-  {"track_shear_c", number, "Ns/m", "0", not_negative, "", 0, "layered track: damping between them"},
-  {"track_stretches", texts, "", "", any, "", 0, "layered track: names of stretches where some of its properties differ"},
-  {"track_approach", number, "m", "(the train's length and more)", not_negative, "", 0, "layered track: length modelled on either side"},
+  {"track_ballast_own_mass", flag, "", "false", any, "", 0, "layered track: the ballast on the bridge is a separate mass on the sub-ballast spring; false: its mass is added to the bridge"},
+  {"track_shear_k", number, "N/m", "0", not_negative, "", 0, "layered track: stiffness between neighbouring ballast masses that move separately"},
+  {"track_shear_c", number, "Ns/m", "0", not_negative, "", 0, "layered track: damping between these masses"},
+  {"track_stretches", texts, "", "", any, "", 0, "layered track: names of stretches with different properties"},
+  {"track_approach", number, "m", "(from the train's length)", not_negative, "", 0, "layered track: length of track modelled on either side of the bridge"},
 };
 
 constexpr Row ends_of_stretch[] = {
-  {"from", number, "m", "", any, "", 0, "where the stretch begins: sleepers from there on belong to it"},
-  {"to", number, "m", "", any, "", 0, "where it ends: sleepers up to there"},
-  {"sleepers", choice, "", "standard", any, "standard none", 0, "none: there are neither sleepers nor pads; the ballast stays"},
+  {"from", number, "m", "", any, "", 0, "x of the start; sleepers from there on belong to the stretch"},
+  {"to", number, "m", "", any, "", 0, "x of the end; sleepers up to there belong to the stretch"},
+  {"sleepers", choice, "", "standard", any, "standard none", 0, "none: no sleepers and no pads; the ballast remains"},
 };
 // clang-format on
 
-/// What a property is when it is not given; stiffnesses have none.
+/// The default of a property; stiffnesses have none.
 std::string_view fallback_of(std::string_view name) {
   return name.ends_with("_k") && !name.ends_with("loaded_k") ? "" : "0";
 }
 
-std::string more_of(std::string_view name) {
-  if (name == "ballast_k") return "; left out: sleepers stand on the next layer";
-  if (name == "subballast_k") return ", on the ground and below track_ballast_own_mass; left out: rigid";
+/// An addition to the text of a property.
+std::string addition_for(std::string_view name) {
+  if (name == "ballast_k") return "; without it: the next layer supports the sleepers";
+  if (name == "subballast_k")
+    return "; on the ground, and on the bridge with track_ballast_own_mass; without it: rigid";
   return "";
 }
 
@@ -61,8 +63,9 @@ std::span<const Row> track_rows() {
   static const std::vector<Row> rows = [] {
     std::vector<Row> all(std::begin(rail_rows), std::end(rail_rows));
     for (const beam::TrackProperty& p : beam::track_properties)
-      all.push_back({kept(fmt::format("track_{}", p.name)), number_or_file, p.unit, fallback_of(p.name), not_negative,
-                     "", 0, kept(fmt::format("layered track: {}, or a file x,value{}", p.text, more_of(p.name)))});
+      all.push_back(
+          {permanent(fmt::format("track_{}", p.name)), number_or_file, p.unit, fallback_of(p.name), not_negative, "", 0,
+           permanent(fmt::format("layered track: {}{}; also as a file x,value", p.text, addition_for(p.name)))});
     all.insert(all.end(), std::begin(further_rows), std::end(further_rows));
     return all;
   }();
@@ -74,7 +77,7 @@ std::span<const Row> stretch_rows() {
     std::vector<Row> all(std::begin(ends_of_stretch), std::end(ends_of_stretch));
     for (const beam::TrackProperty& p : beam::track_properties)
       all.push_back({p.name, number_or_file, p.unit, "(that of the whole track)", not_negative, "", 0,
-                     kept(fmt::format("{}, or a file x,value", p.text))});
+                     permanent(fmt::format("{}; also as a file x,value", p.text))});
     return all;
   }();
   return rows;

@@ -17,7 +17,7 @@ namespace {
 
 using beam::Distribution;
 
-/// Of this value between two stations, 0 elsewhere.
+/// The value between two stations, 0 elsewhere.
 Distribution between(double from, double to, double value) {
   if (!(to > from)) return 0.0;
   return {{from, from, to, to}, {0.0, value, value, 0.0}, "load"};
@@ -41,7 +41,7 @@ void RailBridge::record_stations() {
   for (int e = 0; e < rail.mesh.elements(); ++e) {
     const beam::Element& element = rail.mesh.element(e);
     elements_.push_back(element.x + 0.5 * element.length);
-    own_stress_.push_back(-rail.model.EA.at(elements_.back(), element.x) / area_ * strain);
+    restrained_stress_.push_back(-rail.model.EA.at(elements_.back(), element.x) / area_ * strain);
   }
   for (const beam::Sleeper& s : beam::sleepers_of(beam_.bridge(), 0, beam_.columns())) sleepers_.push_back(s.x);
   const beam::Mesh& bridge = beam_.mesh();
@@ -77,19 +77,19 @@ std::vector<double> RailBridge::nodal_forces(const Loads& loads) const {
   return P;
 }
 
-State RailBridge::rest(const Loads& loads, const State* before) {
+State RailBridge::equilibrium(const Loads& loads, const State* earlier) {
   const std::vector<double> P = nodal_forces(loads);
   const std::vector<double>& imposed = beam_.imposed();
-  const bool settled = loads.strains && !imposed.empty();
-  std::vector<double> predicted(P.size(), 0.0), free = P;
-  if (settled) {
-    predicted = imposed;
-    op_.multiply(-1.0, nullptr, nullptr, predicted.data(), free.data());
+  const bool has_settlement = loads.strains && !imposed.empty();
+  std::vector<double> prescribed(P.size(), 0.0), free = P;
+  if (has_settlement) {
+    prescribed = imposed;
+    op_.multiply(-1.0, nullptr, nullptr, prescribed.data(), free.data());
     for (std::size_t i = 0; i < P.size(); ++i) free[i] += P[i];
   }
-  nonlinear_.set_history(before != nullptr ? before->slid : structure::NonlinearFoundation::History{});
-  nonlinear_.stand(loads.from, loads.to > loads.from ? loads.to : -HUGE_VAL);
-  nonlinear_.begin(0.0, predicted.data(), nullptr, nullptr);
+  nonlinear_.set_history(earlier != nullptr ? earlier->slid : structure::NonlinearFoundation::History{});
+  nonlinear_.set_loaded_range(loads.from, loads.to > loads.from ? loads.to : -HUGE_VAL);
+  nonlinear_.begin(0.0, prescribed.data(), nullptr, nullptr);
   using Verdict = structure::NonlinearFoundation::Verdict;
   State state;
   Verdict verdict = Verdict::again;
@@ -100,30 +100,30 @@ State RailBridge::rest(const Loads& loads, const State* before) {
     for (std::size_t i = 0; i < P.size(); ++i)
       if (beam_.fixed()[i] != 0) state.v[i] = 0.0;
     op_.solve_static(state.v.data(), &added);
-    verdict = nonlinear_.judge(state.v.data());
+    verdict = nonlinear_.check_stage(state.v.data());
   }
   if (verdict == Verdict::failed)
     throw SolverError(
-        fmt::format("rail and bridge find no rest, worst {}: can the track hold the forces along x "
-                    "(track_longitudinal_limit, uic774_braking), or does it slide as a whole?",
+        fmt::format("no equilibrium of rail and bridge, worst {}: the track possibly slides as a whole; check "
+                    "track_longitudinal_limit and uic774_braking",
                     nonlinear_.worst_point()));
-  for (std::size_t i = 0; i < P.size(); ++i) state.v[i] += predicted[i];
+  for (std::size_t i = 0; i < P.size(); ++i) state.v[i] += prescribed[i];
   nonlinear_.update_slip(state.v.data());
   state.slid = nonlinear_.history();
   recover(P, state);
   return state;
 }
 
-/// u - e theta of the deck.
+/// The displacement u - e theta of the deck's surface.
 double RailBridge::surface(const std::vector<double>& v, const beam::Station& at) const {
   const beam::Line& bridge = beam_.bridge();
   const beam::Element& element = bridge.mesh.element(at.element);
   const auto phi = beam::linear(at.xi);
-  const auto turn = beam::rotation(at.xi, element.length, element.shear);
+  const auto rotation = beam::rotation(at.xi, element.length, element.shear);
   double u = 0.0;
   for (std::size_t i = 0; i < 2; ++i) u += phi[i] * v[static_cast<std::size_t>(bridge.axial(at.element)[i])];
   for (std::size_t i = 0; i < 4; ++i)
-    u -= bridge.model.surface_height * turn[i] * v[static_cast<std::size_t>(bridge.transverse(at.element)[i])];
+    u -= bridge.model.surface_height * rotation[i] * v[static_cast<std::size_t>(bridge.transverse(at.element)[i])];
   return u;
 }
 
@@ -144,30 +144,30 @@ void RailBridge::recover(const std::vector<double>& P, State& state) {
   for (const beam::Station& end : end_stations_) state.ends.push_back(surface(v, end));
   devices_.evaluate(v.data());
   state.openings = devices_.openings();
-  const std::vector<double> predicted(v.size(), 0.0);
+  const std::vector<double> zero(v.size(), 0.0);
   std::vector<std::array<double, 3>> reactions;
-  beam_.reactions(v.data(), predicted.data(), predicted.data(), P.data(), reactions);
+  beam_.reactions(v.data(), zero.data(), zero.data(), P.data(), reactions);
   if (reactions.size() > beam_.mesh().span_ends().size()) state.rail_ends = reactions.back()[0];
   for (const int end : held_ends_) state.bearings.push_back(reactions[static_cast<std::size_t>(end)][0]);
   structure::NonlinearForces other;
   std::vector<beam::ElementLoad> loads;
-  nonlinear_.evaluate(v.data(), predicted.data());
+  nonlinear_.evaluate(v.data(), zero.data());
   nonlinear_.report(other, loads);
-  ground_.evaluate(v.data(), predicted.data(), predicted.data());
+  ground_.evaluate(v.data(), zero.data(), zero.data());
   const std::size_t kind = beam::foundation_kind("longitudinal");
   for (std::size_t i = 0; i < other.of_kind[kind].size(); ++i)
     state.bearings.push_back(ground_.of_kind(kind)[i] + other.of_kind[kind][i]);
 }
 
 double RailBridge::residual(const Loads& loads, const State& state) {
-  const std::vector<double> predicted(state.v.size(), 0.0);
+  const std::vector<double> zero(state.v.size(), 0.0);
   structure::NonlinearForces other;
   std::vector<beam::ElementLoad> on_bridge;
   nonlinear_.set_history(state.slid);
-  nonlinear_.stand(loads.from, loads.to > loads.from ? loads.to : -HUGE_VAL);
-  nonlinear_.evaluate(state.v.data(), predicted.data());
+  nonlinear_.set_loaded_range(loads.from, loads.to > loads.from ? loads.to : -HUGE_VAL);
+  nonlinear_.evaluate(state.v.data(), zero.data());
   nonlinear_.report(other, on_bridge);
-  ground_.evaluate(state.v.data(), predicted.data(), predicted.data());
+  ground_.evaluate(state.v.data(), zero.data(), zero.data());
   const double supports = std::accumulate(state.bearings.begin(),
                                           state.bearings.begin() + static_cast<std::ptrdiff_t>(held_ends_.size()), 0.0);
   const std::size_t kind = beam::foundation_kind("longitudinal");

@@ -1,6 +1,6 @@
-// Rail and bridge together at rest, under loads along the track and across it: one state after another, since sleepers
-// that slide remember. The layered track's longitudinal springs join the rail to the deck's running surface, which
-// moves along x by u - e theta as the deck stretches, bends and slips on its bearings.
+// Static equilibrium of rail and bridge under vertical loads and loads along x: a sequence of states, because sliding
+// sleepers have a history. The layered track's longitudinal springs connect the rail with the deck's running surface,
+// which moves along x by u - e theta if the deck stretches, bends and slips on its bearings.
 #pragma once
 
 #include <array>
@@ -14,46 +14,46 @@
 
 namespace traverse::rail {
 
-/// What acts at once.
+/// Loads of one state.
 struct Loads {
   bool strains = false;         // temperatures of deck and rail, settlements
-  double from = 0.0, to = 0.0;  // m: where a train stands, and sleepers are loaded; equal: none
+  double from = 0.0, to = 0.0;  // m: ends of a train, below which sleepers are loaded; equal: none
   double weight = 0.0;          // N/m, of this train
-  double along_from = 0.0, along_to = 0.0, along = 0.0;  // m, N/m: forces on the rail, towards +x
+  double along_from = 0.0, along_to = 0.0, along = 0.0;  // m, N/m: forces on the rail, positive along x
 };
 
 struct State {
-  std::vector<double> v;  // m and rad, of all unknowns
+  std::vector<double> v;  // m and rad, all unknowns
   structure::NonlinearFoundation::History slid;
-  std::vector<double> stress;        // Pa, of each rail element: EA u'/A, without that of a rail which cannot lengthen
-  std::vector<double> displacement;  // m, of the rail against the deck or the ground, at each sleeper
+  std::vector<double> stress;        // Pa, of each rail element: EA u'/A, without the stress of a restrained rail
+  std::vector<double> displacement;  // m, of the rail relative to the deck or the ground, at each sleeper
   std::vector<double> bearings;      // N along x on the bridge, of each bearing
   std::vector<double> ends;          // m along x, of the deck's running surface at each end
   std::vector<double> openings;      // m, of each expansion device of the rail
-  double rail_ends = 0.0;            // N along x on the rail, of what holds its ends
+  double rail_ends = 0.0;            // N along x on the rail, reaction at its ends
 };
 
-/// A bridge with a layered track and axial unknowns, on this rank alone.
+/// A bridge with a layered track and axial unknowns, on this rank only.
 class RailBridge {
  public:
-  /// rail_area: of both rails, m2. greatest_load: N, of all that will act, and what forces are judged against.
+  /// rail_area: of both rails, m2. greatest_load: N, of all loads; residual forces are relative to it.
   RailBridge(const beam::BeamModel& model, double rail_area, double greatest_load);
   RailBridge(const RailBridge&) = delete;
   RailBridge& operator=(const RailBridge&) = delete;
 
-  /// At rest under all these loads. before: what has acted until then; null: nothing, the track is free of forces.
-  /// SolverError where no equilibrium is found.
-  State rest(const Loads& loads, const State* before = nullptr);
+  /// The equilibrium under these loads. earlier: the state before; null: none, the track is free of forces. SolverError
+  /// if no equilibrium is found.
+  State equilibrium(const Loads& loads, const State* earlier = nullptr);
 
   const std::vector<double>& elements() const { return elements_; }  // m: the middle of each rail element
   const std::vector<double>& sleepers() const { return sleepers_; }  // m
-  /// What holds the bridge along x: supports, then longitudinal springs at stations.
+  /// Supports along x, then longitudinal point springs.
   const std::vector<double>& bearings() const { return bearings_; }    // m
   const std::vector<double>& ends() const { return ends_; }            // m: of every span, left and right
   const std::vector<double>& devices() const { return devices_.x(); }  // m: expansion devices of the rail
-  /// Pa, of each rail element: what its temperature does to a rail that cannot lengthen.
-  const std::vector<double>& own_stress() const { return own_stress_; }
-  /// N along x: all forces on rail and bridge together, which are in balance.
+  /// Pa, of each rail element: thermal stress of a rail that cannot expand.
+  const std::vector<double>& restrained_stress() const { return restrained_stress_; }
+  /// N along x: the sum of all forces on rail and bridge, zero in equilibrium.
   double residual(const Loads& loads, const State& state);
 
  private:
@@ -68,7 +68,7 @@ class RailBridge {
   beam::GroundForces ground_;
   beam::RailDevices devices_;
   double area_;
-  std::vector<double> elements_, own_stress_, sleepers_, bearings_, ends_;
+  std::vector<double> elements_, restrained_stress_, sleepers_, bearings_, ends_;
   std::vector<int> held_ends_;  // span ends whose support holds the bridge along x
   std::vector<beam::Station> end_stations_;
 };

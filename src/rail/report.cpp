@@ -1,4 +1,4 @@
-// Forces between rail and bridge as a table on the terminal and in the results file.
+// Prints the forces between rail and bridge as a table and stores them in the results file.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,7 +11,8 @@ namespace traverse::rail {
 namespace {
 
 std::string at_text(const Peak& peak, double factor, const char* unit) {
-  return fmt::format("{:.4g} {} @ {:.4g}", factor * peak.value, unit, 1e-3 * std::round(1e3 * peak.x) + 0.0);  // no -0
+  return fmt::format("{:.4g} {} @ {:.4g}", factor * peak.value, unit,
+                     1e-3 * std::round(1e3 * peak.x) + 0.0);  // avoids -0
 }
 
 std::vector<double> values_of(const std::vector<Peak>& peaks) {
@@ -29,10 +30,10 @@ void RailForces::print() const {
   std::vector<std::vector<std::string>> rows = {{"", "tension", "compression", "slip", "deck end", "greatest bearing"}};
   const bool devices = !bridge_.devices().empty();
   if (devices) rows.front().emplace_back("device opening");
-  for (const Case& one : cases_) {
-    if (!one.there) continue;
+  for (const CaseResult& one : cases_) {
+    if (!one.computed) continue;
     Peak bearing;
-    for (const Peak& its : one.bearings) bearing.see(its.value, its.x, its.front);
+    for (const Peak& peak : one.bearings) bearing.update(peak.value, peak.x, peak.front);
     rows.push_back({std::string(one.words), at_text(one.tension, 1e-6, "MPa"), at_text(one.compression, 1e-6, "MPa"),
                     at_text(one.slip, 1e3, "mm"), at_text(one.end, 1e3, "mm"), at_text(bearing, 1e-3, "kN")});
     if (devices) rows.back().push_back(at_text(one.opening, 1e3, "mm"));
@@ -50,11 +51,11 @@ void RailForces::record(results::Recorder& recorder) const {
                                {group + "front", {loads_.fronts.size()}, loads_.fronts, "m"}};
   const bool devices = !bridge_.devices().empty();
   if (devices) sets.push_back({group + "device_x", {bridge_.devices().size()}, bridge_.devices(), "m"});
-  for (const Case& one : cases_) {
-    if (!one.there) continue;
-    const std::string its = group + std::string(one.name) + "/";
+  for (const CaseResult& one : cases_) {
+    if (!one.computed) continue;
+    const std::string prefix = group + std::string(one.name) + "/";
     const auto add = [&](const char* name, const std::vector<double>& values, const char* unit) {
-      sets.push_back({its + name, {values.size()}, values, unit});
+      sets.push_back({prefix + name, {values.size()}, values, unit});
     };
     add("least_stress", one.least, "Pa");
     add("greatest_stress", one.greatest, "Pa");
@@ -62,13 +63,13 @@ void RailForces::record(results::Recorder& recorder) const {
     add("greatest_slip", one.greatest_slip, "m");
     add("bearing", values_of(one.bearings), "N");
     if (devices) add("opening", values_of(one.openings), "m");
-    const auto peak = [&](const char* name, const Peak& p, const char* unit) {
-      sets.push_back({its + name, {3}, {p.value, p.x, p.front}, unit});
+    const auto add_peak = [&](const char* name, const Peak& p, const char* unit) {
+      sets.push_back({prefix + name, {3}, {p.value, p.x, p.front}, unit});
     };
-    peak("tension", one.tension, "Pa, m, m");
-    peak("compression", one.compression, "Pa, m, m");
-    peak("slip", one.slip, "m, m, m");
-    peak("end", one.end, "m, m, m");
+    add_peak("tension", one.tension, "Pa, m, m");
+    add_peak("compression", one.compression, "Pa, m, m");
+    add_peak("slip", one.slip, "m, m, m");
+    add_peak("end", one.end, "m, m, m");
   }
   recorder.datasets(sets);
   recorder.attributes("/rail_forces", {{"residual", residual_}});

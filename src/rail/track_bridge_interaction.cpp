@@ -18,7 +18,7 @@ double greatest_load(const options::RailLoads& loads) {
   return loads.length * std::max({loads.weight, loads.braking, loads.traction, 1.0});
 }
 
-void observe_envelope(const std::vector<double>& values, std::vector<double>& least, std::vector<double>& greatest) {
+void update_envelope(const std::vector<double>& values, std::vector<double>& least, std::vector<double>& greatest) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     least[i] = std::min(least[i], values[i]);
     greatest[i] = std::max(greatest[i], values[i]);
@@ -34,7 +34,7 @@ void add(std::vector<double>& sum, const std::vector<double>& more) {
 RailForces::RailForces(const beam::BeamModel& model, const options::RailLoads& loads)
     : loads_(loads), bridge_(model, loads.rail_area, greatest_load(loads)), length_(model.length()) {
   for (const auto& [name, words] : names) {
-    Case one;
+    CaseResult one;
     one.name = name;
     one.words = words;
     one.least.assign(bridge_.elements().size(), HUGE_VAL);
@@ -47,15 +47,15 @@ RailForces::RailForces(const beam::BeamModel& model, const options::RailLoads& l
   }
   Loads strains;
   strains.strains = true;
-  warm_ = rest(strains);
-  see(temperature, warm_, 0.0);
-  for (const double beyond : loads_.fronts) {
-    if (loads_.runs != options::Runs::to_the_left) stand(beyond, 1.0);
-    if (loads_.runs != options::Runs::to_the_right) stand(length_ - beyond, -1.0);
+  thermal_ = equilibrium(strains);
+  update(temperature, thermal_, 0.0);
+  for (const double distance : loads_.fronts) {
+    if (loads_.runs != options::Runs::to_the_left) compute_position(distance, 1.0);
+    if (loads_.runs != options::Runs::to_the_right) compute_position(length_ - distance, -1.0);
   }
 }
 
-Loads RailForces::standing(double front, double direction) const {
+Loads RailForces::train_loads(double front, double direction) const {
   const double rear = front - direction * loads_.length;
   Loads train;
   train.from = std::min(front, rear);
@@ -64,8 +64,8 @@ Loads RailForces::standing(double front, double direction) const {
   return train;
 }
 
-// Braking pushes the rails ahead, traction pushes them back; from the front on, until there is the greatest force.
-Loads RailForces::acting(Loads train, double direction, bool brakes) const {
+// Braking pushes the rails forward, traction backward; the force acts from the front on, up to its largest value.
+Loads RailForces::with_longitudinal_force(Loads train, double direction, bool brakes) const {
   const double force = brakes ? loads_.braking : loads_.traction;
   const double most = brakes ? loads_.most_braking : loads_.most_traction;
   const double length = std::min(loads_.length, most / force);
@@ -75,46 +75,46 @@ Loads RailForces::acting(Loads train, double direction, bool brakes) const {
   return train;
 }
 
-State RailForces::rest(const Loads& loads, const State* before) {
-  State state = bridge_.rest(loads, before);
+State RailForces::equilibrium(const Loads& loads, const State* earlier) {
+  State state = bridge_.equilibrium(loads, earlier);
   double force = std::abs(loads.along * (loads.along_to - loads.along_from));
   for (const double bearing : state.bearings) force = std::max(force, std::abs(bearing));
   if (force > 0.0) residual_ = std::max(residual_, std::abs(bridge_.residual(loads, state)) / force);
   return state;
 }
 
-void RailForces::see(Which which, const State& state, double front) {
-  Case& one = cases_[which];
-  one.there = true;
-  observe_envelope(state.stress, one.least, one.greatest);
-  observe_envelope(state.displacement, one.least_slip, one.greatest_slip);
-  observe_stress(which, state.stress, front);
+void RailForces::update(LoadCase which, const State& state, double front) {
+  CaseResult& one = cases_[which];
+  one.computed = true;
+  update_envelope(state.stress, one.least, one.greatest);
+  update_envelope(state.displacement, one.least_slip, one.greatest_slip);
+  update_stress(which, state.stress, front);
   for (std::size_t i = 0; i < state.displacement.size(); ++i)
-    one.slip.see(state.displacement[i], bridge_.sleepers()[i], front);
-  for (std::size_t i = 0; i < state.ends.size(); ++i) one.end.see(state.ends[i], bridge_.ends()[i], front);
+    one.slip.update(state.displacement[i], bridge_.sleepers()[i], front);
+  for (std::size_t i = 0; i < state.ends.size(); ++i) one.end.update(state.ends[i], bridge_.ends()[i], front);
   for (std::size_t i = 0; i < state.bearings.size(); ++i)
-    one.bearings[i].see(state.bearings[i], bridge_.bearings()[i], front);
+    one.bearings[i].update(state.bearings[i], bridge_.bearings()[i], front);
   for (std::size_t i = 0; i < state.openings.size(); ++i) {
-    one.openings[i].see(state.openings[i], bridge_.devices()[i], front);
-    one.opening.see(state.openings[i], bridge_.devices()[i], front);
+    one.openings[i].update(state.openings[i], bridge_.devices()[i], front);
+    one.opening.update(state.openings[i], bridge_.devices()[i], front);
   }
 }
 
-// Expansion devices release what the rail's own temperature does to it: no tension is counted that only takes away
-// compression of warm rails, and the reverse.
-void RailForces::observe_stress(Which which, const std::vector<double>& stress, double front) {
+// Expansion devices release the rail's own thermal stress: a tension that only reduces the compression of warm rails is
+// not counted, and vice versa.
+void RailForces::update_stress(LoadCase which, const std::vector<double>& stress, double front) {
   const bool released = !bridge_.devices().empty() && which != bending && which != braking && which != traction;
   for (std::size_t i = 0; i < stress.size(); ++i) {
-    const double x = bridge_.elements()[i], own = released ? bridge_.own_stress()[i] : 0.0;
-    const double tension = stress[i] + std::min(own, 0.0), compression = stress[i] + std::max(own, 0.0);
-    const double rounding = 1e-9 * std::abs(own);
-    if (tension > rounding) cases_[which].tension.see(tension, x, front);
-    if (compression < -rounding) cases_[which].compression.see(compression, x, front);
+    const double x = bridge_.elements()[i], thermal = released ? bridge_.restrained_stress()[i] : 0.0;
+    const double tension = stress[i] + std::min(thermal, 0.0), compression = stress[i] + std::max(thermal, 0.0);
+    const double rounding = 1e-9 * std::abs(thermal);
+    if (tension > rounding) cases_[which].tension.update(tension, x, front);
+    if (compression < -rounding) cases_[which].compression.update(compression, x, front);
   }
 }
 
-/// What three states would be together if nothing slid; c: null: two.
-void RailForces::observe_sum(const State& a, const State& b, const State* c, double front) {
+/// The sum of two or three states as if nothing slid; c may be null.
+void RailForces::update_sum(const State& a, const State& b, const State* c, double front) {
   State sum = a;
   for (const State* other : {&b, c}) {
     if (other == nullptr) continue;
@@ -124,33 +124,33 @@ void RailForces::observe_sum(const State& a, const State& b, const State* c, dou
     add(sum.ends, other->ends);
     add(sum.openings, other->openings);
   }
-  see(separate, sum, front);
+  update(separate, sum, front);
 }
 
-void RailForces::stand(double front, double direction) {
-  const Loads train = standing(front, direction);
-  const State bent = rest(train);
-  see(bending, bent, front);
+void RailForces::compute_position(double front, double direction) {
+  const Loads train = train_loads(front, direction);
+  const State bending_state = equilibrium(train);
+  update(bending, bending_state, front);
   bool any = false;
   for (const bool brakes : {true, false}) {
     if ((brakes ? loads_.braking : loads_.traction) == 0.0) continue;
     any = true;
-    Loads all = acting(train, direction, brakes);
-    Loads alone = all;
-    alone.weight = 0.0;
-    const State pushed = rest(alone);
-    see(brakes ? braking : traction, pushed, front);
-    observe_sum(warm_, bent, &pushed, front);
+    Loads all = with_longitudinal_force(train, direction, brakes);
+    Loads longitudinal_only = all;
+    longitudinal_only.weight = 0.0;
+    const State longitudinal_state = equilibrium(longitudinal_only);
+    update(brakes ? braking : traction, longitudinal_state, front);
+    update_sum(thermal_, bending_state, &longitudinal_state, front);
     all.strains = true;
-    see(in_sequence, rest(all, &warm_), front);
-    see(at_once, rest(all), front);
+    update(in_sequence, equilibrium(all, &thermal_), front);
+    update(at_once, equilibrium(all), front);
   }
   if (any) return;
   Loads all = train;
   all.strains = true;
-  observe_sum(warm_, bent, nullptr, front);
-  see(in_sequence, rest(all, &warm_), front);
-  see(at_once, rest(all), front);
+  update_sum(thermal_, bending_state, nullptr, front);
+  update(in_sequence, equilibrium(all, &thermal_), front);
+  update(at_once, equilibrium(all), front);
 }
 
 void RailForces::find(std::vector<results::Verdict>& verdicts) const {

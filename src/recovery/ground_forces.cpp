@@ -1,5 +1,5 @@
 // Sums of foundation, ground and inertia forces as products of precomputed coefficients with nodal displacements,
-// velocities and accelerations, added up over ranks.
+// velocities and accelerations, summed over ranks.
 #include "recovery/ground_forces.hpp"
 
 #include <algorithm>
@@ -38,9 +38,9 @@ GroundForces::GroundForces(const Beam& beam) : beam_(beam) {
     add_track();
   }
   mass_ = 0.0;
-  // A rigid fall moves every deflection alike.
+  // In a rigid vertical motion all deflections are equal.
   for (int i = 0; i < beam.local_unknowns(); ++i) {
-    if (Layout::falls(beam.layout().kind[index(i % beam.block())])) mass_ += masses_[1][index(i)];
+    if (Layout::is_vertical(beam.layout().kind[index(i % beam.block())])) mass_ += masses_[1][index(i)];
   }
   MPI_Allreduce(MPI_IN_PLACE, &mass_, 1, MPI_DOUBLE, MPI_SUM, beam.comm());
 }
@@ -96,13 +96,13 @@ void GroundForces::add_track() {
     });
     for (const auto& [unknown, mass] : masses_of(s, layout)) add_mass(masses_[1], unknown, mass);
     if (!s.on_bridge) continue;
-    const double mass = ride_of(s, track, layout).mass;
+    const double mass = connection_of(s, track, layout).mass;
     const Element& element = beam_.mesh().element(s.at.element);
     const auto psi = hermite(s.at.xi, element.length, element.shear).value;
     const auto places = beam_.bridge().transverse(s.at.element);
     for (std::size_t i = 0; i < 4; ++i) add_mass(masses_[1], places[i], mass * psi[i]);
   }
-  for (const auto& [left, right] : sheared(beam_.bridge(), layout, 0, beam_.columns()))
+  for (const auto& [left, right] : pairs_in_shear(beam_.bridge(), layout, 0, beam_.columns()))
     visit_links(left, right, layout, [&](int unknown, double mass) { add_mass(masses_[1], unknown, mass); });
 }
 
@@ -119,7 +119,7 @@ void GroundForces::evaluate(const double* v, const double* w, const double* a) {
 
 std::array<double, 2> GroundForces::foundation() const {
   std::array<double, 2> sum = track_bed();
-  // At stations, then along beds: the order in which they have always been added.
+  // Points, then beds: a constant order of summation.
   for (const bool of_bed : {false, true}) {
     for (std::size_t kind = 0; kind < foundation_kind_count; ++kind) {
       const Direction direction = foundation_kinds[kind].direction;

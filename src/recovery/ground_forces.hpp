@@ -1,6 +1,6 @@
-// What acts on the structure besides its loads and supports: the linear part of the foundation of section 3, the
+// Forces on the structure other than loads and support reactions: the linear part of the foundation of section 3, the
 // ground under a layered track, and the resultants of inertia, all linear in the nodal values. With loads, reactions
-// and what of the foundation is not linear they add up to zero.
+// and the nonlinear part of the foundation their sum is zero.
 #pragma once
 
 #include <array>
@@ -14,28 +14,28 @@ class GroundForces {
  public:
   explicit GroundForces(const Beam& beam);
 
-  /// Collective, complete on every rank: from this rank's slices of the nodal vectors.
+  /// Collective, from this rank's slices of the nodal vectors; the results are complete on every rank.
   void evaluate(const double* v, const double* w, const double* a);
 
-  /// Forces on the structure of a kind of foundation, N upward or towards the right, N m: of points in the model's
-  /// order, of a bed the resultant over each span. Longitudinal ones only where there are axial unknowns.
+  /// Forces of a kind of foundation on the structure, N upward or to the right, N m: of points in the model's order, of
+  /// a bed the resultant over each span. Longitudinal kinds exist only with axial unknowns.
   const double* of_kind(std::size_t kind) const { return &sums_[first_[kind]]; }
-  /// Resultants, {x, y}: of all of these and the ground under a layered track, of inertia, and of the drag a M w of
-  /// mass-proportional damping.
+  /// Resultants {x, y}: of all these forces and the ground under a layered track, of this ground alone, of inertia, and
+  /// of the drag a M w of mass-proportional damping.
   std::array<double, 2> foundation() const;
   std::array<double, 2> track_bed() const { return {sums_[track_], sums_[track_ + 1]}; }
   std::array<double, 2> inertia() const { return {sums_[inertia_], sums_[inertia_ + 1]}; }
   std::array<double, 2> drag() const;
-  /// Mass of all that moves vertically, kg.
+  /// Mass of all parts that move vertically, kg.
   double mass() const { return mass_; }
 
  private:
-  /// -(c w + k v) of one unknown, into one sum.
+  /// The term -(c w + k v) of one unknown in one sum.
   struct Term {
     std::size_t sum, unknown;
     double c, k;
   };
-  /// What a unit acceleration of each local unknown takes along x and y.
+  /// The inertia forces along x and y per unit acceleration of each local unknown.
   using Masses = std::array<std::vector<double>, 2>;
   void add(std::size_t sum, int unknown, double c, double k);
   void add_mass(std::vector<double>& masses, int unknown, double mass) const;
@@ -48,7 +48,7 @@ class GroundForces {
   std::vector<Term> terms_;
   Masses masses_, bridge_masses_;
   std::vector<double> sums_;
-  std::array<std::size_t, foundation_kind_count + 1> first_{};  // sum of each kind, and past the last
+  std::array<std::size_t, foundation_kind_count + 1> first_{};  // first sum of each kind, and past the last
   std::size_t track_ = 0, inertia_ = 0, drag_ = 0;
   double mass_ = 0.0;
 };

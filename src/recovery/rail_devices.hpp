@@ -1,4 +1,4 @@
-// Rail expansion devices of a layered track: how far each is open.
+// Openings of the rail expansion devices of a layered track.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,12 @@ class RailDevices {
  public:
   explicit RailDevices(const Beam& beam);
 
-  /// Collective, complete on every rank: from this rank's slice of the nodal displacements.
+  /// Collective, from this rank's slice of the nodal displacements; the results are complete on every rank.
   void evaluate(const double* v);
 
-  /// Where the devices stand, from left to right, m; empty: there are none, or the beam has no axial unknowns.
+  /// Stations of the devices from left to right, m; empty without devices or without axial unknowns.
   const std::vector<double>& x() const { return x_; }
-  /// Displacement along x of the rail to the right of each less that to its left, m: above 0 it has opened.
+  /// Displacement along x of the rail on the right of each device minus that on its left, m; positive if it opens.
   const std::vector<double>& openings() const { return openings_; }
 
  private:

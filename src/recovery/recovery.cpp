@@ -11,7 +11,8 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double on_station = 1e-7;  // of an element: so near a load and a station are taken as one place
+constexpr double station_tolerance =
+    1e-7;  // of an element: largest distance of a load from a station at which it passes
 
 }  // namespace
 
@@ -28,8 +29,8 @@ Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stati
     }
     sections_.emplace_back(line, x);
     sections_.back().add_weight(line.model, self_weight);
-    if (&line == &beam.bridge()) sections_.back().record_riders(beam);
-    size += 18 + 4 * sections_.back().riders.size();
+    if (&line == &beam.bridge()) sections_.back().record_sleepers(beam);
+    size += 18 + 4 * sections_.back().sleepers.size();
   }
   gathered_.resize(size);
   for (std::size_t i = 0; i < sections_.size(); ++i) by_element_.push_back({sections_[i].at.element, i});
@@ -98,18 +99,18 @@ double Recovery::add_deflection_form(std::size_t station, double factor, double*
 
 void Recovery::gather(const double* v, const double* w, const double* a) {
   std::size_t at = 0;
-  const auto take = [&](const double* vector, int unknown) {
+  const auto append = [&](const double* vector, int unknown) {
     const int local = unknown < 0 ? -1 : beam_.local(unknown);
     gathered_[at++] = local < 0 ? 0.0 : vector[local];
   };
   for (const RecoverySection& s : sections_) {
     for (const double* vector : {v, w, a}) {
-      for (int unknown : s.unknowns) take(vector, unknown);
+      for (int unknown : s.unknowns) append(vector, unknown);
     }
-    for (const RecoverySection::Rider& rider : s.riders) {
-      for (int unknown : {rider.ride.unknown, rider.ride.along}) {
-        take(v, unknown);
-        take(w, unknown);
+    for (const RecoverySection::ConnectedSleeper& connected : s.sleepers) {
+      for (int unknown : {connected.connection.unknown, connected.connection.along}) {
+        append(v, unknown);
+        append(w, unknown);
       }
     }
   }
@@ -117,7 +118,7 @@ void Recovery::gather(const double* v, const double* w, const double* a) {
   MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(gathered_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
 }
 
-Response Recovery::respond(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const {
+Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const {
   const auto transverse = [](const std::array<double, 4>& form, const Values& y) {
     return form[0] * y[1] + form[1] * y[2] + form[2] * y[4] + form[3] * y[5];
   };
@@ -126,12 +127,12 @@ Response Recovery::respond(const RecoverySection& s, const Values& v, const Valu
   const double drag = &line_ == &beam_.bridge() ? beam_.rayleigh().a : 0.0;
   for (std::size_t i = 0; i < 6; ++i) inertial[i] += drag * w[i];
 
-  // Of the displacements what bends and stretches: the rest would cancel, but for its rounding.
+  // The part of the displacements that bends and stretches; the rigid part would cancel, except for rounding.
   const double h = s.element.length;
   const auto bending_part = [h](const Values& y) {
     return Values{0.0, 0.0, 0.0, y[3] - y[0], y[4] - y[1] - h * y[2], y[5] - y[2]};
   };
-  const Values bent = bending_part(v);
+  const Values bending_values = bending_part(v);
 
   Response r = s.weight;
   r.deflection += transverse(s.psi.value, v);
@@ -140,9 +141,9 @@ Response Recovery::respond(const RecoverySection& s, const Values& v, const Valu
         transverse(s.held_by_stiffness, v) + transverse(s.held_by_damping, w) + transverse(s.held_by_mass, inertial);
   r.velocity = transverse(s.psi.value, w);
   r.acceleration = transverse(s.psi.value, a);
-  r.nodal_moment = transverse(s.bending.moment(), bent);
-  r.nodal_shear = transverse(s.bending.shear(), bent);
-  r.nodal_axial_force = axial(s.bending.axial_force(), bent);
+  r.nodal_moment = transverse(s.bending.moment(), bending_values);
+  r.nodal_shear = transverse(s.bending.shear(), bending_values);
+  r.nodal_axial_force = axial(s.bending.axial_force(), bending_values);
   r.nodal_moment_rate = transverse(s.bending.moment(), bending_part(w));
   r.moment += r.nodal_moment + transverse(s.stiffness.moment(), v) + transverse(s.damping.moment(), w) +
               transverse(s.mass.moment(), inertial);
@@ -157,10 +158,10 @@ Response Recovery::respond(const RecoverySection& s, const Values& v, const Valu
 StationForms Recovery::forms(std::size_t station) const {
   const RecoverySection& s = sections_[station];
   std::array<Values, 3> values{};
-  std::vector<double> riders(4 * s.riders.size(), 0.0);
+  std::vector<double> sleepers(4 * s.sleepers.size(), 0.0);
   const auto response = [&] {
-    Response r = respond(s, values[0], values[1], values[2]);
-    add_riders(s, values.data(), riders.data(), r);
+    Response r = evaluate_section(s, values[0], values[1], values[2]);
+    add_sleepers(s, values.data(), sleepers.data(), r);
     return r;
   };
   StationForms f;
@@ -168,7 +169,7 @@ StationForms Recovery::forms(std::size_t station) const {
   f.element = s.at.element;
   f.constant_deflection = none.deflection;
   f.constant_moment = none.moment;
-  // `of`: v, w and a of the unknown among these values; a null pointer where nothing follows from it.
+  // `of`: pointers to v, w and a of the unknown among these values; null if the response does not depend on it.
   const auto add = [&](int unknown, const std::array<double*, 3>& of) {
     if (unknown < 0) return;
     f.unknown.push_back(unknown);
@@ -186,37 +187,37 @@ StationForms Recovery::forms(std::size_t station) const {
     }
   };
   for (std::size_t k = 0; k < s.unknowns.size(); ++k) add(s.unknowns[k], {&values[0][k], &values[1][k], &values[2][k]});
-  double* of_rider = riders.data();
-  for (const RecoverySection::Rider& rider : s.riders)
-    for (const int unknown : {rider.ride.unknown, rider.ride.along}) {
-      add(unknown, {of_rider, of_rider + 1, nullptr});
-      of_rider += 2;
+  double* sleeper_value = sleepers.data();
+  for (const RecoverySection::ConnectedSleeper& connected : s.sleepers)
+    for (const int unknown : {connected.connection.unknown, connected.connection.along}) {
+      add(unknown, {sleeper_value, sleeper_value + 1, nullptr});
+      sleeper_value += 2;
     }
   return f;
 }
 
-// What the sleepers on the element do to it: the spring below each, the mass that rides, the spring along x.
-void Recovery::add_riders(const RecoverySection& s, const Values* values, const double* riders, Response& r) const {
-  for (const RecoverySection::Rider& rider : s.riders) {
-    const auto psi = hermite(rider.xi, s.element.length, s.element.shear).value;
+// Adds the forces of the sleepers on the element: the spring below each, the mass on the beam, the spring along x.
+void Recovery::add_sleepers(const RecoverySection& s, const Values* values, const double* sleepers, Response& r) const {
+  for (const RecoverySection::ConnectedSleeper& connected : s.sleepers) {
+    const auto psi = hermite(connected.xi, s.element.length, s.element.shear).value;
     const auto beam = [&](const Values& y) { return psi[0] * y[1] + psi[1] * y[2] + psi[2] * y[4] + psi[3] * y[5]; };
-    const double force = rider.ride.spring.k * (riders[0] - beam(values[0])) +
-                         rider.ride.spring.c * (riders[1] - beam(values[1])) -
-                         rider.ride.mass * (beam(values[2]) + gravity_);
+    const double force = connected.connection.spring.k * (sleepers[0] - beam(values[0])) +
+                         connected.connection.spring.c * (sleepers[1] - beam(values[1])) -
+                         connected.connection.mass * (beam(values[2]) + gravity_);
     double along = 0.0;
-    if (rider.ride.along >= 0) {
-      const auto phi = linear(rider.xi);
-      const auto turns = rotation(rider.xi, s.element.length, s.element.shear);
+    if (connected.connection.along >= 0) {
+      const auto phi = linear(connected.xi);
+      const auto theta_form = rotation(connected.xi, s.element.length, s.element.shear);
       const double e = line_.model.surface_height;
       const auto surface = [&](const Values& y) {
-        const double turn = turns[0] * y[1] + turns[1] * y[2] + turns[2] * y[4] + turns[3] * y[5];
-        return phi[0] * y[0] + phi[1] * y[3] - e * turn;
+        const double theta = theta_form[0] * y[1] + theta_form[1] * y[2] + theta_form[2] * y[4] + theta_form[3] * y[5];
+        return phi[0] * y[0] + phi[1] * y[3] - e * theta;
       };
-      const Spring& spring = rider.ride.spring_along;
-      along = spring.k * (riders[2] - surface(values[0])) + spring.c * (riders[3] - surface(values[1]));
+      const Spring& spring = connected.connection.spring_along;
+      along = spring.k * (sleepers[2] - surface(values[0])) + spring.c * (sleepers[3] - surface(values[1]));
     }
-    s.add_load({s.at.element, rider.xi, along, force, -line_.model.surface_height * along}, r);
-    riders += 4;
+    s.add_load({s.at.element, connected.xi, along, force, -line_.model.surface_height * along}, r);
+    sleepers += 4;
   }
 }
 
@@ -232,9 +233,9 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
       std::copy_n(at, 6, y.begin());
       at += 6;
     }
-    out[i] = respond(s, values[0], values[1], values[2]);
-    add_riders(s, values.data(), at, out[i]);
-    at += 4 * s.riders.size();
+    out[i] = evaluate_section(s, values[0], values[1], values[2]);
+    add_sleepers(s, values.data(), at, out[i]);
+    at += 4 * s.sleepers.size();
   }
   for (const ElementLoad& load : loads) {
     for (const Place& place : sections_of(load.element)) sections_[place.section].add_load(load, out[place.section]);
@@ -249,11 +250,11 @@ std::span<const Recovery::Place> Recovery::sections_of(int element) const {
   return {first, past};
 }
 
-// A station at a node is in the element to its right, from the left of which a load comes or goes.
+// A station at a node belongs to the element on its right, but a load also passes it in the element on its left.
 void Recovery::add_beside(const ElementLoad& load, std::vector<Response>& out) const {
-  const auto look = [&](int element, double xi) {
+  const auto add_at = [&](int element, double xi) {
     for (const Place& place : sections_of(element)) {
-      if (std::abs(xi - sections_[place.section].at.xi) > on_station) continue;
+      if (std::abs(xi - sections_[place.section].at.xi) > station_tolerance) continue;
       const Forces by = jump(place.section, load);
       const bool left = is_left_of(place.section, load), from_left = load.speed > 0.0;
       const std::size_t side = left == from_left ? 1 : 0;
@@ -261,8 +262,8 @@ void Recovery::add_beside(const ElementLoad& load, std::vector<Response>& out) c
       out[place.section].axial_force_beside[side] += left ? -by[2] : by[2];
     }
   };
-  look(load.element, load.xi);
-  if (load.xi > 1.0 - on_station) look(load.element + 1, load.xi - 1.0);
+  add_at(load.element, load.xi);
+  if (load.xi > 1.0 - station_tolerance) add_at(load.element + 1, load.xi - 1.0);
 }
 
 }  // namespace traverse::beam

@@ -10,13 +10,14 @@
 
 namespace traverse::beam {
 
-/// A concentrated load on an element, at xi: fx, fy in N (fy upward), moment in N m counter-clockwise. It moves with
+/// A load on an element, at xi: fx, fy in N (fy upward), moment in N m counter-clockwise. It moves with
 /// `speed` along x, m/s.
 struct ElementLoad {
   int element = 0;
   double xi = 0.0;
   double fx = 0.0, fy = 0.0, moment = 0.0;
   double speed = 0.0;
+  double extent = 0.0;  // of xi: spread uniformly over xi -+ extent/2 within the element; 0: concentrated
 };
 
 /// Response at one station. Deflection positive upward, moment positive in sagging (EI v'' > 0),
@@ -25,13 +26,13 @@ struct Response {
   double deflection = 0.0, velocity = 0.0, acceleration = 0.0;
   double moment = 0.0, shear = 0.0;
   double axial_displacement = 0.0, axial_force = 0.0;
-  /// What the nodal values alone give of the forces and of d moment/dt (N m/s): all but what loads, inertia and
-  /// foundation inside the element add.
+  /// The parts of the forces, and of d moment/dt (N m/s), that follow from the nodal values alone, without loads,
+  /// inertia and foundation inside the element.
   double nodal_moment = 0.0, nodal_shear = 0.0, nodal_axial_force = 0.0, nodal_moment_rate = 0.0;
-  double moment_rate = 0.0;  // d moment/dt, N m/s; NaN where nobody knows it
-  /// N: what of the forces is left of their jumps behind passing loads, which damping b K lets them follow within b.
+  double moment_rate = 0.0;  // d moment/dt, N m/s; NaN if it is unknown
+  /// The parts of jumps behind passing loads that the forces do not contain yet, N; damping b K delays them by b.
   double unrelaxed_shear = 0.0, unrelaxed_axial_force = 0.0;
-  /// Where a moving load stands on the station: what the forces differ by just before it is there, and just after, N.
+  /// If a moving load is at the station: the differences of the forces just before and just after its passage, N.
   std::array<double, 2> shear_beside{}, axial_force_beside{};
 };
 
@@ -40,7 +41,7 @@ using Forces = std::array<double, 3>;
 
 struct RecoverySection;
 
-/// How a station responds without loads inside its element: linear forms of the unknowns of its element and of the
+/// The response of a station without loads inside its element: linear forms of the unknowns of its element and of the
 /// sleepers on it.
 struct StationForms {
   using Form = std::vector<double>;
@@ -48,55 +49,56 @@ struct StationForms {
   std::vector<int> unknown;                                 // global
   std::array<Form, 3> deflection, moment;                   // of v, w and a; the moment without nodal_moment
   Form acceleration, nodal_moment;                          // of a; of v
-  double constant_deflection = 0.0, constant_moment = 0.0;  // by its own weight and temperature
+  double constant_deflection = 0.0, constant_moment = 0.0;  // by weight and temperature
 };
 
-/// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.
+/// Evaluates responses: linear forms of the nodal values of a station's element, plus the effect of loads inside it.
 class Recovery {
  public:
-  /// Of the bridge or of the rail; stations on it: InputError otherwise. `self_weight`: gravity if it loads the beam,
-  /// else 0. At a node the response is that of the element to its right (at the end of the beam: to its left).
+  /// For the bridge or the rail; throws InputError for stations that are not on it. `self_weight` is gravity if it
+  /// loads the beam, otherwise 0. At a node the response is that of the element on its right (at the end of the beam:
+  /// left).
   Recovery(const Beam& beam, const Line& line, std::vector<double> stations, double self_weight);
-  /// Of the bridge.
+  /// For the bridge.
   Recovery(const Beam& beam, std::vector<double> stations, double self_weight)
       : Recovery(beam, beam.bridge(), std::move(stations), self_weight) {}
   Recovery(Recovery&&) noexcept;
   ~Recovery();
 
-  /// Collective. From this rank's slices of the nodal vectors and all concentrated loads on this line (the same list
-  /// on every rank), the response at every station, complete on every rank.
-  /// Moment and shear follow from the element's end forces K_e v + C_e w + M_e a - P_e and the loads and inertia
-  /// inside the element, less the part b*K_e w that is damping, not bending. The deflection has the element's own
-  /// deflection between held ends added, which the cubic shape functions leave out: under concentrated loads and the
-  /// beam's weight and, where a foundation acts inside the element, on that foundation and with what it and inertia
-  /// do to the beam. Nothing is added to velocity and acceleration.
+  /// Collective. Evaluates the response at every station from this rank's slices of the nodal vectors and all
+  /// concentrated loads on this line (the same list on every rank); the result is complete on every rank. Moment and
+  /// shear follow from the element's end forces K_e v + C_e w + M_e a - P_e and the loads and inertia inside the
+  /// element, without the part b*K_e w, which is damping and not bending. The deflection includes the element's
+  /// deflection between clamped ends, which the cubic shape functions do not contain: under concentrated loads and the
+  /// beam's weight and, if a foundation acts inside the element, on this foundation and with the forces of foundation
+  /// and inertia. Velocity and acceleration do not include it.
   void evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
                 std::vector<Response>& out);
 
   const std::vector<double>& stations() const { return stations_; }
   StationForms forms(std::size_t station) const;
-  /// Where the element of a station begins and ends, m.
+  /// Start and end of the element of a station, m.
   std::pair<double, double> element_of(std::size_t station) const;
-  /// Where a load on this line stands, m.
+  /// Position of a load on this line, m.
   double x_of(const ElementLoad& load) const {
     const Element& e = line_.mesh.element(load.element);
     return e.x + load.xi * e.length;
   }
-  bool is_beyond(double x) const { return x < line_.mesh.start() || x > line_.mesh.end(); }
-  /// What a load adds to the forces by acting inside the station's element, if it stood at x: none elsewhere.
+  bool is_outside(double x) const { return x < line_.mesh.start() || x > line_.mesh.end(); }
+  /// The contribution of a load to the forces if it acts at x inside the station's element; zero elsewhere.
   Forces inside(std::size_t station, double x, ElementLoad load) const;
-  /// The same, with the load counted to a side of the station on which it may not be.
+  /// The same for a load that is assigned to the given side of the station, independent of its position.
   Forces inside(std::size_t station, double x, const ElementLoad& load, bool as_left) const;
-  /// Whether evaluate() counts the load to what is left of the station.
+  /// Whether evaluate() assigns the load to the left side of the station.
   bool is_left_of(std::size_t station, const ElementLoad& load) const;
-  /// By how much the forces differ where the load counts as left, from where it does not.
+  /// The forces with the load on the left side of the station minus those with the load on its right side.
   Forces jump(std::size_t station, const ElementLoad& load) const;
-  /// What a load adds to the response of a station by acting inside its element: nothing elsewhere.
+  /// The contribution of a load inside the station's element to the response; zero for a load elsewhere.
   Response inside_response(std::size_t station, const ElementLoad& load) const;
-  /// The same of the deflection, m.
+  /// The deflection of inside_response, m.
   double deflection_inside(std::size_t station, const ElementLoad& load) const;
   /// Adds `factor` times the deflection of a station on the bridge, as a form of this rank's nodal displacements, to
-  /// `forces`. Returns what the beam's weight adds to the deflection between nodes, m.
+  /// `forces`. Returns the contribution of the beam's weight to the deflection between nodes, m.
   double add_deflection_form(std::size_t station, double factor, double* forces) const;
 
  private:
@@ -104,9 +106,9 @@ class Recovery {
   using Values = std::array<double, 6>;
 
   void gather(const double* v, const double* w, const double* a);
-  Response respond(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
+  Response evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
   void add_beside(const ElementLoad& load, std::vector<Response>& out) const;
-  void add_riders(const RecoverySection& s, const Values* values, const double* riders, Response& r) const;
+  void add_sleepers(const RecoverySection& s, const Values* values, const double* sleepers, Response& r) const;
 
   const Beam& beam_;
   const Line& line_;
@@ -117,9 +119,10 @@ class Recovery {
     std::size_t section;
   };
   std::span<const Place> sections_of(int element) const;
-  std::vector<Place> by_element_;  // ascending: many loads of a bed find their few sections
+  std::vector<Place> by_element_;  // ascending, so that many loads of a bed find their few sections fast
   double gravity_;
-  std::vector<double> gathered_;  // of every station: v, w, a, and v, w of what stands above each riding sleeper
+  std::vector<double>
+      gathered_;  // for every station: v, w, a, and v, w of the unknowns above each sleeper on its element
 };
 
 }  // namespace traverse::beam

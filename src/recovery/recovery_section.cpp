@@ -5,6 +5,7 @@
 #include "beam/assembly.hpp"
 #include "beam/gauss.hpp"
 #include "beam/nonlinear_points.hpp"
+#include "recovery/spread_load.hpp"
 
 namespace traverse::beam {
 
@@ -38,20 +39,20 @@ RecoverySection::RecoverySection(const Line& line, double x)
   if (model.temperature) add_strains(model);
 }
 
-/// What the forces at the left end are less by: the elastic strain is the whole one less the temperature's.
+/// Subtracts the forces of the temperature: the elastic strain is the total strain minus that of the temperature.
 void RecoverySection::add_strains(const BeamModel& model) {
-  const auto bent = strain_load(model, element);
-  weight.shear -= bent[0];
-  weight.moment -= at.xi * element.length * bent[0] - bent[1];
+  const auto nodal_load = strain_load(model, element);
+  weight.shear -= nodal_load[0];
+  weight.moment -= at.xi * element.length * nodal_load[0] - nodal_load[1];
   weight.axial_force += axial_strain_load(model, element)[0];
 }
 
-void RecoverySection::record_riders(const Beam& beam) {
+void RecoverySection::record_sleepers(const Beam& beam) {
   if (beam.rail() == nullptr) return;
   const int column = beam.bridge().first_column + element.left;
   for (const Sleeper& s : sleepers_of(beam.bridge(), column - 1, column + 3)) {
     if (s.on_bridge && s.at.element == at.element)
-      riders.push_back({ride_of(s, *beam.model().track, beam.layout()), s.at.xi});
+      sleepers.push_back({connection_of(s, *beam.model().track, beam.layout()), s.at.xi});
   }
 }
 
@@ -62,8 +63,8 @@ void RecoverySection::add_foundation(const Line& line) {
   for_points(f, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
     if (!acts(kind, model)) return;
     for (const PointFoundation& p : points) {
-      if (p.law.nonlinear() || p.depth != 0.0) continue;  // a load, or at a node
-      // locate() is the judge, as in the assembly; a glance at x spares most of the calls.
+      if (p.law.nonlinear() || p.depth != 0.0) continue;  // it is a load, or at a node
+      // locate() determines the element, as in the assembly; a test of x avoids most of the calls.
       if (p.x < element.x - element.length || p.x > element.x + 2.0 * element.length) continue;
       const Station s = station_of(line.mesh, p);
       if (s.element != at.element) continue;
@@ -74,20 +75,20 @@ void RecoverySection::add_foundation(const Line& line) {
       dampers.push_back({s.xi, p.c, kind.direction == Direction::rotational});
     }
   });
-  bool roughness = !springs.empty();
+  bool acts_inside = !springs.empty();
   for_beds(f, [&](const FoundationKind& kind, const Bed& bed) {
     if (!acts(kind, model) || bed.law.nonlinear()) return;
     stiffness.add_bed(kind.direction, bed.k);
     damping.add_bed(kind.direction, bed.c);
-    roughness = roughness || kind.direction != Direction::longitudinal;
+    acts_inside = acts_inside || kind.direction != Direction::longitudinal;
   });
-  if (roughness) hold(model, springs, dampers);
+  if (acts_inside) set_up_held_element(model, springs, dampers);
 }
 
-/// Integrates over the held element: calls sum(s, weight*density(s), G(s)), where G is its line under a force, or under
-/// a moment.
+/// Integrates over the clamped element: calls sum(s, weight*density(s)*G(s)), where G is its influence line for a
+/// force, or for a moment.
 template <class Sum>
-void RecoverySection::along_held(const Distribution& density, bool moments, Sum sum) const {
+void RecoverySection::integrate_held(const Distribution& density, bool moments, Sum sum) const {
   const std::vector<double> ends = held->ends();
   const double h = element.length, x = element.x;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
@@ -97,10 +98,10 @@ void RecoverySection::along_held(const Distribution& density, bool moments, Sum 
     });
 }
 
-/// The element is held by its springs and by the mean of a vertical bed. What a bed that holds the slope does to the
-/// deflection between held ends is left out; that is a part k h^2/(40 EI) of it.
-void RecoverySection::hold(const BeamModel& model, const std::vector<InnerSpring>& springs,
-                           const std::vector<InnerSpring>& dampers) {
+/// Computes the forms of the clamped element on its springs and on the mean of a vertical bed. The effect of a bed that
+/// resists the slope on the deflection between clamped ends is neglected; it is the part k h^2/(40 EI) of it.
+void RecoverySection::set_up_held_element(const BeamModel& model, const std::vector<InnerSpring>& springs,
+                                          const std::vector<InnerSpring>& dampers) {
   const double h = element.length;
   double mean = 0.0;
   for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
@@ -109,7 +110,7 @@ void RecoverySection::hold(const BeamModel& model, const std::vector<InnerSpring
   });
   held.emplace(at.xi, h, EI, mean, springs, element.shear);
   const auto add = [&](const Distribution& density, Direction direction, std::array<double, 4>& form) {
-    along_held(density, direction == Direction::rotational, [&](double s, double line) {
+    integrate_held(density, direction == Direction::rotational, [&](double s, double line) {
       const auto shape = shape_of(direction, s, element);
       for (std::size_t i = 0; i < 4; ++i) form[i] -= line * shape[i];
     });
@@ -137,25 +138,25 @@ void RecoverySection::add_weight(const BeamModel& model, double gravity) {
   const auto end = transverse_load(model.mass, element);
   weight.shear += gravity * end[0];
   weight.moment += gravity * (x * end[0] - end[1]);
-  const Bed* pushing = nullptr;
+  const Bed* nonlinear_bed = nullptr;
   for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
-    if (kind.direction == Direction::vertical && bed.law.nonlinear()) pushing = &bed;
+    if (kind.direction == Direction::vertical && bed.law.nonlinear()) nonlinear_bed = &bed;
   });
-  if (pushing != nullptr) return add_weight_at_points(*pushing, model.mass, gravity);
+  if (nonlinear_bed != nullptr) return add_weight_at_points(*nonlinear_bed, model.mass, gravity);
   integrate(model.mass, element.x, element.x + x, [&](double s, double piece) {
     weight.shear -= gravity * piece;
     weight.moment -= gravity * piece * (element.x + x - s);
   });
   if (held) {
-    along_held(model.mass, false, [&](double, double line) { weight.deflection -= gravity * line; });
+    integrate_held(model.mass, false, [&](double, double line) { weight.deflection -= gravity * line; });
     return;
   }
   const double bubble = at.xi * (1.0 - at.xi) * h * h, middle = element.x + 0.5 * h;
-  const double bent = bubble * (bubble + element.shear * h * h);
-  weight.deflection = -gravity * model.mass.at(middle, element.x) * bent / (24.0 * EI);
+  const double shape = bubble * (bubble + element.shear * h * h);
+  weight.deflection = -gravity * model.mass.at(middle, element.x) * shape / (24.0 * EI);
 }
 
-/// Where a bed pushes at its points of integration the weight acts there too: it cancels where the beam rests.
+/// Adds the weight at the integration points of a bed that acts there, so that both cancel where the beam rests on it.
 void RecoverySection::add_weight_at_points(const Bed& bed, const Distribution& mass_per_length, double gravity) {
   for (const auto& [left, right] : bed_pieces(bed, element)) {
     integrate(mass_per_length, left, right, [&](double s, double piece) {
@@ -170,11 +171,15 @@ void RecoverySection::add_weight_at_points(const Bed& bed, const Distribution& m
 }
 
 void RecoverySection::add_load(const ElementLoad& load, Response& r) const {
+  for_points(load, at.xi, [&](const ElementLoad& point) { add_point_load(point, r); });
+}
+
+void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const {
   const double h = element.length, x = at.xi * h;
   const Hermite s = hermite(load.xi, h, element.shear);
-  const auto turn = element.shear == 0.0 ? s.slope : rotation(load.xi, h, element.shear);
-  const double f1 = -load.fy * s.value[0] - load.moment * turn[0];
-  const double m1 = -load.fy * s.value[1] - load.moment * turn[1];
+  const auto theta = element.shear == 0.0 ? s.slope : rotation(load.xi, h, element.shear);
+  const double f1 = -load.fy * s.value[0] - load.moment * theta[0];
+  const double m1 = -load.fy * s.value[1] - load.moment * theta[1];
   r.shear += f1;
   r.moment += f1 * x - m1;
   if (held)

@@ -1,4 +1,4 @@
-// Pad and ballast forces as linear forms of the displacements and velocities above and below each spring, added up over
+// Pad and ballast forces as linear forms of the displacements and velocities above and below each spring, summed over
 // ranks.
 #include "recovery/sleeper_forces.hpp"
 
@@ -27,7 +27,7 @@ void SleeperForces::add_sleeper(std::size_t i, const Sleeper& s) {
   const Layout& layout = beam_.layout();
   const std::size_t pad = 2 * i, ballast = pad + 1;
   add(pad, s.rail_node * layout.block + layout.place[rail_v], s.values.pad, -1.0);
-  if (!s.sleeper_moves) {  // the pad stands on the bridge or on the ground
+  if (!s.sleeper_moves) {  // the pad acts on the bridge or on the ground
     if (s.on_bridge) add_bridge(pad, s, s.values.pad);
     return;
   }

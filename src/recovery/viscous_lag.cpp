@@ -1,4 +1,4 @@
-// Integrates m + b dm/dt = c exactly from call to call, with c piecewise linear in time and discontinuous where a load
+// Integrates m + b dm/dt = c exactly from call to call, with c piecewise linear in time and discontinuous when a load
 // passes the station.
 #include "recovery/viscous_lag.hpp"
 
@@ -8,7 +8,8 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double same_load = 0.1;  // of its way: so near where it should have come from a load was at the call before
+constexpr double same_load =
+    0.1;  // of its displacement: tolerance of the expected position of a load at the previous call
 
 ElementLoad between(const ElementLoad& from, const ElementLoad& to, double part) {
   const auto at = [&](double a, double b) { return a + part * (b - a); };
@@ -21,8 +22,8 @@ ElementLoad between(const ElementLoad& from, const ElementLoad& to, double part)
 
 }  // namespace
 
-/// Loads come in the same order from call to call, but for those that come onto the beam or leave it: the search goes
-/// on behind the load that was found last.
+/// Identifies the loads of the previous call. Loads have the same order from call to call, except for those that enter
+/// or leave the beam: the search continues behind the load that was found last.
 void ViscousLag::record_moved(const std::vector<ElementLoad>& loads) {
   moved_.clear();
   found_.assign(loads_.size(), 0);
@@ -46,14 +47,15 @@ void ViscousLag::record_moved(const std::vector<ElementLoad>& loads) {
   }
   for (std::size_t i = 0; i < loads_.size(); ++i) {
     const double x = recovery_.x_of(loads_[i]), to = x + loads_[i].speed * interval_;
-    if (found_[i] == 0 && recovery_.is_beyond(to)) moved_.push_back({loads_[i], loads_[i], x, to, true, false});
+    if (found_[i] == 0 && recovery_.is_outside(to)) moved_.push_back({loads_[i], loads_[i], x, to, true, false});
   }
 }
 
-/// What loads that move through the station's element add, part by part of the interval, as if each stayed on the side
-/// of the station from which it came, and by how much it jumps where they pass it; whether there are any. Which side a
-/// load counts to is what evaluate() has taken: rounding decides where it stands on the station.
-bool ViscousLag::passing(std::size_t station, History& by_loads) {
+/// The contributions of loads that move through the station's element, at the ends of parts of the interval, as if each
+/// load remained on the side of the station from which it came, and the jumps when they pass the station. Returns
+/// whether there are such loads. The side of a load is that of evaluate(), because rounding determines it at the
+/// station.
+bool ViscousLag::add_passing_loads(std::size_t station, History& by_loads) {
   const auto [left, right] = recovery_.element_of(station);
   const double x = recovery_.stations()[station];
   jumps_.clear();
@@ -62,8 +64,8 @@ bool ViscousLag::passing(std::size_t station, History& by_loads) {
     const double way = moved.x_to - moved.x_from;
     const bool was_left = moved.was_there ? recovery_.is_left_of(station, moved.from) : way > 0.0;
     const bool is_left = moved.is_there ? recovery_.is_left_of(station, moved.to) : way < 0.0;
-    const bool apart = std::max(moved.x_from, moved.x_to) <= left || std::min(moved.x_from, moved.x_to) >= right;
-    if (apart && was_left == is_left) continue;
+    const bool outside = std::max(moved.x_from, moved.x_to) <= left || std::min(moved.x_from, moved.x_to) >= right;
+    if (outside && was_left == is_left) continue;
     if (!any) by_loads.fill({});
     any = true;
     for (std::size_t k = 0; k <= parts; ++k) {
@@ -80,17 +82,17 @@ bool ViscousLag::passing(std::size_t station, History& by_loads) {
   return any;
 }
 
-// m + b dm/dt = c, exactly for c that is linear from part to part and jumps where loads pass the station.
-void ViscousLag::follow(std::size_t station, const Forces& c) {
+// Solves m + b dm/dt = c, exactly for c that is linear in each part and jumps when loads pass the station.
+void ViscousLag::advance_lag(std::size_t station, const Forces& c) {
   Inner& inner = inner_[station];
   History by_loads;
-  const bool moving = passing(station, by_loads);
+  const bool moving = add_passing_loads(station, by_loads);
   const double h = moving ? interval_ / parts : interval_, decay = std::exp(-h / b_);
   for (double& part : inner.unrelaxed) part *= std::exp(-interval_ / b_);
   for (std::size_t f = 0; f < c.size(); ++f) {
     const auto advance = [&, m = &inner.m[f]](double from, double to) {
-      const double late = b_ * (to - from) / h;
-      *m = to - late + (*m - from + late) * decay;
+      const double lag = b_ * (to - from) / h;
+      *m = to - lag + (*m - from + lag) * decay;
     };
     if (!moving) {
       advance(inner.c[f], c[f]);
@@ -98,29 +100,29 @@ void ViscousLag::follow(std::size_t station, const Forces& c) {
     }
     double end = c[f] - by_loads[parts][f];
     for (const Jump& jump : jumps_) end -= jump.by[f];
-    const double rest = inner.c[f] - by_loads[0][f], change = (end - rest) / parts;
+    const double remainder = inner.c[f] - by_loads[0][f], change = (end - remainder) / parts;
     for (std::size_t k = 0; k < parts; ++k)
-      advance(rest + change * static_cast<double>(k) + by_loads[k][f],
-              rest + change * static_cast<double>(k + 1) + by_loads[k + 1][f]);
+      advance(remainder + change * static_cast<double>(k) + by_loads[k][f],
+              remainder + change * static_cast<double>(k + 1) + by_loads[k + 1][f]);
     for (const Jump& jump : jumps_) {
-      const double late = jump.by[f] * std::exp(-jump.ago / b_);
-      inner.m[f] += jump.by[f] - late;
-      inner.unrelaxed[f] -= late;
+      const double lag = jump.by[f] * std::exp(-jump.ago / b_);
+      inner.m[f] += jump.by[f] - lag;
+      inner.unrelaxed[f] -= lag;
     }
   }
 }
 
 void ViscousLag::apply(double t, const std::vector<ElementLoad>& loads, std::vector<Response>& responses) {
   interval_ = t - time_;
-  const bool goes_on = !first_ && interval_ > 0.0;
-  if (goes_on) record_moved(loads);
+  const bool continues = !first_ && interval_ > 0.0;
+  if (continues) record_moved(loads);
   for (std::size_t i = 0; i < responses.size(); ++i) {
     Response& r = responses[i];
     Inner& inner = inner_[i];
     const Forces nodal = {r.nodal_moment, r.nodal_shear, r.nodal_axial_force};
     const Forces c = {r.moment - nodal[0], r.shear - nodal[1], r.axial_force - nodal[2]};
     if (first_) inner.m = c;
-    if (goes_on) follow(i, c);
+    if (continues) advance_lag(i, c);
     inner.c = c;
     r.moment = nodal[0] + inner.m[0];
     r.shear = nodal[1] + inner.m[1];

@@ -1,5 +1,5 @@
-// Gathers the states of all ranks, writes them with a digest to a temporary file, and renames that atomically; a
-// damaged file or one of another version is refused when it is read.
+// Gathers the states of all ranks, writes them with a digest to a temporary file, and renames that atomically. A
+// damaged file or one of another version is rejected when it is read.
 #include "results/checkpoint_file.hpp"
 
 #include <unistd.h>
@@ -21,17 +21,17 @@
 namespace traverse::results {
 namespace {
 
-constexpr std::string_view mark = "Traverse checkpoint 2\n";
-constexpr std::size_t at_once = std::size_t{1} << 30;  // bytes of one message
+constexpr std::string_view signature = "Traverse checkpoint 2\n";
+constexpr std::size_t max_message = std::size_t{1} << 30;  // bytes of one message
 
 void send(MPI_Comm comm, const std::string& text, int to) {
-  for (std::size_t i = 0; i < text.size(); i += at_once)
-    MPI_Send(text.data() + i, static_cast<int>(std::min(at_once, text.size() - i)), MPI_CHAR, to, 0, comm);
+  for (std::size_t i = 0; i < text.size(); i += max_message)
+    MPI_Send(text.data() + i, static_cast<int>(std::min(max_message, text.size() - i)), MPI_CHAR, to, 0, comm);
 }
 
 void receive(MPI_Comm comm, std::string& text, int from) {
-  for (std::size_t i = 0; i < text.size(); i += at_once)
-    MPI_Recv(text.data() + i, static_cast<int>(std::min(at_once, text.size() - i)), MPI_CHAR, from, 0, comm,
+  for (std::size_t i = 0; i < text.size(); i += max_message)
+    MPI_Recv(text.data() + i, static_cast<int>(std::min(max_message, text.size() - i)), MPI_CHAR, from, 0, comm,
              MPI_STATUS_IGNORE);
 }
 
@@ -39,24 +39,24 @@ void broadcast(MPI_Comm comm, std::string& text) {
   unsigned long size = text.size();
   MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, 0, comm);
   text.resize(size);
-  for (std::size_t i = 0; i < text.size(); i += at_once)
-    MPI_Bcast(text.data() + i, static_cast<int>(std::min(at_once, text.size() - i)), MPI_CHAR, 0, comm);
+  for (std::size_t i = 0; i < text.size(); i += max_message)
+    MPI_Bcast(text.data() + i, static_cast<int>(std::min(max_message, text.size() - i)), MPI_CHAR, 0, comm);
 }
 
-/// What all ranks have written, on rank 0.
-std::vector<std::string> gather(MPI_Comm comm, const std::string& own) {
+/// The states of all ranks, on rank 0.
+std::vector<std::string> gather(MPI_Comm comm, const std::string& state) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
   std::vector<unsigned long> sizes(static_cast<std::size_t>(ranks));
-  const unsigned long size = own.size();
+  const unsigned long size = state.size();
   MPI_Gather(&size, 1, MPI_UNSIGNED_LONG, sizes.data(), 1, MPI_UNSIGNED_LONG, 0, comm);
   std::vector<std::string> all;
   if (rank != 0) {
-    send(comm, own, 0);
+    send(comm, state, 0);
     return all;
   }
-  all.push_back(own);
+  all.push_back(state);
   for (std::size_t r = 1; r < sizes.size(); ++r) {
     all.emplace_back(sizes[r], '\0');
     receive(comm, all.back(), static_cast<int>(r));
@@ -68,49 +68,50 @@ std::vector<std::string> gather(MPI_Comm comm, const std::string& own) {
   throw FileError("cannot write the checkpoint " + path + ": " + reason);
 }
 
-constexpr const char* another_checkpoint = "; name another file with -checkpoint_file";
+constexpr const char* advice = "; name another file with -checkpoint_file";
 
 bool is_unfinished(const std::string& path) {
   std::error_code none;
   return is_checkpoint(path) || (open_ordinary(path, false).open() && std::filesystem::file_size(path, none) == 0);
 }
 
-/// A file that is removed where it is not finished.
-class Aside {
+/// A temporary file, which is removed unless it is complete.
+class TemporaryFile {
  public:
-  explicit Aside(const std::string& path) : path_(path), aside_(aside_of_checkpoint(path)) {
-    file_ = make_file(aside_);
+  explicit TemporaryFile(const std::string& path) : path_(path), temporary_(temporary_checkpoint(path)) {
+    file_ = make_file(temporary_);
     int why = errno;
-    if (!file_.open() && why == EEXIST && is_unfinished(aside_)) {  // of a run that was killed
-      (void)::unlink(aside_.c_str());
-      file_ = make_file(aside_);
+    if (!file_.open() && why == EEXIST && is_unfinished(temporary_)) {  // from a killed run
+      (void)::unlink(temporary_.c_str());
+      file_ = make_file(temporary_);
       why = errno;
     }
     if (!file_.open() && why == EEXIST)
-      fail_checkpoint(path_, aside_ + " is there already and is no checkpoint of Traverse" + another_checkpoint);
-    if (!file_.open()) fail_checkpoint(path_, aside_ + ": " + std::strerror(why));
+      fail_checkpoint(path_, temporary_ + " is there already and is no checkpoint of Traverse" + advice);
+    if (!file_.open()) fail_checkpoint(path_, temporary_ + ": " + std::strerror(why));
   }
-  Aside(const Aside&) = delete;
-  Aside& operator=(const Aside&) = delete;
-  ~Aside() {
-    if (!finished_ && id_at(aside_.c_str()) == id_of(file_)) ::unlink(aside_.c_str());
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!finished_ && id_at(temporary_.c_str()) == id_of(file_)) ::unlink(temporary_.c_str());
   }
   void write(std::string_view text) {
     if (!write_all(file_, text)) fail_checkpoint(path_, std::strerror(errno));
   }
   void finish() {
     if (::fsync(file_.get()) != 0) fail_checkpoint(path_, std::strerror(errno));
-    if (id_at(aside_.c_str()) != id_of(file_)) fail_checkpoint(path_, aside_ + " was removed or replaced meanwhile");
-    finished_ = move_to_free_name(aside_, path_);
+    if (id_at(temporary_.c_str()) != id_of(file_))
+      fail_checkpoint(path_, temporary_ + " was removed or replaced meanwhile");
+    finished_ = move_to_free_name(temporary_, path_);
     if (!finished_ && errno == EEXIST && !is_checkpoint(path_))
-      fail_checkpoint(path_, std::string("it is there already and is no checkpoint of Traverse") + another_checkpoint);
-    finished_ = finished_ || ::rename(aside_.c_str(), path_.c_str()) == 0;
+      fail_checkpoint(path_, std::string("it is there already and is no checkpoint of Traverse") + advice);
+    finished_ = finished_ || ::rename(temporary_.c_str(), path_.c_str()) == 0;
     if (!finished_) fail_checkpoint(path_, std::strerror(errno));
   }
 
  private:
   const std::string& path_;
-  std::string aside_;
+  std::string temporary_;
   Descriptor file_;
   bool finished_ = false;
 };
@@ -119,25 +120,25 @@ std::string contents(const std::string& path) {
   std::string text;
   const std::string why = base::read_regular_file(path, std::numeric_limits<std::size_t>::max() - 1, text);
   if (!why.empty()) throw FileError("restart = " + path + ": " + why);
-  const std::size_t before = mark.size() + sizeof(std::uint64_t);
+  const std::size_t head = signature.size() + sizeof(std::uint64_t);
   std::uint64_t digest = 0;
-  if (text.size() < before || !text.starts_with(mark)) throw FileError("restart = " + path + ": is no checkpoint");
-  std::memcpy(&digest, text.data() + mark.size(), sizeof(digest));
-  text.erase(0, before);
-  base::Digest found;
-  found.add(text);
-  if (found.value() != digest) throw FileError("restart = " + path + ": the checkpoint is damaged");
+  if (text.size() < head || !text.starts_with(signature)) throw FileError("restart = " + path + ": is no checkpoint");
+  std::memcpy(&digest, text.data() + signature.size(), sizeof(digest));
+  text.erase(0, head);
+  base::Digest actual;
+  actual.add(text);
+  if (actual.value() != digest) throw FileError("restart = " + path + ": the checkpoint is damaged");
   return text;
 }
 
-/// Whether there is a name and what goes with it, or neither.
+/// Whether a file name and its data are present, or neither.
 bool is_possible(const Recorder::Earlier& results) {
   if (results.file.empty()) return results.rows == 0 && results.objects.empty() && results.digests.empty();
   return results.file.find('\0') == std::string::npos && results.rows >= 1 && !results.objects.empty() &&
          !results.digests.empty();
 }
 
-/// Whether a run can be at this instant with this plan.
+/// Whether the values of a checkpoint are possible for a run.
 bool is_possible(const Checkpoint& checkpoint) {
   const auto within = [](double value, double least) { return value >= least && std::isfinite(value); };
   return within(checkpoint.time, 0.0) && checkpoint.end_time >= checkpoint.time && within(checkpoint.time_step, 0.0) &&
@@ -147,19 +148,19 @@ bool is_possible(const Checkpoint& checkpoint) {
 
 }  // namespace
 
-void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& own) {
+void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& state) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   checkpoint.version = TRAVERSE_VERSION;
-  checkpoint.of_ranks = gather(comm, own);
+  checkpoint.of_ranks = gather(comm, state);
   if (rank != 0) return;
   base::Bytes bytes;
   bytes(checkpoint, checkpoint.of_ranks);
   base::Digest digest;
   digest.add(bytes.written());
   const std::uint64_t value = digest.value();
-  Aside file(path);
-  file.write(mark);
+  TemporaryFile file(path);
+  file.write(signature);
   file.write({reinterpret_cast<const char*>(&value), sizeof(value)});
   file.write(bytes.written());
   file.finish();
@@ -186,7 +187,7 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path) {
   bytes(checkpoint, checkpoint.of_ranks);
   if (!is_possible(checkpoint)) throw FileError("restart = " + path + ": the checkpoint is damaged");
   checkpoint.results.scene = checkpoint.digest;
-  checkpoint.results.beside = path;
+  checkpoint.results.moved_with = path;
   return checkpoint;
 }
 
@@ -196,9 +197,9 @@ void remove_checkpoint(MPI_Comm comm, const std::string& path) {
   if (rank == 0 && is_checkpoint(path)) (void)::unlink(path.c_str());
 }
 
-bool is_checkpoint(const std::string& path) { return begins_with(path, mark); }
+bool is_checkpoint(const std::string& path) { return begins_with(path, signature); }
 
-std::string aside_of_checkpoint(const std::string& path) { return path + ".part"; }
+std::string temporary_checkpoint(const std::string& path) { return path + ".part"; }
 
 void check_checkpoint_place(const std::string& path) {
   namespace fs = std::filesystem;
@@ -206,10 +207,10 @@ void check_checkpoint_place(const std::string& path) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) fail_checkpoint(path, "there is no folder " + folder.string());
   if (::access(folder.c_str(), W_OK | X_OK) != 0) fail_checkpoint(path, std::strerror(errno));
-  for (const std::string& name : {path, aside_of_checkpoint(path)})
+  for (const std::string& name : {path, temporary_checkpoint(path)})
     if (id_at(name.c_str()).there && !is_checkpoint(name) && (name == path || !is_unfinished(name)))
-      fail_checkpoint(path, (name == path ? "it" : name) + " is there already and is no checkpoint of Traverse" +
-                                another_checkpoint);
+      fail_checkpoint(path,
+                      (name == path ? "it" : name) + " is there already and is no checkpoint of Traverse" + advice);
 }
 
 }  // namespace traverse::results

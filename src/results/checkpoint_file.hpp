@@ -1,5 +1,5 @@
-// The file that a run goes on from. It is written aside and takes the place of the one before at once, so that there is
-// a complete one at any time.
+// The file from which a run can be restarted. It is written under a temporary name and then replaces the former one
+// atomically, so that a complete checkpoint exists at any time.
 #pragma once
 
 #include <mpi.h>
@@ -12,22 +12,22 @@
 
 namespace traverse::results {
 
-/// What a run is repeated with.
+/// The reason why a run is repeated.
 struct Repeated {
-  bool with_mechanisms = false;  // after linear vehicles would not do
+  bool with_mechanisms = false;  // linear vehicles were not accurate enough
 };
 
 struct Checkpoint {
-  std::string version;                                     // of the program
-  std::string digest;                                      // of the scene
+  std::string version;                                     // version of the program
+  std::string digest;                                      // digest of the scene
   double time = 0.0;                                       // s
-  double end_time = 0.0, time_step = 0.0, interval = 0.0;  // of the run's plan, s
-  long stored = 1;                                         // the same
-  double wall_seconds = 0.0;                               // of the time loop so far
-  int given_ranks = 1;                                     // of which those that wrote took the steps
+  double end_time = 0.0, time_step = 0.0, interval = 0.0;  // values of the run's plan, s
+  long stored = 1;                                         // value of the run's plan
+  double wall_seconds = 0.0;                               // duration of the time loop so far
+  int given_ranks = 1;  // number of ranks of the run; those in of_ranks computed the steps
   Repeated repeated;
   Recorder::Earlier results;
-  std::vector<std::string> of_ranks;  // state, base::Archive's
+  std::vector<std::string> of_ranks;  // state of each rank, from base::Archive
 
   template <class Bytes>
   void keep(Bytes& bytes) {
@@ -36,19 +36,20 @@ struct Checkpoint {
   }
 };
 
-/// Collective. own: this rank's state. FileError on the first rank, which writes, where it cannot be written; what was
-/// there before then stays.
-void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& own);
-/// Collective. The same on all ranks. FileError where the file is none, damaged, or of another version of the program.
+/// Collective. state: of this rank. Throws FileError on the first rank, which writes, if the checkpoint cannot be
+/// written; then the former one remains.
+void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& state);
+/// Collective. The same on all ranks. FileError if the file is no checkpoint, damaged, or of another version of the
+/// program.
 Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path);
-/// Removes it, if it is there and a checkpoint. Rank 0 alone does something.
+/// Removes the file if it exists and is a checkpoint. Only rank 0 acts.
 void remove_checkpoint(MPI_Comm comm, const std::string& path);
 
-/// Whether it is an ordinary file that begins as checkpoints do.
+/// Whether the path is an ordinary file with the signature of checkpoints.
 bool is_checkpoint(const std::string& path);
-/// The name that a checkpoint has until it is complete.
-std::string aside_of_checkpoint(const std::string& path);
-/// FileError where a checkpoint could not be written: no folder, none that may be written to, something else there.
+/// The name of a checkpoint until it is complete.
+std::string temporary_checkpoint(const std::string& path);
+/// FileError if a checkpoint could not be written: no folder, no permission, or another file at this path.
 void check_checkpoint_place(const std::string& path);
 
 }  // namespace traverse::results

@@ -1,4 +1,4 @@
-// Creates, extends and closes datasets through the HDF5 C API; disk space is reserved before every flush, so that a
+// Creates, extends and closes datasets through the HDF5 C API. Disk space is reserved before every flush, so that a
 // full disk leaves a readable file.
 #include "hdf5.hpp"
 
@@ -22,26 +22,26 @@ namespace {
 
 constexpr hsize_t kChunkRows = 256;
 constexpr hsize_t kChunkBytes = 1 << 20;
-constexpr hsize_t kMostChunks = 60;           // of the 64 in a node of the index
-constexpr hsize_t kMostChunkBytes = 1 << 15;  // of those that are longer for that
-constexpr off_t kEndOffset = 40;              // where superblock version 0 keeps the file's end, 8 bytes, little-endian
-constexpr std::size_t kMostOpen = 2000;       // datasets at a time, of 20 kB each
-constexpr std::size_t kMostCompact = 1 << 12;  // bytes that are kept beside the dataset's own description
+constexpr hsize_t kMaxChunks = 60;           // a node of the index has 64
+constexpr hsize_t kMaxChunkBytes = 1 << 15;  // limit of chunks that are enlarged for that
+constexpr off_t kEndOffset = 40;        // position of the file's end in superblock version 0, 8 bytes, little-endian
+constexpr std::size_t kMaxOpen = 2000;  // datasets at the same time, of 20 kB each
+constexpr std::size_t kMaxCompact = 1 << 12;  // bytes stored in the dataset's object header
 
 [[noreturn]] void fail(const std::string& path, const std::string& reason) {
   throw FileError("cannot write the results file " + path + ": " + reason);
 }
 
-/// The system's message out of an HDF5 one ("..., errno = 28, error message = 'No space left on device', ...").
+/// The system's message in an HDF5 one ("..., errno = 28, error message = 'No space left on device', ...").
 std::string system_message(const std::string& text) {
-  const std::string mark = "error message = '";
-  const auto begin = text.find(mark);
+  const std::string prefix = "error message = '";
+  const auto begin = text.find(prefix);
   if (begin == std::string::npos) return {};
-  const auto from = begin + mark.size();
+  const auto from = begin + prefix.size();
   return text.substr(from, text.find('\'', from) - from);
 }
 
-/// Visits HDF5's error stack from the innermost entry; keeps the first system message, else the first text.
+/// Visits HDF5's error stack from the innermost entry; stores the first system message, otherwise the first text.
 herr_t visit(unsigned depth, const H5E_error2_t* entry, void* data) {
   auto& reason = *static_cast<std::string*>(data);
   const std::string text = entry->desc == nullptr ? "" : entry->desc;
@@ -50,8 +50,9 @@ herr_t visit(unsigned depth, const H5E_error2_t* entry, void* data) {
   return 0;
 }
 
-/// 0 where a link, and what it leads to, stand in this file: not in another one, which HDF5 would open, read and write.
-herr_t stands_here(hid_t group, const char* name, const H5L_info_t* link, void*) {
+/// 0 if a link and its target are in this file. Other files are not allowed, because HDF5 would open, read and write
+/// them.
+herr_t is_in_this_file(hid_t group, const char* name, const H5L_info_t* link, void*) {
   if (link->type == H5L_TYPE_SOFT) return 0;
   if (link->type != H5L_TYPE_HARD) return 1;
   const Id object(H5Oopen(group, name, H5P_DEFAULT));
@@ -65,17 +66,17 @@ herr_t stands_here(hid_t group, const char* name, const H5L_info_t* link, void*)
 Id open_to_read(const std::string& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Id access(H5Pcreate(H5P_FILE_ACCESS));
-  H5Pset_file_locking(access.get(), false, true);  // the place is locked, by this program
+  H5Pset_file_locking(access.get(), false, true);  // this program locks the file itself
   return Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
 }
 
 std::string text_of(const Id& file, const char* object, const char* attribute) {
   if (file.get() < 0 || H5Aexists_by_name(file.get(), object, attribute, H5P_DEFAULT) <= 0) return {};
-  const Id found(H5Aopen_by_name(file.get(), object, attribute, H5P_DEFAULT, H5P_DEFAULT)),
-      type(H5Aget_type(found.get()));
+  const Id value(H5Aopen_by_name(file.get(), object, attribute, H5P_DEFAULT, H5P_DEFAULT)),
+      type(H5Aget_type(value.get()));
   if (type.get() < 0 || H5Tis_variable_str(type.get()) <= 0) return {};
   char* read = nullptr;
-  if (H5Aread(found.get(), type.get(), static_cast<void*>(&read)) < 0 || read == nullptr) return {};
+  if (H5Aread(value.get(), type.get(), static_cast<void*>(&read)) < 0 || read == nullptr) return {};
   std::string text = read;
   H5free_memory(read);
   return text;
@@ -84,9 +85,9 @@ std::string text_of(const Id& file, const char* object, const char* attribute) {
 Id open_whole(const std::string& path) {
   Id file = open_to_read(path);
   if (file.get() < 0) throw FileError(path + ": HDF5 cannot read it: the file is damaged");
-  const herr_t elsewhere = H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, stands_here, nullptr);
-  if (elsewhere < 0) throw FileError(path + ": HDF5 cannot read all of it: the file is damaged");
-  if (elsewhere > 0) throw FileError(path + ": parts of it stand in other files, which are not looked for");
+  const herr_t external = H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, is_in_this_file, nullptr);
+  if (external < 0) throw FileError(path + ": HDF5 cannot read all of it: the file is damaged");
+  if (external > 0) throw FileError(path + ": parts of it stand in other files, which are not looked for");
   return file;
 }
 
@@ -97,8 +98,8 @@ File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
 
 File::File(Place place, std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right)
     : place_(std::move(place)), path_(place_.path()) {
-  place_.copy_aside(std::move(sources), is_right);
-  open(Id(check(H5Fopen(place_.file_aside().c_str(), H5F_ACC_RDWR, access().get()))));
+  place_.copy_temporarily(std::move(sources), is_right);
+  open(Id(check(H5Fopen(place_.temporary_file().c_str(), H5F_ACC_RDWR, access().get()))));
   hsize_t size = 0;
   check(H5Fget_filesize(file_.get(), &size));
   reserved_ = static_cast<off_t>(size);
@@ -109,18 +110,18 @@ Id File::access() const {
   Id access(check(H5Pcreate(H5P_FILE_ACCESS)));
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));  // the oldest superblock
   check(H5Pset_file_locking(access.get(), false, true));                           // the place is locked
-  // No space in advance: a flush gives back what is left of it, and shortens the file before it says so.
+  // No allocation in advance: a flush returns the unused space, and shortens the file before it records that.
   check(H5Pset_meta_block_size(access.get(), 0));
   check(H5Pset_small_data_block_size(access.get(), 0));
-  check(H5Pset_sieve_buf_size(access.get(), 0));  // else a failed write shows only when a dataset is closed
+  check(H5Pset_sieve_buf_size(access.get(), 0));  // otherwise a failed write is detected only when a dataset is closed
   return access;
 }
 
 void File::open(Id file) {
   file_ = std::move(file);
-  check(H5Fset_libver_bounds(file_.get(), H5F_LIBVER_V18, H5F_LIBVER_V18));  // but fast groups and datasets
+  check(H5Fset_libver_bounds(file_.get(), H5F_LIBVER_V18, H5F_LIBVER_V18));  // with fast groups and datasets
 
-  // No chunk cache: rows go straight to their place, none is ever rewritten, and no memory waits.
+  // No chunk cache: rows are written directly, none is rewritten, and no data wait in memory.
   rows_access_ = Id(check(H5Pcreate(H5P_DATASET_ACCESS)));
   check(H5Pset_chunk_cache(rows_access_.get(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT));
   compact_ = Id(check(H5Pcreate(H5P_DATASET_CREATE)));
@@ -132,24 +133,24 @@ void File::open(Id file) {
   check(H5Tset_cset(text_.get(), H5T_CSET_UTF8));
 }
 
-void File::take_place() {
+void File::replace_file() {
   flush();
-  place_.take_aside();
+  place_.replace_by_temporary();
 }
 
 std::vector<std::string> File::objects() const {
   std::vector<std::string> paths;
-  const auto note = [](hid_t, const char* name, const H5L_info_t*, void* to) {
+  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* to) {
     static_cast<std::vector<std::string>*>(to)->emplace_back(name);
     return herr_t{0};
   };
-  check(H5Lvisit(file_.get(), H5_INDEX_NAME, H5_ITER_INC, note, &paths));
+  check(H5Lvisit(file_.get(), H5_INDEX_NAME, H5_ITER_INC, collect, &paths));
   return paths;
 }
 
-void File::keep_only(const std::vector<std::string>& kept) {
-  const std::unordered_set<std::string> known(kept.begin(), kept.end());
-  std::string removed = "/";  // the last group
+void File::remove_all_except(const std::vector<std::string>& paths) {
+  const std::unordered_set<std::string> known(paths.begin(), paths.end());
+  std::string removed = "/";  // the last removed group
   for (const std::string& path : objects()) {
     if (known.contains(path) || path.starts_with(removed)) continue;
     check(H5Ldelete(file_.get(), path.c_str(), H5P_DEFAULT));
@@ -157,7 +158,7 @@ void File::keep_only(const std::vector<std::string>& kept) {
   }
 }
 
-void File::forget_attribute(const std::string& object, const std::string& name) {
+void File::remove_attribute(const std::string& object, const std::string& name) {
   if (check(H5Aexists_by_name(id(), object.c_str(), name.c_str(), H5P_DEFAULT)) > 0)
     check(H5Adelete_by_name(id(), object.c_str(), name.c_str(), H5P_DEFAULT));
 }
@@ -202,11 +203,11 @@ void File::close() {
 
 void File::abandon() noexcept {
   try {
-    const int nowhere = memfd_create("traverse", MFD_CLOEXEC);
-    if (nowhere < 0) return;
-    dup2(nowhere, descriptor());
-    ::close(nowhere);
-  } catch (const FileError&) {  // nothing was open
+    const int memory_file = memfd_create("traverse", MFD_CLOEXEC);
+    if (memory_file < 0) return;
+    dup2(memory_file, descriptor());
+    ::close(memory_file);
+  } catch (const FileError&) {  // no file was open
   }
 }
 
@@ -215,7 +216,7 @@ Id File::group(const std::string& name) {
 }
 
 void File::write_attribute(const std::string& object, const std::string& name, hid_t type, const void* value) {
-  forget_attribute(object, name);
+  remove_attribute(object, name);
   const Id space(check(H5Screate(H5S_SCALAR)));
   const Id attribute(check(
       H5Acreate_by_name(id(), object.c_str(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)));
@@ -223,7 +224,7 @@ void File::write_attribute(const std::string& object, const std::string& name, h
 }
 
 void File::attribute(const std::string& object, const std::string& name, const std::string& text) {
-  const std::string valid = printable(text);  // readers refuse what is no UTF-8
+  const std::string valid = printable(text);  // readers reject invalid UTF-8
   const char* value = valid.c_str();
   write_attribute(object, name, text_.get(), &value);
 }
@@ -251,7 +252,7 @@ void File::dataset(const std::string& name, const std::vector<hsize_t>& shape, c
 
 void File::fixed_dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
                          const std::string& unit) {
-  const bool small = values.size() * sizeof(double) <= kMostCompact;
+  const bool small = values.size() * sizeof(double) <= kMaxCompact;
   create(name, shape, values, unit, small ? compact_.get() : H5P_DEFAULT);
 }
 
@@ -270,7 +271,7 @@ void File::rewrite(const std::string& name, const std::vector<double>& values) {
 }
 
 void File::table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows) {
-  std::vector<std::pair<std::string, std::string>> valid;  // readers refuse what is no UTF-8
+  std::vector<std::pair<std::string, std::string>> valid;  // readers reject invalid UTF-8
   for (const auto& [key, value] : rows) valid.emplace_back(printable(key), printable(value));
   texts(name, valid);
 }
@@ -288,8 +289,8 @@ void File::texts(const std::string& name, const std::vector<std::pair<std::strin
   label(data, "text");
 }
 
-Id File::stays_open(Id dataset) {
-  if (open_ == kMostOpen) return {};
+Id File::hold_open(Id dataset) {
+  if (open_ == kMaxOpen) return {};
   ++open_;
   return dataset;
 }
@@ -300,44 +301,44 @@ Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, co
       width_(std::accumulate(row.begin(), row.end(), std::size_t{1},
                              [](std::size_t a, hsize_t b) { return a * static_cast<std::size_t>(b); })) {
   shape_.insert(shape_.end(), row.begin(), row.end());
-  if (rows.there == 0)
+  if (rows.existing == 0)
     make(file, unit, rows.expected);
   else
-    cut(file, rows.there);
+    cut(file, rows.existing);
   digest_ = base::Digest(rows.digest);
   buffer_.reserve(width_ * rows.buffered);
 }
 
-// A kill while HDF5 splits the index of the chunks would leave it in pieces: those expected are no more than one node
-// of it holds.
+// If the process is killed while HDF5 splits the index of the chunks, the index is damaged. Therefore the expected
+// chunks fit into one node of it.
 void Series::make(File& file, const std::string& unit, hsize_t expected) {
-  auto most = shape_;
-  most[0] = H5S_UNLIMITED;
+  auto max_shape = shape_;
+  max_shape[0] = H5S_UNLIMITED;
   auto chunk = shape_;
-  const hsize_t row = sizeof(double) * width_, usual = std::clamp<hsize_t>(kChunkBytes / row, 1, kChunkRows);
-  chunk[0] = std::max(usual, std::min(expected / kMostChunks + 1, kMostChunkBytes / row));
+  const hsize_t row = sizeof(double) * width_, default_rows = std::clamp<hsize_t>(kChunkBytes / row, 1, kChunkRows);
+  chunk[0] = std::max(default_rows, std::min(expected / kMaxChunks + 1, kMaxChunkBytes / row));
 
-  const Id space(file.check(H5Screate_simple(static_cast<int>(shape_.size()), shape_.data(), most.data())));
+  const Id space(file.check(H5Screate_simple(static_cast<int>(shape_.size()), shape_.data(), max_shape.data())));
   const Id creation(file.check(H5Pcreate(H5P_DATASET_CREATE)));
   file.check(H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
   file.check(H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER));
   Id dataset(file.check(H5Dcreate2(file.id(), name_.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
                                    creation.get(), file.rows_access())));
   file.label(dataset, unit);
-  dataset_ = file.stays_open(std::move(dataset));
+  dataset_ = file.hold_open(std::move(dataset));
 }
 
 void Series::cut(File& file, hsize_t rows) {
   Id dataset(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access())));
   const Id space(file.check(H5Dget_space(dataset.get())));
-  std::vector<hsize_t> there(shape_.size());
+  std::vector<hsize_t> existing(shape_.size());
   const bool fits = H5Sget_simple_extent_ndims(space.get()) == static_cast<int>(shape_.size()) &&
-                    H5Sget_simple_extent_dims(space.get(), there.data(), nullptr) >= 0 && there[0] >= rows &&
-                    std::equal(there.begin() + 1, there.end(), shape_.begin() + 1);
+                    H5Sget_simple_extent_dims(space.get(), existing.data(), nullptr) >= 0 && existing[0] >= rows &&
+                    std::equal(existing.begin() + 1, existing.end(), shape_.begin() + 1);
   if (!fits) fail(file.path(), "the results to take up are not those of the checkpoint");
   shape_[0] = rows;
   file.check(H5Dset_extent(dataset.get(), shape_.data()));
-  dataset_ = file.stays_open(std::move(dataset));
+  dataset_ = file.hold_open(std::move(dataset));
 }
 
 void Series::write(File& file) {
@@ -353,11 +354,12 @@ void Series::append(File& file, const Id& dataset) {
   count[0] = rows;
   shape_[0] += rows;
   file.check(H5Dset_extent(dataset.get(), shape_.data()));
-  const Id there(file.check(H5Dget_space(dataset.get())));
-  const Id here(file.check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
-  file.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
-  file.check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, here.get(), there.get(), H5P_DEFAULT, buffer_.data()));
-  file.secure_space();  // HDF5 may write structure when its cache is full
+  const Id file_space(file.check(H5Dget_space(dataset.get())));
+  const Id memory_space(file.check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
+  file.check(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+  file.check(
+      H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, buffer_.data()));
+  file.secure_space();  // HDF5 may write metadata when its cache is full
   digest_.add(buffer_);
   buffer_.clear();
 }
@@ -371,9 +373,9 @@ std::vector<std::uint64_t> digests_of(const std::string& path, const std::vector
   std::vector<std::uint64_t> digests;
   std::vector<double> block;
   for (const std::string& name : names) {
-    const Id data(check(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT))), there(check(H5Dget_space(data.get())));
-    std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(there.get()))));
-    check(H5Sget_simple_extent_dims(there.get(), shape.data(), nullptr));
+    const Id data(check(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT))), file_space(check(H5Dget_space(data.get())));
+    std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(file_space.get()))));
+    check(H5Sget_simple_extent_dims(file_space.get(), shape.data(), nullptr));
     if (shape.empty() || shape[0] < rows) check(H5I_INVALID_HID);
     const hsize_t width = std::accumulate(shape.begin() + 1, shape.end(), hsize_t{1}, std::multiplies<>());
     base::Digest digest;
@@ -381,9 +383,9 @@ std::vector<std::uint64_t> digests_of(const std::string& path, const std::vector
     for (; start[0] < rows; start[0] += count[0]) {
       count[0] = std::min(std::max<hsize_t>(kChunkBytes / (sizeof(double) * width), 1), rows - start[0]);
       block.resize(count[0] * width);
-      const Id here(check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
-      check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
-      check(H5Dread(data.get(), H5T_NATIVE_DOUBLE, here.get(), there.get(), H5P_DEFAULT, block.data()));
+      const Id memory_space(check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
+      check(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+      check(H5Dread(data.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, block.data()));
       digest.add(block);
     }
     digests.push_back(digest.value());

@@ -23,16 +23,16 @@
 namespace traverse::results {
 namespace {
 
-constexpr double seconds_at_least = 10.0, seconds_a_byte = 1e-7;  // of the processor, for what HDF5 does
-constexpr double bytes_at_least = 1 << 30,
-                 memory_of_a_byte = 64.0;  // beyond what this process has; files may be packed
+constexpr double min_seconds = 10.0, seconds_per_byte = 1e-7;  // processor time of HDF5
+constexpr double min_memory = 1 << 30,
+                 memory_per_byte = 64.0;  // in addition to this process; data may be compressed
 
-/// What the copy hands over: an error's status (0: none) and message, then the bytes.
-struct Handed {
+/// The result of the child process: an error's status (0: none) and message, then the bytes.
+struct ChildResult {
   int status = 0;
   std::string message, bytes;
-  bool whole = false;  // written last
-  void keep(base::Bytes& to) { to(status, message, bytes, whole); }
+  bool complete = false;  // written last
+  void keep(base::Bytes& to) { to(status, message, bytes, complete); }
 };
 
 double size_of(const std::string& path) {
@@ -42,54 +42,54 @@ double size_of(const std::string& path) {
 }
 
 void limit(int resource, double most) {
-  struct rlimit now = {};
-  if (getrlimit(resource, &now) != 0) return;
-  now.rlim_cur = std::min(now.rlim_cur, static_cast<rlim_t>(most));
-  setrlimit(resource, &now);
+  struct rlimit current = {};
+  if (getrlimit(resource, &current) != 0) return;
+  current.rlim_cur = std::min(current.rlim_cur, static_cast<rlim_t>(most));
+  setrlimit(resource, &current);
 }
 
-/// Signals and the C library end the copy without a word, and it takes no more than a file of this size can need.
+/// Restores the default actions of signals, and limits processor time and memory to the needs of a file of this size.
 void confine(double size) {
   for (const int number :
        {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGPIPE})
     ::signal(number, SIG_DFL);
-  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+  if (const int null_device = ::open("/dev/null", O_WRONLY); null_device >= 0) ::dup2(null_device, STDERR_FILENO);
   limit(RLIMIT_CORE, 0.0);
-  limit(RLIMIT_CPU, seconds_at_least + seconds_a_byte * size);
+  limit(RLIMIT_CPU, min_seconds + seconds_per_byte * size);
   double pages = 0.0;
   std::ifstream("/proc/self/statm") >> pages;
-  limit(RLIMIT_AS, pages * static_cast<double>(sysconf(_SC_PAGESIZE)) + bytes_at_least + memory_of_a_byte * size);
+  limit(RLIMIT_AS, pages * static_cast<double>(sysconf(_SC_PAGESIZE)) + min_memory + memory_per_byte * size);
 }
 
-Handed read_here(const std::function<void(base::Bytes&)>& read) {
-  Handed handed;
+ChildResult read_in_child(const std::function<void(base::Bytes&)>& read) {
+  ChildResult result;
   try {
     base::Bytes bytes;
     read(bytes);
-    handed.bytes = bytes.written();
+    result.bytes = bytes.written();
   } catch (const Error& error) {
-    handed.status = error.status();
-    handed.message = error.what();
+    result.status = error.status();
+    result.message = error.what();
   } catch (const std::exception& error) {
-    handed.status = FileError("").status();
-    handed.message = "the file is damaged: " + std::string(error.what());
+    result.status = FileError("").status();
+    result.message = "the file is damaged: " + std::string(error.what());
   }
-  handed.whole = true;
-  return handed;
+  result.complete = true;
+  return result;
 }
 
-[[noreturn]] void hand_over(int to, Handed handed) {
+[[noreturn]] void send(int to, ChildResult result) {
   base::Bytes bytes;
-  bytes(handed);
-  for (std::string_view rest = bytes.written(); !rest.empty();) {
-    const ssize_t done = ::write(to, rest.data(), rest.size());
+  bytes(result);
+  for (std::string_view remaining = bytes.written(); !remaining.empty();) {
+    const ssize_t done = ::write(to, remaining.data(), remaining.size());
     if (done < 0 && errno != EINTR) break;
-    rest.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(done, 0)));
+    remaining.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(done, 0)));
   }
   _exit(0);
 }
 
-std::string all_from(int from) {
+std::string receive(int from) {
   std::string text;
   for (std::array<char, 65536> part;;) {
     const ssize_t read = ::read(from, part.data(), part.size());
@@ -99,21 +99,21 @@ std::string all_from(int from) {
   }
 }
 
-std::optional<Handed> handed_in(const std::string& text) {
-  Handed handed;
+std::optional<ChildResult> parse(const std::string& text) {
+  ChildResult result;
   try {
     base::Bytes bytes{std::span<const char>(text)};
-    bytes(handed);
-  } catch (const FileError&) {  // it ended before
+    bytes(result);
+  } catch (const FileError&) {  // the child process ended before it was complete
     return std::nullopt;
   }
-  return handed;
+  return result;
 }
 
-[[noreturn]] void throw_again(const Handed& handed) {
-  if (handed.status == FileError("").status()) throw FileError(handed.message);
-  if (handed.status == InputError("").status()) throw InputError(handed.message);
-  throw Error(handed.message, handed.status);
+[[noreturn]] void rethrow(const ChildResult& result) {
+  if (result.status == FileError("").status()) throw FileError(result.message);
+  if (result.status == InputError("").status()) throw InputError(result.message);
+  throw Error(result.message, result.status);
 }
 
 }  // namespace
@@ -122,22 +122,22 @@ std::string isolated_bytes(const std::string& path, const std::function<void(bas
   const double size = size_of(path);
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) throw FileError(path + ": no pipe to read it through");
-  const pid_t copy = ::fork();
-  if (copy == 0) {
+  const pid_t child = ::fork();
+  if (child == 0) {
     ::close(ends[0]);
     confine(size);
-    hand_over(ends[1], read_here(read));
+    send(ends[1], read_in_child(read));
   }
   ::close(ends[1]);
-  const std::string text = copy < 0 ? std::string() : all_from(ends[0]);
+  const std::string text = child < 0 ? std::string() : receive(ends[0]);
   ::close(ends[0]);
-  while (copy > 0 && ::waitpid(copy, nullptr, 0) < 0 && errno == EINTR) {
+  while (child > 0 && ::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
-  if (copy < 0) throw FileError(path + ": no process to read it in");
-  std::optional<Handed> handed = handed_in(text);
-  if (!handed || !handed->whole) throw FileError(path + ": the file is damaged: HDF5 cannot read it");
-  if (handed->status != 0) throw_again(*handed);
-  return std::move(handed->bytes);
+  if (child < 0) throw FileError(path + ": no process to read it in");
+  std::optional<ChildResult> result = parse(text);
+  if (!result || !result->complete) throw FileError(path + ": the file is damaged: HDF5 cannot read it");
+  if (result->status != 0) rethrow(*result);
+  return std::move(result->bytes);
 }
 
 }  // namespace traverse::results

@@ -1,5 +1,5 @@
-// HDF5 may end by a signal, or never, in a file whose sizes have been changed. So what the program reads of a results
-// file is read in a process of its own, which hands it over as bytes: what happens there ends that process alone.
+// Reads results files in a separate process, because HDF5 may crash or not terminate with a damaged file. The process
+// returns the data as bytes; a crash ends that process only.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@ namespace traverse::results {
 
 std::string isolated_bytes(const std::string& path, const std::function<void(base::Bytes&)>& read);
 
-/// What `read` gives, in a copy of this process. An Error that it throws is thrown here; FileError where the copy ends
-/// by a signal, or takes more processor time or memory than such a file can ask for. path: of the file, for messages.
+/// The result of `read` in a child process. An Error that it throws is thrown here. FileError if the process ends by a
+/// signal, or exceeds the processor time or memory that such a file can need. path: of the file, for messages.
 template <class Read>
 auto isolated_read(const std::string& path, Read&& read) {
   const std::string written = isolated_bytes(path, [&](base::Bytes& bytes) {

@@ -41,22 +41,22 @@ class ModesFile {
     const Id space(H5Dget_space(set.get())), type(H5Dget_type(set.get()));
     if (H5Tget_class(type.get()) != H5T_FLOAT && H5Tget_class(type.get()) != H5T_INTEGER)
       refuse(name, "holds no numbers");
-    Values found;
-    found.shape.resize(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.get()))));
-    H5Sget_simple_extent_dims(space.get(), found.shape.data(), nullptr);
-    found.numbers.resize(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
-    if (H5Dread(set.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, found.numbers.data()) < 0)
+    Values values_found;
+    values_found.shape.resize(static_cast<std::size_t>(std::max(0, H5Sget_simple_extent_ndims(space.get()))));
+    H5Sget_simple_extent_dims(space.get(), values_found.shape.data(), nullptr);
+    values_found.numbers.resize(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
+    if (H5Dread(set.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values_found.numbers.data()) < 0)
       refuse(name, "cannot be read");
-    return found;
+    return values_found;
   }
 
-  /// One number a mode.
+  /// One number for each mode.
   std::vector<double> of_modes(const std::string& name, std::size_t modes) const {
-    Values found = values(name);
-    if (found.shape != std::vector<hsize_t>{modes})
-      refuse(name,
-             fmt::format("holds {} numbers, /modes/frequency {}; wanted: one a mode", found.numbers.size(), modes));
-    return std::move(found.numbers);
+    Values values_found = values(name);
+    if (values_found.shape != std::vector<hsize_t>{modes})
+      refuse(name, fmt::format("holds {} numbers, /modes/frequency {}; wanted: one a mode", values_found.numbers.size(),
+                               modes));
+    return std::move(values_found.numbers);
   }
 
   std::vector<std::string> outputs() const {
@@ -73,7 +73,7 @@ class ModesFile {
     return names;
   }
 
-  /// The attribute `unit`; "1" where there is none.
+  /// The attribute `unit`; "1" without it.
   std::string unit_of(const std::string& name) const {
     const Id object(H5Oopen(file_.get(), name.c_str(), H5P_DEFAULT));
     if (H5Aexists(object.get(), "unit") <= 0) return "1";
@@ -96,7 +96,7 @@ class ModesFile {
   Id file_;
 };
 
-/// One number for every mode of bending.
+/// A line of text with one number for each bending mode.
 std::string row(const std::string& word, const std::vector<double>& numbers, const std::vector<double>& axial) {
   std::string line = word;
   for (std::size_t i = 0; i < numbers.size(); ++i)
@@ -104,7 +104,7 @@ std::string row(const std::string& word, const std::vector<double>& numbers, con
   return line + "\n";
 }
 
-/// The shapes of one track, a line a station.
+/// The shapes of one track, one line for each station.
 std::string stations(const Values& x, const double* shape, const double* slope, const std::vector<double>& axial) {
   std::string text;
   const std::size_t points = x.numbers.size();

@@ -25,12 +25,14 @@ constexpr const char *entries_table = "/input/options", *sources_table = "/input
                      *files_table = "/input/files";
 constexpr const char *group = "/input", *digest_name = "digest";
 constexpr std::string_view new_name = "another name than ";
-// Of one run alone.
-std::string opened;
-constexpr std::array own = {"restart",  "checkpoint_file", "options_file", "ts_max_steps",
-                            "log_view", "malloc_debug",    "skip_petscrc"};
+// Options that apply to a single run only.
+std::string opened_file;
+constexpr std::array single_run_options = {"restart",  "checkpoint_file", "options_file", "ts_max_steps",
+                                           "log_view", "malloc_debug",    "skip_petscrc"};
 
-bool of_one_run(const std::string& name) { return std::find(own.begin(), own.end(), name) != own.end(); }
+bool is_of_single_run(const std::string& name) {
+  return std::find(single_run_options.begin(), single_run_options.end(), name) != single_run_options.end();
+}
 
 std::string without_mount(const std::string& name) { return name.substr(options::mounted(name).size()); }
 
@@ -48,7 +50,7 @@ long digest_of_texts(const std::vector<Pairs>& tables) {
   return std::bit_cast<long>(digest.value());
 }
 
-/// Of two columns; empty where there is none.
+/// A table with two columns; empty if it does not exist.
 Pairs read_pairs(hid_t file, const char* name) {
   Pairs pairs;
   const hdf5::Id data(H5Dopen2(file, name, H5P_DEFAULT));
@@ -71,7 +73,7 @@ struct Texts {
   void keep(base::Bytes& bytes) { bytes(entries, sources, files); }
 };
 
-/// In a process of its own. FileError where they are not those that were written.
+/// Called in a separate process. FileError if the texts differ from those that were written.
 Texts texts_of(const std::string& path) {
   const hdf5::Id file = hdf5::open_whole(path);
   Texts texts;
@@ -79,7 +81,7 @@ Texts texts_of(const std::string& path) {
        {std::pair{entries_table, &texts.entries}, {sources_table, &texts.sources}, {files_table, &texts.files}})
     *pairs = read_pairs(file.get(), name);
   const htri_t has_digest = H5Aexists_by_name(file.get(), group, digest_name, H5P_DEFAULT);
-  if (has_digest == 0 || texts.entries.empty()) return texts;  // of older versions
+  if (has_digest == 0 || texts.entries.empty()) return texts;  // from older versions
   long digest = 0;
   const hdf5::Id attribute(H5Aopen_by_name(file.get(), group, digest_name, H5P_DEFAULT, H5P_DEFAULT));
   H5Aread(attribute.get(), H5T_NATIVE_LONG, &digest);
@@ -93,7 +95,7 @@ Texts texts_of(const std::string& path) {
 void record_origin(hdf5::File& file) {
   Pairs entries, sources, files;
   for (const options::Entry& entry : options::in_force()) {
-    if (of_one_run(entry.name)) continue;
+    if (is_of_single_run(entry.name)) continue;
     entries.emplace_back(entry.name, entry.value);
     sources.emplace_back(without_mount(entry.source), std::to_string(entry.line));
   }
@@ -116,7 +118,7 @@ std::vector<options::Entry> origin_of(const std::string& path) {
   if (stored.empty() || sources.size() != stored.size())
     throw InputError(path +
                      ": holds no texts of its scene, as files of older versions; run the scene's own options files");
-  opened = path;
+  opened_file = path;
   const std::string prefix = path + ":";
   std::vector<options::InputText> texts;
   for (auto& [name, text] : files) texts.push_back({name, std::move(text)});
@@ -125,18 +127,18 @@ std::vector<options::Entry> origin_of(const std::string& path) {
   for (std::size_t i = 0; i < stored.size(); ++i) {
     double line = 0.0;
     (void)options::parse_number(sources[i].second, line);
-    if (stored[i].first == "output_file" || of_one_run(stored[i].first)) continue;
-    // All stand in a file now, those of the command line too: what they name is found in it.
+    if (stored[i].first == "output_file" || is_of_single_run(stored[i].first)) continue;
+    // All entries are in a file now, also those of the command line: the files that they name are found in it.
     entries.push_back(
         {stored[i].first, stored[i].second, prefix + sources[i].first, std::max(1, static_cast<int>(line))});
   }
   const std::filesystem::path given(path);
-  const std::string again = (given.parent_path() / (given.stem().string() + "_again.h5")).string();
-  entries.push_back({"output_file", again, std::string(new_name) + path, 0});
+  const std::string new_file = (given.parent_path() / (given.stem().string() + "_again.h5")).string();
+  entries.push_back({"output_file", new_file, std::string(new_name) + path, 0});
   return entries;
 }
 
-const std::string& opened_origin() { return opened; }
+const std::string& opened_origin() { return opened_file; }
 
 bool is_new_name(const options::Entry& output_file) { return output_file.source.starts_with(new_name); }
 

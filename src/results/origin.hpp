@@ -1,4 +1,4 @@
-// What a results file came from: the options and the texts of all files that the scene was read from, as they were.
+// The origin of a results file: the options and the texts of all input files, unchanged.
 #pragma once
 
 #include <string>
@@ -13,18 +13,18 @@ namespace hdf5 {
 class File;
 }
 
-/// Stores what is in force, under /input. Nothing where no options are in force.
+/// Stores the present options under /input; nothing if there are none.
 void record_origin(hdf5::File& file);
 
-/// Whether there is an HDF5 file of that name.
+/// Whether the path is an existing HDF5 file.
 bool is_hdf5(const std::string& path);
 
-/// The options that the run of a results file had, but for its output file and what belongs to that one run; from now
-/// on files that they name are read out of it. InputError where it holds none.
+/// The options of the run of a results file, except for its output file and those of a single run. Afterwards files
+/// that they name are read from the results file. InputError if it contains no options.
 std::vector<options::Entry> origin_of(const std::string& path);
 /// The results file that origin_of has read; empty: none.
 const std::string& opened_origin();
-/// Whether an output file is the new name that origin_of gives where the user gives none.
+/// Whether an output file is the default name that origin_of sets.
 bool is_new_name(const options::Entry& output_file);
 
 }  // namespace traverse::results

@@ -19,8 +19,8 @@ namespace {
 
 FileId id_of_status(const struct stat& status) { return {true, status.st_dev, status.st_ino}; }
 
-/// To be called in a guarded process: HDF5 may end by a signal in a file that is damaged.
-bool names_traverse(const std::string& path) {
+/// Must be called in a separate process, because HDF5 may crash with a damaged file.
+bool is_from_traverse(const std::string& path) {
   return hdf5::text_of(hdf5::open_to_read(path), "/", "program") == "traverse";
 }
 
@@ -59,7 +59,7 @@ Descriptor open_ordinary(const std::string& path, bool to_write) {
 
 bool is_results_file(const Descriptor& file) {
   try {
-    return isolated_read(file.path(), [&] { return names_traverse(file.path()); });
+    return isolated_read(file.path(), [&] { return is_from_traverse(file.path()); });
   } catch (const FileError&) {
     return false;
   }
@@ -70,11 +70,12 @@ bool is_results_file(const std::string& path) {
   return file.open() && is_results_file(file);
 }
 
-bool begins_with(const std::string& path, std::string_view mark) {
+bool begins_with(const std::string& path, std::string_view signature) {
   const Descriptor file = open_ordinary(path, false);
-  std::string begin(mark.size(), '\0');
-  return file.open() && ::pread(file.get(), begin.data(), begin.size(), 0) == static_cast<ssize_t>(mark.size()) &&
-         begin == mark;
+  std::string first_bytes(signature.size(), '\0');
+  return file.open() &&
+         ::pread(file.get(), first_bytes.data(), first_bytes.size(), 0) == static_cast<ssize_t>(signature.size()) &&
+         first_bytes == signature;
 }
 
 bool write_all(const Descriptor& file, std::string_view bytes) {
@@ -87,7 +88,7 @@ bool write_all(const Descriptor& file, std::string_view bytes) {
   return true;
 }
 
-// A file system that cannot do it at once has another name made, which fails where something is.
+// A file system without this operation gets a second link, which fails if the name exists.
 bool move_to_free_name(const std::string& from, const std::string& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;

@@ -1,5 +1,5 @@
-// Files that a run makes, replaces or removes. Names are looked at without following links, new files are made where
-// nothing is, and nothing is replaced or removed that Traverse has not written.
+// Operations on files that a run creates, replaces or removes. Links are not followed, new files are created only at
+// free paths, and only files that Traverse has written are replaced or removed.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace traverse::results {
 class Descriptor {
  public:
   Descriptor() = default;
-  /// name: the path that it was opened by.
+  /// name: the path by which it was opened.
   Descriptor(int number, std::string name) : number_(number), name_(std::move(name)) {}
   Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)), name_(std::move(other.name_)) {}
   Descriptor& operator=(Descriptor&& other) noexcept {
@@ -23,8 +23,8 @@ class Descriptor {
   ~Descriptor();
   int get() const { return number_; }
   bool open() const { return number_ >= 0; }
-  /// A name by which libraries open the very file, whatever stands at its path by then; where the system has no /proc,
-  /// that path.
+  /// A name by which libraries open this very file, even if another file has been moved to its path; on systems without
+  /// /proc the path itself.
   std::string path() const;
 
  private:
@@ -32,30 +32,30 @@ class Descriptor {
   std::string name_;
 };
 
-/// Tells one file from another as long as one of its names or descriptors is held; `there` false: there is none.
+/// Identifies a file while one of its names or descriptors exists; `there` false: no file.
 struct FileId {
   bool there = false;
   unsigned long device = 0, number = 0;
   bool operator==(const FileId&) const = default;
 };
-/// Of what stands at a path, a link itself included; only calls what a signal handler may call.
+/// The file at a path, or the link itself; calls async-signal-safe functions only.
 FileId id_at(const char* path) noexcept;
 FileId id_of(const Descriptor& file) noexcept;
 
-/// A new file at a path where nothing is; none where that cannot be, errno says why.
+/// Creates a file at a free path; invalid on failure, with the reason in errno.
 Descriptor make_file(const std::string& path);
-/// An ordinary file that is there, neither a link nor one that would have to be waited for.
+/// Opens an existing ordinary file, neither a link nor one that blocks.
 Descriptor open_ordinary(const std::string& path, bool to_write);
 
-/// Whether it is HDF5 and says of itself that Traverse has written it.
+/// Whether the file is HDF5 with the attribute program = "traverse".
 bool is_results_file(const Descriptor& file);
 bool is_results_file(const std::string& path);
-/// Whether an ordinary file begins with these bytes.
-bool begins_with(const std::string& path, std::string_view mark);
+/// Whether the path is an ordinary file that begins with these bytes.
+bool begins_with(const std::string& path, std::string_view signature);
 
-/// Writes all. False where that fails, errno says why.
+/// Writes all bytes. False on failure, with the reason in errno.
 bool write_all(const Descriptor& file, std::string_view bytes);
-/// Moves a file to another name in its folder where nothing is. False where something is, or it cannot be.
+/// Moves a file to a free name in its folder. False if the name exists or the move fails.
 bool move_to_free_name(const std::string& from, const std::string& to);
 
 }  // namespace traverse::results

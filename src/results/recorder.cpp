@@ -1,5 +1,5 @@
 // Collects samples in blocks and appends them to the extendible datasets, /time last, so that every other dataset has
-// at least as many rows; continues the file of an earlier run after comparing digests.
+// at least as many rows. Continues the file of an earlier run after comparing digests.
 #include "results/recorder.hpp"
 
 #include <algorithm>
@@ -22,20 +22,20 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::array summary_at_root = {"steps", "wall_seconds"};  // of the summary's attributes
+constexpr std::array summary_at_root = {"steps", "wall_seconds"};  // attributes of the summary
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 using hdf5::Series;
 
-// Rows between two writes: many where rows are short, since each write asks HDF5 for every dataset.
-constexpr std::size_t kBlockRows = 256, kMostRows = 1024;
+// Rows between two writes: many if rows are short, because each write calls HDF5 for every dataset.
+constexpr std::size_t kBlockRows = 256, kMaxRows = 1024;
 constexpr std::size_t kShortBlock = std::size_t{1} << 20, kBlockBytes = std::size_t{64} << 20;
-// A slow run writes before its block is full, as long as writing takes less than a twentieth of the time.
+// A slow run writes before its block is full, if writing takes less than a twentieth of the time.
 constexpr double kLongestWait = 5.0;  // s
 constexpr double kCostFactor = 20.0;
 
 std::size_t rows_of_block(std::size_t row_bytes) {
-  const std::size_t rows = std::clamp(kShortBlock / row_bytes, kBlockRows, kMostRows);
+  const std::size_t rows = std::clamp(kShortBlock / row_bytes, kBlockRows, kMaxRows);
   return std::clamp<std::size_t>(kBlockBytes / row_bytes, 1, rows);
 }
 
@@ -77,27 +77,27 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, 
 
 namespace {
 
-constexpr const char *of_scene_in = "/options", *of_scene_name = "scene_digest";
+constexpr const char *digest_group = "/options", *digest_attribute = "scene_digest";
 
-/// Where the results of an earlier run may be: under their name, or beside the checkpoint that has been moved with
-/// them.
-std::vector<std::string> sources_of(const Recorder::Earlier& earlier) {
-  const std::filesystem::path file = earlier.file, beside = earlier.beside;
-  return {file.string(), (beside.parent_path() / file.filename()).string()};
+/// Possible paths of an earlier run's results: their name, or the folder of the checkpoint, which may have been moved
+/// with them.
+std::vector<std::string> possible_sources(const Recorder::Earlier& earlier) {
+  const std::filesystem::path file = earlier.file, moved_with = earlier.moved_with;
+  return {file.string(), (moved_with.parent_path() / file.filename()).string()};
 }
 
-/// Whether a copy is of the scene and holds the rows that were written.
-bool is_right(const std::string& copy, const Recorder::Earlier& earlier, const Layout& layout) {
+/// Whether a copy belongs to the scene and contains the rows that were written.
+bool is_continuation(const std::string& copy, const Recorder::Earlier& earlier, const Layout& layout) {
   std::vector<std::string> names = {"/time"};
   for (const Layout::Field& field : layout.fields) names.push_back(field.name);
   if (earlier.rows == 0 || earlier.digests.size() != names.size()) return false;
   try {
     const auto [scene, digests] = isolated_read(copy, [&] {
-      return std::pair(hdf5::text_of(hdf5::open_to_read(copy), of_scene_in, of_scene_name),
+      return std::pair(hdf5::text_of(hdf5::open_to_read(copy), digest_group, digest_attribute),
                        hdf5::digests_of(copy, names, earlier.rows));
     });
     return scene == earlier.scene && digests == earlier.digests;
-  } catch (const FileError&) {  // nothing of it can be read
+  } catch (const FileError&) {  // the file is not readable
     return false;
   }
 }
@@ -105,17 +105,17 @@ bool is_right(const std::string& copy, const Recorder::Earlier& earlier, const L
 }  // namespace
 
 Recorder::Impl::Impl(Place place, const Layout& given, const Recorder::Earlier& earlier)
-    : file(std::move(place), sources_of(earlier),
-           [&](const std::string& copy) { return is_right(copy, earlier, given); }),
+    : file(std::move(place), possible_sources(earlier),
+           [&](const std::string& copy) { return is_continuation(copy, earlier, given); }),
       layout(given),
       width(given.width()),
       block_rows(rows_of_block(sizeof(double) * (1 + width))),
       objects(earlier.objects) {
   attempt([&] {
-    for (const char* name : summary_at_root) file.forget_attribute("/", name);
-    file.keep_only(objects);
+    for (const char* name : summary_at_root) file.remove_attribute("/", name);
+    file.remove_all_except(objects);
     series = create_series(earlier.rows, earlier.digests);
-    file.take_place();
+    file.replace_file();
   });
 }
 
@@ -127,18 +127,18 @@ Recorder::Impl::~Impl() {
       series.clear();
       file.close();
     });
-  } catch (...) {  // whoever ends a run this way has another error to report
+  } catch (...) {  // a run that ends here has another error to report
   }
 }
 
-std::vector<Series> Recorder::Impl::create_series(std::size_t there, const std::vector<std::uint64_t>& digests) {
+std::vector<Series> Recorder::Impl::create_series(std::size_t existing, const std::vector<std::uint64_t>& digests) {
   std::vector<Series> created;
-  Series::Rows rows = {block_rows, layout.rows, there};
-  if (there > 0) rows.digest = digests.front();
+  Series::Rows rows = {block_rows, layout.rows, existing};
+  if (existing > 0) rows.digest = digests.front();
   created.emplace_back(file, "/time", std::vector<hsize_t>(), "s", rows);
   for (const auto& field : layout.fields) {
     const std::vector<hsize_t> row(field.row.begin(), field.row.end());
-    if (there > 0) rows.digest = digests[created.size()];
+    if (existing > 0) rows.digest = digests[created.size()];
     created.emplace_back(file, field.name, row, field.unit, rows);
   }
   return created;
@@ -149,13 +149,13 @@ void Recorder::Impl::add(const Sample& sample) {
   if (series.empty()) {
     series = create_series(0, {});
     if (layout.interval > 0.0) file.attribute("/time", "interval", layout.interval);
-    file.flush();  // from here on the file's structure stays, only lengths grow
+    file.flush();  // from here on the metadata do not change, only lengths grow
   }
   series.front().add(sample.time);
   const double* next = sample.values.data();
   for (auto one = series.begin() + 1; one != series.end(); ++one) next = one->add(next);
-  ++waiting;
-  if (waiting >= block_rows || seconds_since(last_flush) > std::max(kLongestWait, kCostFactor * flush_cost)) flush();
+  ++buffered;
+  if (buffered >= block_rows || seconds_since(last_flush) > std::max(kLongestWait, kCostFactor * flush_cost)) flush();
 }
 
 void Recorder::Impl::end(const Sample& sample) {
@@ -181,7 +181,7 @@ void Recorder::Impl::flush() {
   file.flush();
   if (!series.empty()) series.front().write(file);  // /time last: every other dataset has at least its rows
   file.flush();
-  waiting = 0;
+  buffered = 0;
   last_flush = Clock::now();
   flush_cost = seconds_since(start);
 }
@@ -223,7 +223,7 @@ Recorder::Recorder(MPI_Comm comm, Place place, const Layout& layout, const Earli
   share_failure(comm, failure);
 }
 
-void Recorder::of_scene(const std::string& digest) { attributes(of_scene_in, {{of_scene_name, digest}}); }
+void Recorder::of_scene(const std::string& digest) { attributes(digest_group, {{digest_attribute, digest}}); }
 
 Recorder::Earlier Recorder::secure() {
   Earlier now;

@@ -1,4 +1,4 @@
-// The file behind a Recorder: open from the start of a run to its end, written in blocks of samples.
+// The file of a Recorder: open from the start of a run to its end, written in blocks of samples.
 #pragma once
 
 #include <chrono>
@@ -22,24 +22,24 @@ struct Recorder::Impl {
   void end(const Sample& sample);
   void flush();
   void write(const std::string& object, const Attribute& attribute);
-  /// Runs `write`; a failure leaves in the file what was flushed before, and ends the writing.
+  /// Calls `write`. After a failure the file contains the last flushed data, and no more are written.
   template <class Write>
   void attempt(Write&& write);
 
   hdf5::File file;
   Layout layout;
-  std::size_t width;                 // of a sample
+  std::size_t width;                 // numbers in a sample
   std::vector<hdf5::Series> series;  // /time and the fields of the layout
   std::size_t block_rows;
-  std::size_t waiting = 0;  // samples in memory
+  std::size_t buffered = 0;  // samples in memory
   std::chrono::steady_clock::time_point last_flush = std::chrono::steady_clock::now();
   double flush_cost = 0.0;           // s, of the last one
-  std::vector<std::string> objects;  // of the file, when they were first asked for
+  std::vector<std::string> objects;  // objects of the file at the first call of secure()
   bool closed = false;
 
  private:
-  /// there: rows that they have already, with the digests of these.
-  std::vector<hdf5::Series> create_series(std::size_t there, const std::vector<std::uint64_t>& digests);
+  /// existing: number of rows that the series already have, with their digests.
+  std::vector<hdf5::Series> create_series(std::size_t existing, const std::vector<std::uint64_t>& digests);
   void check_fit(const Sample& sample) const;
 };
 

@@ -1,4 +1,5 @@
-// What a results file holds once: natural modes, the worst shape, separations, and the tables of a study.
+// Writes the parts of a results file that do not grow: natural modes, the deflected shape, separations, and the tables
+// of a study.
 #include <numbers>
 
 #include "recorder_file.hpp"

@@ -1,4 +1,4 @@
-// What is said of speeds that were added near the peaks.
+// Prints the speeds that were added near the peaks.
 #include "results/refined.hpp"
 
 #include <fmt/format.h>
@@ -15,16 +15,16 @@ long added_speeds(const Refined& refined) { return std::count(refined.added.begi
 
 void print(const Refined& refined) {
   const long added = added_speeds(refined), given = static_cast<long>(refined.added.size()) - added;
-  std::string left = "no peak over the speed is above what was found";
+  std::string remaining = "no peak over the speed is above what was found";
   if (refined.wanted == 0.0)
-    left = refined.uncertainty > 0.0
-               ? fmt::format("a limit may still be broken between two of them ({}); -sweep_refine 1e-2 goes on",
-                             refined.curve)
-               : "no limit that is kept at them can be broken between two of them";
+    remaining = refined.uncertainty > 0.0
+                    ? fmt::format("a limit may still be broken between two of them ({}); -sweep_refine 1e-2 goes on",
+                                  refined.curve)
+                    : "no limit that is kept at them can be broken between two of them";
   else if (refined.uncertainty > 0.0)
-    left = fmt::format("peaks over the speed are at most {:.1g} above what was found ({}){}", refined.uncertainty,
-                       refined.curve, refined.uncertainty > refined.wanted ? ", more than was wanted" : "");
-  fmt::print("  {} speeds added to {}; {}\n", added, given, left);
+    remaining = fmt::format("peaks over the speed are at most {:.1g} above what was found ({}){}", refined.uncertainty,
+                            refined.curve, refined.uncertainty > refined.wanted ? ", more than was wanted" : "");
+  fmt::print("  {} speeds added to {}; {}\n", added, given, remaining);
 }
 
 void add_to(std::vector<Attribute>& summary, const Refined& refined) {

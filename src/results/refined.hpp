@@ -1,4 +1,4 @@
-// Speeds that were added to those that a sweep or a study was asked for.
+// The speeds that were added to those of a sweep or a study.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 namespace traverse::results {
 
 struct Refined {
-  std::vector<double> added;  // of every speed: 1 where it was not asked for, else 0
-  double wanted = 0.0;        // relative, of every peak over the speed; 0: only limits asked
-  double uncertainty = 0.0;   // the same, what is left
-  std::string curve{};        // whose it is
+  std::vector<double> added;  // for each speed: 1 if it was added, else 0
+  double wanted = 0.0;        // relative, of every peak over the speed; 0: refined near limits only
+  double uncertainty = 0.0;   // relative, remaining
+  std::string curve{};        // the curve with this uncertainty
 };
 void print(const Refined& refined);
-/// speeds_added, peak_uncertainty, peak_uncertainty_of.
+/// Adds speeds_added, peak_uncertainty, peak_uncertainty_of.
 void add_to(std::vector<Attribute>& summary, const Refined& refined);
 
 }  // namespace traverse::results

@@ -53,8 +53,7 @@ void print(const std::vector<int>& trains, const std::vector<Resonance>& resonan
   std::string speeds;
   for (const Cancellation& c : cancellations)
     if (c.mode == 1) speeds += fmt::format("{}{:.4g}", speeds.empty() ? "" : ", ", 3.6 * c.speed);
-  if (!speeds.empty())
-    fmt::print("without damping a force leaves the first mode at rest at v = 2 f1 L/(2 k + 1): {} km/h\n", speeds);
+  if (!speeds.empty()) fmt::print("cancellation speeds v = 2 f1 L/(2 k + 1): {} km/h\n", speeds);
   std::fflush(stdout);
 }
 

@@ -1,4 +1,4 @@
-// What is said of the model that all runs have.
+// Texts and attributes of the model that all runs have.
 #include "results/run_model.hpp"
 
 #include <fmt/format.h>
@@ -22,19 +22,19 @@ std::string method_of(const RunModel& model) {
   return fmt::format("by {} elements a {}{}", model.elements, model.in_bays ? "sleeper bay" : "span", steps);
 }
 
-std::string not_promised(const RunModel& model, const std::vector<double>& unseen) {
-  const auto count = std::count(unseen.begin(), unseen.end(), 1.0);
+std::string extrapolation_note(const RunModel& model, const std::vector<double>& outside_trials) {
+  const auto count = std::count(outside_trials.begin(), outside_trials.end(), 1.0);
   if (model.expected_errors.empty() || count == 0) return {};
   return fmt::format(
-      "error estimates do not hold for {} of the runs, in which wheels lost contact, stops closed or the like as in no "
-      "trial run; -accuracy_whole makes trial runs as long as these",
+      "error estimates are not valid for {} of the runs, in which wheels lost contact, stops closed or similar events "
+      "happened in no trial run; -accuracy_whole makes trial runs as long as these",
       count);
 }
 
-std::string computed_alone(long runs) {
+std::string separate_runs_note(long runs) {
   if (runs == 0) return {};
   return fmt::format(
-      "  {} of the runs were computed on their own, not in a batch: the residual of their linearised vehicles was too "
+      "  {} of the runs were computed separately, not in a batch: the residual of their linearised vehicles was too "
       "large, or a contact force did not converge\n",
       runs);
 }

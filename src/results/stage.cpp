@@ -1,5 +1,5 @@
-// Keeps the names of the current stages in atomic variables, from which a background thread prints progress at growing
-// intervals.
+// Stores the names of the current stages in atomic variables, from which a background thread prints progress at
+// increasing intervals.
 #include "results/stage.hpp"
 
 #include <fmt/format.h>
@@ -17,15 +17,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* idle = "set-up";                    // outside of all stages, where nothing takes long
-constexpr double rarest = 50.0;                           // s between lines
-constexpr double share = 0.2;                             // of the time so far, from line to line
+constexpr const char* idle = "set-up";                    // name outside of all stages, which are short
+constexpr double longest_interval = 50.0;                 // s, longest interval between lines
+constexpr double share = 0.2;                             // interval between lines, relative to the time so far
 constexpr double silent_start = 2.0, redraw_every = 1.0;  // s, on a terminal
 
 std::atomic<const char*> outermost{idle}, innermost{idle};
 std::atomic<double> done{0.0};
-std::atomic<long> told{0};
-std::atomic<Clock::rep> begun{0}, last_shown{0};
+std::atomic<long> line_count{0};
+std::atomic<Clock::rep> start_time{0}, last_shown{0};
 
 Clock::rep ticks() { return Clock::now().time_since_epoch().count(); }
 
@@ -34,22 +34,22 @@ double since(Clock::rep then) { return std::chrono::duration<double>(Clock::dura
 std::string text_of(double seconds) {
   const double part = done;
   const std::string outer = outermost.load(), inner = innermost.load();
-  const std::string what = inner == outer ? inner : outer + ", " + inner;
-  const std::string how_long =
+  const std::string stage = inner == outer ? inner : outer + ", " + inner;
+  const std::string duration =
       seconds < 120.0 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.0f} min", seconds / 60.0);
-  return part > 0.0 ? fmt::format("{}: {:.0f} %, {} so far", what, 100.0 * std::min(part, 1.0), how_long)
-                    : fmt::format("{}, {} so far", what, how_long);
+  return part > 0.0 ? fmt::format("{}: {:.0f} %, {} so far", stage, 100.0 * std::min(part, 1.0), duration)
+                    : fmt::format("{}, {} so far", stage, duration);
 }
 
 }  // namespace
 
-Stage::Stage(const char* what) : outer_(innermost) {
+Stage::Stage(const char* name) : outer_(innermost) {
   if (outer_ == idle) {
-    begun = last_shown = ticks();
-    outermost = what;
+    start_time = last_shown = ticks();
+    outermost = name;
   }
   done = 0.0;
-  innermost = what;
+  innermost = name;
 }
 
 Stage::~Stage() {
@@ -64,12 +64,12 @@ const char* Stage::now() { return outermost; }
 
 Heartbeat::Heartbeat(bool quiet, double first) : first_(first), terminal_(isatty(STDOUT_FILENO) == 1) {
   if (quiet) return;
-  // Signals are for the main thread, but SIGPIPE, which comes to whoever writes.
+  // Signals are handled by the main thread, except for SIGPIPE, which the writing thread receives.
   sigset_t all, before;
   sigfillset(&all);
   sigdelset(&all, SIGPIPE);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  thread_ = std::thread([this] { beat(); });
+  thread_ = std::thread([this] { print_progress(); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
@@ -85,24 +85,25 @@ Heartbeat::~Heartbeat() {
 
 void Heartbeat::shown() { last_shown = ticks(); }
 
-long Heartbeat::lines() { return told; }
+long Heartbeat::lines() { return line_count; }
 
-void Heartbeat::beat() {
-  bool drawn = false;  // a line on the terminal that is to be rewritten
+void Heartbeat::print_progress() {
+  bool drawn = false;  // a line on the terminal must be rewritten
   std::unique_lock lock(mutex_);
-  const auto look_every = std::chrono::duration<double>(0.1 * std::min(first_, 2.0));
-  while (!wake_.wait_for(lock, look_every, [this] { return ending_; })) {
-    const double so_far = since(begun);
-    const double every = terminal_ ? (drawn ? redraw_every : silent_start) : std::clamp(share * so_far, first_, rarest);
-    const bool resting = outermost.load() == idle;
-    if (drawn && resting) fmt::print("\r\033[K");
-    if (resting) drawn = false;
-    if (resting || since(last_shown) < every) continue;
-    fmt::print("{}{}{}", terminal_ ? "\r" : "", text_of(so_far), terminal_ ? "\033[K" : "\n");
+  const auto check_interval = std::chrono::duration<double>(0.1 * std::min(first_, 2.0));
+  while (!wake_.wait_for(lock, check_interval, [this] { return ending_; })) {
+    const double elapsed = since(start_time);
+    const double interval =
+        terminal_ ? (drawn ? redraw_every : silent_start) : std::clamp(share * elapsed, first_, longest_interval);
+    const bool is_idle = outermost.load() == idle;
+    if (drawn && is_idle) fmt::print("\r\033[K");
+    if (is_idle) drawn = false;
+    if (is_idle || since(last_shown) < interval) continue;
+    fmt::print("{}{}{}", terminal_ ? "\r" : "", text_of(elapsed), terminal_ ? "\033[K" : "\n");
     std::fflush(stdout);
     drawn = terminal_;
     shown();
-    ++told;
+    ++line_count;
   }
   if (drawn) fmt::print("\r\033[K");
 }

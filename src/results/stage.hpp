@@ -1,4 +1,4 @@
-// What the program is doing, shown to a user who waits: at least one line a minute.
+// The current stage of the program, printed for a waiting user at least once a minute.
 #pragma once
 
 #include <condition_variable>
@@ -7,26 +7,26 @@
 
 namespace traverse::results {
 
-/// Something that may take long. Stages lie within one another; the outermost and the innermost one are told.
+/// A stage that may take long. Stages may be nested; the outermost and the innermost one are printed.
 class Stage {
  public:
-  /// `what`: a literal such as "trial runs".
-  explicit Stage(const char* what);
+  /// `name`: a literal such as "trial runs".
+  explicit Stage(const char* name);
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
-  /// How much of the innermost stage is done, from 0 to 1. It costs no more than a store.
+  /// Sets the completed part of the innermost stage, from 0 to 1. It costs one store.
   static void advance(double part);
-  /// The outermost stage. A signal handler may ask for it.
+  /// The outermost stage. A signal handler may call it.
   static const char* now();
 
  private:
   const char* outer_;
 };
 
-/// While it lives, a thread of its own tells the stage whenever nothing was shown for some time: on a terminal in one
-/// line that is rewritten, otherwise line by line and ever more rarely, but at least once a minute.
+/// During its life a thread prints the stage whenever nothing was printed for some time: on a terminal in one line that
+/// is rewritten, otherwise in lines at increasing intervals, at least once a minute.
 class Heartbeat {
  public:
   /// `first`: s until the first line.
@@ -35,12 +35,12 @@ class Heartbeat {
   Heartbeat(const Heartbeat&) = delete;
   Heartbeat& operator=(const Heartbeat&) = delete;
 
-  /// Something else has just been shown.
+  /// Reports that something else has been printed.
   static void shown();
-  static long lines();  // told so far, by all heartbeats
+  static long lines();  // lines printed by all heartbeats
 
  private:
-  void beat();
+  void print_progress();
 
   double first_;
   bool terminal_;

@@ -18,9 +18,9 @@ namespace {
 
 using hdf5::Id;
 
-class Reading {
+class StudyReader {
  public:
-  explicit Reading(const std::string& path) : path_(path), file_(hdf5::open_whole(path)) {}
+  explicit StudyReader(const std::string& path) : path_(path), file_(hdf5::open_whole(path)) {}
 
   bool has(const char* name) const { return H5Lexists(file_.get(), name, H5P_DEFAULT) > 0; }
 
@@ -46,7 +46,7 @@ class Reading {
     return values;
   }
 
-  /// Of a table with two columns.
+  /// The rows of a table with two columns.
   std::map<std::string, std::string> pairs(const char* name) const {
     const Id set(check(H5Dopen2(file_.get(), name, H5P_DEFAULT))), space(check(H5Dget_space(set.get()))),
         type(check(H5Dget_type(set.get())));
@@ -90,7 +90,7 @@ class Reading {
 };
 
 template <class Value>
-void keep_map(base::Bytes& bytes, std::map<std::string, Value>& map) {
+void serialize_map(base::Bytes& bytes, std::map<std::string, Value>& map) {
   std::vector<std::pair<std::string, Value>> rows(map.begin(), map.end());
   bytes(rows);
   map = {rows.begin(), rows.end()};
@@ -98,7 +98,7 @@ void keep_map(base::Bytes& bytes, std::map<std::string, Value>& map) {
 
 StoredStudy study_of(const std::string& path) {
   StoredStudy study;
-  const Reading file(path);
+  const StudyReader file(path);
   if (!file.has("/study") || !file.has("/options")) return study;
   study.options = file.pairs("/options");
   for (const std::string& name : file.datasets_of("/study")) study.datasets[name] = file.numbers("/study/" + name);
@@ -106,9 +106,9 @@ StoredStudy study_of(const std::string& path) {
   const auto digests = study.datasets.find(row_digest);  // older versions have none
   const auto finished = study.datasets.find("finished");
   if (digests == study.datasets.end() || finished == study.datasets.end()) return study;
-  const std::vector<double> now = row_digests(study.datasets);
-  for (std::size_t run = 0; run < now.size(); ++run)
-    if (finished->second[run] == 1.0 && (run >= digests->second.size() || digests->second[run] != now[run]))
+  const std::vector<double> digests_now = row_digests(study.datasets);
+  for (std::size_t run = 0; run < digests_now.size(); ++run)
+    if (finished->second[run] == 1.0 && (run >= digests->second.size() || digests->second[run] != digests_now[run]))
       throw FileError(
           fmt::format("the results of its run {} are not those that were written: the file is damaged", run));
   return study;
@@ -117,10 +117,10 @@ StoredStudy study_of(const std::string& path) {
 }  // namespace
 
 void StoredStudy::keep(base::Bytes& bytes) {
-  keep_map(bytes, options);
-  keep_map(bytes, datasets);
-  keep_map(bytes, texts);
-  keep_map(bytes, numbers);
+  serialize_map(bytes, options);
+  serialize_map(bytes, datasets);
+  serialize_map(bytes, texts);
+  serialize_map(bytes, numbers);
 }
 
 std::vector<double> row_digests(const std::map<std::string, std::vector<double>>& datasets) {

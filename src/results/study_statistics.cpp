@@ -11,7 +11,7 @@
 namespace traverse::results {
 namespace {
 
-constexpr std::size_t most_printed = 12;  // groups
+constexpr std::size_t max_printed = 12;  // groups
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// The probability of exactly k successes in n.
@@ -21,7 +21,7 @@ double binomial(std::size_t n, std::size_t k, double p) {
                   (N - K) * std::log1p(-p));
 }
 
-/// "12.3", and "?" for what is not known.
+/// "12.3", and "?" for an unknown value.
 std::string number_text(double value) { return std::isnan(value) ? "?" : fmt::format("{:.4g}", value); }
 
 /// "12.3 [12.1, 12.6]".
@@ -34,7 +34,7 @@ std::string with_interval(double scale, double value, double low, double high) {
 RankInterval quantile_ranks(std::size_t n, double p, double confidence) {
   const double side = 0.5 * (1.0 - confidence);
   RankInterval ranks{0, n + 1};
-  double below = 0.0;  // the probability that at most k samples lie below the quantile
+  double below = 0.0;  // the probability that at most k samples are below the quantile
   for (std::size_t k = 0; k <= n; ++k) {
     below += p < 1.0 ? binomial(n, k, p) : 0.0;
     if (below <= side) ranks.lower = k + 1;
@@ -48,26 +48,26 @@ RankInterval quantile_ranks(std::size_t n, double p, double confidence) {
 }
 
 double quantile(const std::vector<double>& ascending, double p) {
-  const double place = p * static_cast<double>(ascending.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
+  const double position = p * static_cast<double>(ascending.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
   const std::size_t above = std::min(below + 1, ascending.size() - 1);
-  return ascending[below] + (place - static_cast<double>(below)) * (ascending[above] - ascending[below]);
+  return ascending[below] + (position - static_cast<double>(below)) * (ascending[above] - ascending[below]);
 }
 
 StudyStatistics::StudyStatistics(const StudyTable& table) : table_(table) {
   const options::Study& study = table.study();
   if (study.over.empty()) return;
-  const auto over = [&](std::size_t axis) {
+  const auto is_averaged = [&](std::size_t axis) {
     return std::find(study.over.begin(), study.over.end(), axis) != study.over.end();
   };
   for (const options::StudyDimension& dimension : study.dimensions)
-    if (!over(dimension.axis)) dimensions_.push_back(&dimension);
-  std::map<std::vector<std::size_t>, std::size_t> known;  // places on the other axes
+    if (!is_averaged(dimension.axis)) dimensions_.push_back(&dimension);
+  std::map<std::vector<std::size_t>, std::size_t> known;  // positions on the other axes
   for (std::size_t run = 0; run < study.runs(); ++run) {
-    std::vector<std::size_t> place;
+    std::vector<std::size_t> position;
     for (std::size_t axis = 0; axis < study.axes.size(); ++axis)
-      if (!over(axis)) place.push_back(study.place(run, axis));
-    const auto [group, is_new] = known.try_emplace(place, groups_.size());
+      if (!is_averaged(axis)) position.push_back(study.place(run, axis));
+    const auto [group, is_new] = known.try_emplace(position, groups_.size());
     if (is_new) groups_.emplace_back();
     groups_[group->second].push_back(run);
   }
@@ -144,11 +144,11 @@ std::vector<Recorder::Dataset> StudyStatistics::datasets() const {
 void StudyStatistics::print() const {
   if (groups_.empty()) return;
   const options::Study& study = table_.study();
-  std::string over;
+  std::string names;
   for (const options::StudyDimension& d : study.dimensions)
     if (std::find(study.over.begin(), study.over.end(), d.axis) != study.over.end())
-      over += (over.empty() ? "" : ", ") + d.name();
-  fmt::print("statistics over {}: mean, deviation{}; each at the probe where it is largest\n", over,
+      names += (names.empty() ? "" : ", ") + d.name();
+  fmt::print("statistics over {}: mean, deviation{}; each at the probe where it is largest\n", names,
              study.quantiles.empty() ? "" : fmt::format(", quantiles [within, with {:g} %]", 100.0 * study.confidence));
   const struct {
     const char *label, *column, *unit;
@@ -158,7 +158,7 @@ void StudyStatistics::print() const {
               {"moment", "peak_moment", "kN m", 1e-3},
               {"least wheel force", "least_wheel_force", "kN", 1e-3},
               {"greatest wheel force", "greatest_wheel_force", "kN", 1e-3}};
-  for (std::size_t group = 0; group < std::min(groups_.size(), most_printed); ++group) {
+  for (std::size_t group = 0; group < std::min(groups_.size(), max_printed); ++group) {
     std::string point;
     for (const options::StudyDimension* d : dimensions_)
       point +=
@@ -169,7 +169,8 @@ void StudyStatistics::print() const {
       if (column == nullptr) continue;
       Numbers largest;
       for (std::size_t probe = 0; probe < column->width; ++probe)
-        if (Numbers own = of(group, *column, probe); probe == 0 || own.mean > largest.mean) largest = std::move(own);
+        if (Numbers numbers = of(group, *column, probe); probe == 0 || numbers.mean > largest.mean)
+          largest = std::move(numbers);
       if (largest.samples == 0) continue;
       fmt::print("  {:<22}{:.4g}, {} {}", row.label, row.scale * largest.mean,
                  number_text(row.scale * largest.deviation), row.unit);
@@ -179,7 +180,7 @@ void StudyStatistics::print() const {
       fmt::print("\n");
     }
   }
-  if (groups_.size() > most_printed) fmt::print("  and {} more in the results file\n", groups_.size() - most_printed);
+  if (groups_.size() > max_printed) fmt::print("  and {} more in the results file\n", groups_.size() - max_printed);
 }
 
 }  // namespace traverse::results

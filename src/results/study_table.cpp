@@ -74,11 +74,11 @@ Recorder::Dataset StudyTable::finished() const { return {"/study/finished", {run
 
 std::vector<Verdict> StudyTable::verdicts() const {
   if (limits_.empty()) return {};
-  Judged judged(limits_, 0);
-  judged.value = find("judged")->values;
-  judged.x = find("judged_x")->values;
-  judged.why = reasons_;
-  return worst_of(judged, [this](std::size_t run) { return point_text(study_, run); });
+  LimitResults limit_results(limits_, 0);
+  limit_results.value = find("judged")->values;
+  limit_results.x = find("judged_x")->values;
+  limit_results.why = reasons_;
+  return worst_of(limit_results, [this](std::size_t run) { return point_text(study_, run); });
 }
 
 bool find_extreme(const StudyTable& table, const std::string& name, bool largest, StudyPlace& place) {

@@ -1,4 +1,4 @@
-// The numbers of a study, one row a run: in the file under /study and /summary, and as a table on the terminal.
+// The results of a study, one row for each run: stored under /study and /summary, and printed as a table.
 #pragma once
 
 #include <limits>
@@ -11,13 +11,13 @@
 
 namespace traverse::results {
 
-/// What is known of every run.
+/// A result of every run.
 struct StudyColumn {
-  const char* name;  // of its dataset
+  const char* name;  // name of its dataset
   const char* unit;
-  enum Each { run, probe, limit } each;  // what has a number of its own
-  bool of_wheels;                        // only where there are any
-  bool for_people;                       // statistics are made of it
+  enum Each { run, probe, limit } each;  // the object that has its own number
+  bool of_wheels;                        // only in scenes with wheels
+  bool for_people;                       // has statistics
 };
 inline constexpr StudyColumn study_columns[] = {
     {"probes_x", "m", StudyColumn::probe, false, false},
@@ -47,33 +47,33 @@ class StudyTable {
 
   const options::Study& study() const { return study_; }
   const std::vector<options::VerdictLimit>& limits() const { return limits_; }
-  /// A verdict on each limit, of all runs that have ended.
+  /// A verdict on each limit, from all runs that have ended.
   std::vector<Verdict> verdicts() const;
   std::size_t runs() const { return runs_; }
   std::size_t probes() const { return probes_; }
-  /// Numbers in a row: those of each column, per probe or one, in the columns' order.
+  /// Numbers in a row: those of each column, for each probe or one, in the order of the columns.
   std::size_t width() const { return width_; }
   void put(std::size_t run, const double* row);
-  /// Why runs do not know the value of a limit, in words.
-  void give_reason(std::size_t limit, const std::string& why) { reasons_[limit] = why; }
+  /// Sets the reason why runs cannot evaluate the quantity of a limit, in words.
+  void set_reason(std::size_t limit, const std::string& why) { reasons_[limit] = why; }
   bool finished(std::size_t run) const { return finished_[run] != 0.0; }
   std::size_t finished_runs() const;
 
   struct Column {
     const StudyColumn* what;
-    std::size_t width;           // numbers a run
-    std::vector<double> values;  // [runs, width], not_run where a run has not ended
+    std::size_t width;           // numbers for each run
+    std::vector<double> values;  // [runs, width], not_run if a run has not ended
 
-    /// Of its dataset, behind the number of runs or of groups of these.
+    /// Shape of its dataset, after the number of runs or groups.
     std::vector<std::size_t> shape() const {
       return what->each == StudyColumn::run ? std::vector<std::size_t>() : std::vector<std::size_t>{width};
     }
   };
   const std::vector<Column>& columns() const { return columns_; }
-  /// A column by its name; null where it is not there.
+  /// A column by its name; null if it does not exist.
   const Column* find(const std::string& name) const;
 
-  /// As datasets under /study; coordinates too.
+  /// Datasets under /study; coordinates too.
   std::vector<Recorder::Dataset> results() const;
   std::vector<Recorder::Dataset> coordinates() const;
   Recorder::Dataset finished() const;
@@ -84,22 +84,22 @@ class StudyTable {
   std::vector<options::VerdictLimit> limits_;
   std::vector<Column> columns_;
   std::vector<double> finished_;
-  std::vector<std::string> reasons_;  // of each limit
+  std::vector<std::string> reasons_;  // reason for each limit
 };
 
-/// The run and probe with the largest (or least) value of a column; false where no run has ended.
+/// The run and probe with the largest (or least) value of a column; false if no run has ended.
 struct StudyPlace {
   std::size_t run = 0, probe = 0;
   double value = 0.0;
 };
 bool find_extreme(const StudyTable& table, const std::string& column, bool largest, StudyPlace& place);
-/// The same among some of the runs.
+/// The same among the runs from first to end - 1.
 bool find_extreme(const StudyTable& table, const std::string& column, bool largest, StudyPlace& place,
-                  std::size_t first, std::size_t past);
+                  std::size_t first, std::size_t end);
 
-/// "track_seed 5, train_speed 83.3"; of a sweep "A3 at 83.3 m/s (300 km/h)".
+/// "track_seed 5, train_speed 83.3"; for a sweep "A3 at 83.3 m/s (300 km/h)".
 std::string point_text(const options::Study& study, std::size_t run);
-/// Peaks of all runs, each with its run, of a sweep with its train and speed; what is not known is left out.
+/// Peaks of all runs, each with its run, or for a sweep with its train and speed; unknown ones are omitted.
 std::vector<Attribute> summary_of(const StudyTable& table);
 void print_study(const StudyTable& table);
 

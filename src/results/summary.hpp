@@ -7,7 +7,7 @@
 
 namespace traverse::results {
 
-/// What is not known, or what the scene has not, is left out.
+/// Omits quantities that are unknown or do not exist in the scene.
 std::vector<Attribute> attributes_of(const Summary& summary);
 
 }  // namespace traverse::results

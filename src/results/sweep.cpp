@@ -1,4 +1,4 @@
-// Shapes the rows of a sweep's table by trains and speeds, and prints the peaks of each train.
+// Arranges the rows of a sweep's table by trains and speeds, and prints the peaks of each train.
 #include "results/sweep.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ double km_per_hour(const StudyTable& table, const StudyPlace& place) {
   return 3.6 * study.value(place.run, study.dimensions[study.speeds]);
 }
 
-/// " @ 230", with the station where there are several.
+/// " @ 230", with the station if there are several.
 std::string at_text(const StudyTable& table, const StudyPlace& place) {
   const std::string speed = fmt::format(" @ {:.4g}", km_per_hour(table, place));
   if (table.probes() == 1) return speed;
@@ -29,31 +29,32 @@ std::string at_text(const StudyTable& table, const StudyPlace& place) {
 
 std::string amplification_text(double value) { return std::isnan(value) ? "unknown" : fmt::format("{:.4g}", value); }
 
-/// The largest of one train.
+/// The largest value of one train.
 bool find_largest(const StudyTable& table, const char* column, std::size_t train, StudyPlace& place) {
   const std::size_t speeds = speeds_of_sweep(table.study()).size();
   return find_extreme(table, column, true, place, train * speeds, (train + 1) * speeds);
 }
 
-/// Of a train whose largest deflection is at `place`.
+/// The printed row of a train whose largest deflection is at `place`.
 std::vector<std::string> row_of(const StudyTable& table, std::size_t train, const StudyPlace& place) {
-  StudyPlace own;
+  StudyPlace largest;
   const auto text = [&](const char* column, double scale, const char* unit) {
-    if (!find_largest(table, column, train, own)) return std::string("unknown");
-    return fmt::format("{:.5g}{}{}", scale * own.value, unit, at_text(table, own));
+    if (!find_largest(table, column, train, largest)) return std::string("unknown");
+    return fmt::format("{:.5g}{}{}", scale * largest.value, unit, at_text(table, largest));
   };
-  const double beside = table.find("amplification")->values[place.run * table.probes() + place.probe];
+  const double amplification = table.find("amplification")->values[place.run * table.probes() + place.probe];
   const std::string name = train_name(table.study(), train);
   return {name.empty() ? "scene" : name,
           text("peak_deflection", 1e3, " mm"),
-          amplification_text(beside),
+          amplification_text(amplification),
           text("peak_acceleration", 1.0, " m/s2"),
           text("peak_moment", 1e-3, " kN m"),
-          find_largest(table, "amplification", train, own) ? amplification_text(own.value) + at_text(table, own)
-                                                           : "unknown"};
+          find_largest(table, "amplification", train, largest)
+              ? amplification_text(largest.value) + at_text(table, largest)
+              : "unknown"};
 }
 
-/// [trains, probes]: of the first run of each train that knows it.
+/// [trains, probes]: from the first run of each train that has it.
 std::vector<double> static_deflections(const StudyTable& table) {
   const std::vector<double>& of_runs = table.find("static_deflection")->values;
   const std::size_t trains = trains_of(table.study()), probes = table.probes();
@@ -103,12 +104,12 @@ std::vector<Recorder::Dataset> sweep_datasets(const StudyTable& table, bool esti
     if (name == "static_deflection") {
       set.shape = {trains, table.probes()};
       set.values = static_deflections(table);
-    } else if (name == "amplification") {  // 0: a run does not know it
+    } else if (name == "amplification") {  // 0: unknown in this run
       for (std::size_t i = 0; i < set.values.size(); ++i)
         if (table.finished(i / column.width) && std::isnan(set.values[i])) set.values[i] = 0.0;
     } else if (name == "unseen") {
       set.name = "/sweep/promised";
-      for (double& value : set.values) value = 1.0 - value;  // NaN stays
+      for (double& value : set.values) value = 1.0 - value;  // NaN is preserved
     }
     sets.push_back(std::move(set));
   }

@@ -19,13 +19,13 @@ std::string with_unit(double value, const std::string& unit) {
 std::string verdict_line(const Verdict& v) {
   std::string line =
       fmt::format("{}  {} {}  limit {}", v.word(), v.limit.clause, v.limit.quantity, with_unit(v.limit.value, v.unit));
-  if (!v.judged()) {
+  if (!v.evaluated()) {
     line += ": " + v.found.why;
   } else {
     line += fmt::format(", found {}, margin {:.3g} %", with_unit(v.found.value, v.unit), 100.0 * v.margin());
     if (const std::string place = v.found.place(); !place.empty()) line += ", " + place;
     if (std::isfinite(v.found.time)) line += fmt::format(", t = {:.6g} s", v.found.time);
-    if (v.broken_in > 0) line += fmt::format(", broken in {} of {} runs", v.broken_in, v.runs);
+    if (v.exceeded_in > 0) line += fmt::format(", broken in {} of {} runs", v.exceeded_in, v.runs);
   }
   return v.limit.text.empty() ? line : line + " (" + v.limit.text + ")";
 }
@@ -37,24 +37,25 @@ std::string EvaluatedQuantity::place() const {
   return fmt::format("{}{}x = {:.6g} m", thing, thing.empty() ? "" : ", ", x);
 }
 
-std::string Verdict::word() const { return !judged() ? "not judged" : kept() ? "kept" : "broken"; }
+std::string Verdict::word() const { return !evaluated() ? "not judged" : within_limit() ? "kept" : "broken"; }
 
-std::vector<Verdict> worst_of(const Judged& judged, const std::function<std::string(std::size_t)>& run_text) {
-  const std::size_t count = judged.limits.size();
+std::vector<Verdict> worst_of(const LimitResults& results, const std::function<std::string(std::size_t)>& run_text) {
+  const std::size_t count = results.limits.size();
   std::vector<Verdict> verdicts;
   for (std::size_t l = 0; l < count; ++l) {
-    Verdict verdict{judged.limits[l], std::string(options::limit_quantity(judged.limits[l].quantity)->unit), {}, 0, 0};
-    for (std::size_t i = l; i < judged.value.size(); i += count) {
-      if (std::isnan(judged.value[i])) continue;
+    Verdict verdict{
+        results.limits[l], std::string(options::limit_quantity(results.limits[l].quantity)->unit), {}, 0, 0};
+    for (std::size_t i = l; i < results.value.size(); i += count) {
+      if (std::isnan(results.value[i])) continue;
       ++verdict.runs;
-      if (judged.value[i] > verdict.limit.value) ++verdict.broken_in;
-      if (judged.value[i] <= verdict.found.value) continue;
-      verdict.found = {judged.value[i], EvaluatedQuantity::unknown, judged.x[i], run_text(i / count), ""};
+      if (results.value[i] > verdict.limit.value) ++verdict.exceeded_in;
+      if (results.value[i] <= verdict.found.value) continue;
+      verdict.found = {results.value[i], EvaluatedQuantity::unknown, results.x[i], run_text(i / count), ""};
     }
     if (std::isnan(verdict.found.value))
-      verdict.found.why = judged.why[l].empty()
+      verdict.found.why = results.why[l].empty()
                               ? "no run determines it; a single run with the options of one of them reports the reason"
-                              : judged.why[l];
+                              : results.why[l];
     verdicts.push_back(verdict);
   }
   return verdicts;
@@ -72,17 +73,17 @@ void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts) {
   if (verdicts.empty()) return;
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::pair<std::string, std::string>> clause, quantity, verdict;
-  std::vector<double> value, limit, margin, time, runs, broken_in;
+  std::vector<double> value, limit, margin, time, runs, exceeded_in;
   for (const Verdict& v : verdicts) {
     clause.emplace_back(v.limit.clause, v.limit.text);
     quantity.emplace_back(v.limit.quantity, v.unit);
-    verdict.emplace_back(v.word(), v.judged() ? v.found.place() : v.found.why);
+    verdict.emplace_back(v.word(), v.evaluated() ? v.found.place() : v.found.why);
     value.push_back(v.found.value);
     limit.push_back(v.limit.value);
-    margin.push_back(v.judged() ? v.margin() : unknown);
+    margin.push_back(v.evaluated() ? v.margin() : unknown);
     time.push_back(v.found.time);
     runs.push_back(static_cast<double>(v.runs));
-    broken_in.push_back(static_cast<double>(v.broken_in));
+    exceeded_in.push_back(static_cast<double>(v.exceeded_in));
   }
   recorder.tables({{"/verdicts/clause", clause}, {"/verdicts/quantity", quantity}, {"/verdicts/verdict", verdict}});
   const std::vector<std::size_t> shape = {verdicts.size()};
@@ -91,7 +92,7 @@ void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts) {
                      {"/verdicts/margin", shape, margin, "1"},
                      {"/verdicts/time", shape, time, "s"},
                      {"/verdicts/runs", shape, runs, "1"},
-                     {"/verdicts/broken_in", shape, broken_in, "1"}});
+                     {"/verdicts/broken_in", shape, exceeded_in, "1"}});
 }
 
 }  // namespace traverse::results

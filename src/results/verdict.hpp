@@ -1,4 +1,4 @@
-// What a run says of the limits that the user has set.
+// The verdicts of a run on the limits of the user.
 #pragma once
 
 #include <functional>
@@ -11,14 +11,14 @@
 
 namespace traverse::results {
 
-/// The greatest value that a run has seen of a quantity, or why there is none.
+/// The greatest value of a quantity in a run, or the reason why it is unknown.
 struct EvaluatedQuantity {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double value = unknown;  // a magnitude
   double time = unknown;   // s
-  double x = unknown;      // m, of a place on the bridge
-  std::string thing{};     // what else it belongs to: "vehicle 3, rear_wheel"; "train A3 at 64 m/s (230 km/h)"
-  std::string why{};       // it is not known; empty: it is
+  double x = unknown;      // m, a place on the bridge
+  std::string thing{};     // another object: "vehicle 3, rear_wheel"; "train A3 at 64 m/s (230 km/h)"
+  std::string why{};       // the reason why it is unknown; empty: it is known
 
   /// "x = 12.5 m", "vehicle 3, rear_wheel"
   std::string place() const;
@@ -28,33 +28,33 @@ struct Verdict {
   options::VerdictLimit limit;
   std::string unit;
   EvaluatedQuantity found;
-  std::size_t runs = 1, broken_in = 0;  // runs that know the quantity, and those that break the limit
+  std::size_t runs = 1, exceeded_in = 0;  // number of runs with this quantity, and of those that exceed the limit
 
-  bool judged() const { return found.why.empty(); }
-  bool kept() const { return found.value <= limit.value; }
-  /// What is left to the limit, over it: below 0 where it is broken.
+  bool evaluated() const { return found.why.empty(); }
+  bool within_limit() const { return found.value <= limit.value; }
+  /// The remaining part of the limit, relative to it: below 0 if it is exceeded.
   double margin() const { return 1.0 - found.value / limit.value; }
   /// "kept", "broken" or "not judged".
   std::string word() const;
 };
 
-/// One line each, and behind them what is unusual in their scene.
+/// Prints one line for each verdict, followed by unusual input of their scene.
 void print_verdicts(const std::vector<Verdict>& verdicts, const std::vector<std::string>& unusual);
 
-/// What many runs have found of each limit.
-struct Judged {
+/// The results of many runs for each limit.
+struct LimitResults {
   std::vector<options::VerdictLimit> limits;
-  std::vector<double> value, x;  // [runs][limits], EvaluatedQuantity::unknown where a run does not know; m
-  std::vector<std::string> why;  // [limits], of runs that do not know
+  std::vector<double> value, x;  // [runs][limits], EvaluatedQuantity::unknown if a run does not have it; m
+  std::vector<std::string> why;  // [limits], of runs without the quantity
 
-  Judged() = default;
-  Judged(const std::vector<options::VerdictLimit>& by, std::size_t runs)
+  LimitResults() = default;
+  LimitResults(const std::vector<options::VerdictLimit>& by, std::size_t runs)
       : limits(by), value(runs * by.size(), EvaluatedQuantity::unknown), x(value), why(by.size()) {}
 };
 /// A verdict on each limit by the run with the greatest value; run_text(i) names run i.
-std::vector<Verdict> worst_of(const Judged& judged, const std::function<std::string(std::size_t)>& run_text);
+std::vector<Verdict> worst_of(const LimitResults& results, const std::function<std::string(std::size_t)>& run_text);
 
-/// Into /verdicts of the file.
+/// Writes /verdicts of the results file.
 void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts);
 
 }  // namespace traverse::results

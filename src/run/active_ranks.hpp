@@ -1,4 +1,4 @@
-// A run by some of the ranks, the first ones, while the others wait without taking a processor's time.
+// Runs on the first ranks only, while the others wait without use of a processor.
 #pragma once
 
 #include <mpi.h>
@@ -7,8 +7,8 @@
 
 namespace traverse::app {
 
-/// Collective. Runs `work` on the first `count` ranks of comm, which get a communicator of their own. Returns its
-/// status on all ranks; what it throws is thrown there, and is its status to the others.
+/// Collective. Runs `work` on the first `count` ranks of comm in a separate communicator. Returns its status on all
+/// ranks. An exception is thrown on the working ranks; the others get its status.
 int run_on_first(MPI_Comm comm, int count, const std::function<int(MPI_Comm)>& work);
 
 }  // namespace traverse::app

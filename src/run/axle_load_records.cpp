@@ -7,9 +7,9 @@
 namespace traverse::app {
 namespace {
 
-constexpr double shared_end = 2e-3;  // of a step: instants closer than half of this share the end of a step
+constexpr double same_step = 2e-3;  // relative to the step: instants within half of this share the end of a step
 
-/// The contacts of wheels, without further points of the same wheel.
+/// The contacts of wheels, each with its first contact point only.
 std::vector<const train::WheelContact*> first_points(const train::Fleet& fleet) {
   std::vector<const train::WheelContact*> wheels;
   for (const train::WheelContact& c : fleet.wheels)
@@ -19,58 +19,58 @@ std::vector<const train::WheelContact*> first_points(const train::Fleet& fleet) 
 
 }  // namespace
 
-std::vector<AxleLoadRecords::Due> AxleLoadRecords::due_of(const Scene& scene) {
-  std::vector<Due> due;
+std::vector<AxleLoadRecords::Event> AxleLoadRecords::events_of(const Scene& scene) {
+  std::vector<Event> events;
   std::size_t wheel = 0;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
     const base::SpeedLaw law = train::law_of(scene.train, i);
     for (const double start : wheels_at_start(scene, i)) {
       for (const double place : scene.output.passages)
         if (const double time = law.time_of(place - start); time > 0.0 && std::isfinite(time))
-          due.push_back({time, place, wheel});
+          events.push_back({time, place, wheel});
       ++wheel;
     }
   }
-  std::stable_sort(due.begin(), due.end(), [](const Due& a, const Due& b) { return a.time < b.time; });
-  return due;
+  std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
+  return events;
 }
 
 std::vector<double> axle_passage_times(const Scene& scene) {
   std::vector<double> times;
-  for (const AxleLoadRecords::Due& due : AxleLoadRecords::due_of(scene)) times.push_back(due.time);
+  for (const AxleLoadRecords::Event& event : AxleLoadRecords::events_of(scene)) times.push_back(event.time);
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 
 AxleLoadRecords::AxleLoadRecords(const Scene& scene, double time_step)
-    : due_(due_of(scene)), tolerance_(shared_end * time_step) {}
+    : events_(events_of(scene)), tolerance_(same_step * time_step) {}
 
 void AxleLoadRecords::add(double t, const train::Fleet& fleet) {
-  if (due_.empty()) return;
+  if (events_.empty()) return;
   const auto wheels = first_points(fleet);
   if (at_start_.empty())
     for (const train::WheelContact* c : wheels) at_start_.push_back(fleet.load(*c).normal);
-  for (; next_ < due_.size() && due_[next_].time <= t + tolerance_; ++next_) {
-    const Due& due = due_[next_];
-    const train::WheelContact& c = *wheels[due.wheel];
-    const double ahead = due.place - fleet.coordinates(c).x(), speed = fleet.velocities(c).x();
-    const double late = speed != 0.0 ? ahead / speed : 0.0;
-    found_.push_back({t + late, due.place, speed, fleet.load(c).normal, at_start_[due.wheel], due.wheel});
+  for (; next_ < events_.size() && events_[next_].time <= t + tolerance_; ++next_) {
+    const Event& event = events_[next_];
+    const train::WheelContact& c = *wheels[event.wheel];
+    const double distance = event.place - fleet.coordinates(c).x(), speed = fleet.velocities(c).x();
+    const double delay = speed != 0.0 ? distance / speed : 0.0;
+    records_.push_back({t + delay, event.place, speed, fleet.load(c).normal, at_start_[event.wheel], event.wheel});
   }
 }
 
 std::vector<results::Recorder::Dataset> AxleLoadRecords::datasets() const {
   std::vector<results::Recorder::Dataset> sets;
-  const auto column = [&](const char* name, double Found::*member, const char* unit) {
+  const auto column = [&](const char* name, double Record::*member, const char* unit) {
     std::vector<double> values;
-    for (const Found& found : found_) values.push_back(found.*member);
+    for (const Record& record : records_) values.push_back(record.*member);
     sets.push_back({std::string("/passages/") + name, {values.size()}, std::move(values), unit});
   };
-  column("x", &Found::place, "m");
-  column("time", &Found::time, "s");
-  column("speed", &Found::speed, "m/s");
-  column("normal_force", &Found::force, "N");
-  column("force_at_start", &Found::force_at_start, "N");
+  column("x", &Record::place, "m");
+  column("time", &Record::time, "s");
+  column("speed", &Record::speed, "m/s");
+  column("normal_force", &Record::force, "N");
+  column("force_at_start", &Record::force_at_start, "N");
   return sets;
 }
 
@@ -79,7 +79,7 @@ std::vector<std::pair<std::string, std::string>> AxleLoadRecords::wheels(const t
   for (const train::Member& member : fleet.members)
     for (const train::Wheel& wheel : member.type->wheels)
       names.emplace_back(std::to_string(&member - fleet.members.data()), wheel.name);
-  for (const Found& found : found_) rows.push_back(names[found.wheel]);
+  for (const Record& record : records_) rows.push_back(names[record.wheel]);
   return rows;
 }
 

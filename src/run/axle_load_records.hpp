@@ -1,6 +1,5 @@
-// When each wheel passes given places of the track, and the force that it presses with there, as scales in a track
-// weigh a train that goes over them. A train whose speed is prescribed passes at times known beforehand, at which steps
-// end.
+// Records when each wheel passes given places of the track, and its normal force there, as axle load scales in the
+// track measure it. If the speed is prescribed, the times are known in advance and steps end at them.
 #pragma once
 
 #include <cstddef>
@@ -15,43 +14,43 @@
 
 namespace traverse::app {
 
-/// Times at which wheels pass the places of output_passages, ascending, s; as far as these are ahead of them.
+/// Future times at which wheels pass the places of output_passages, ascending, s.
 std::vector<double> axle_passage_times(const Scene& scene);
 
 class AxleLoadRecords {
  public:
   AxleLoadRecords() = default;
-  /// time_step: the longest, s.
+  /// time_step: the longest one, s.
   AxleLoadRecords(const Scene& scene, double time_step);
 
-  /// The next instant that was observed; the first one tells the forces at rest.
+  /// Evaluates the next observed instant; the first one sets the static forces.
   void add(double t, const train::Fleet& fleet);
-  /// What has been found, for the results file.
+  /// The records, for the results file.
   std::vector<results::Recorder::Dataset> datasets() const;
-  /// Number of the vehicle and name of the wheel, a row a passage.
+  /// Number of the vehicle and name of the wheel for each passage.
   std::vector<std::pair<std::string, std::string>> wheels(const train::Fleet& fleet) const;
-  bool empty() const { return found_.empty(); }
-  void keep(base::Bytes& bytes) { bytes(found_, at_start_, next_); }
+  bool empty() const { return records_.empty(); }
+  void keep(base::Bytes& bytes) { bytes(records_, at_start_, next_); }
 
  private:
-  struct Due {
+  struct Event {
     double time = 0.0, place = 0.0;  // s, m
-    std::size_t wheel = 0;           // in the order of the fleet, without further points of contact
+    std::size_t wheel = 0;           // in the order of the fleet, without further contact points
   };
-  struct Found {
+  struct Record {
     double time = 0.0, place = 0.0;            // s, m
     double speed = 0.0;                        // m/s
     double force = 0.0, force_at_start = 0.0;  // N, normal
     std::size_t wheel = 0;
   };
-  static std::vector<Due> due_of(const Scene& scene);
+  static std::vector<Event> events_of(const Scene& scene);
   friend std::vector<double> axle_passage_times(const Scene& scene);
 
-  std::vector<Due> due_;    // in the order of their times
-  double tolerance_ = 0.0;  // s
+  std::vector<Event> events_;  // in the order of time
+  double tolerance_ = 0.0;     // s
   std::size_t next_ = 0;
   std::vector<double> at_start_;  // N
-  std::vector<Found> found_;
+  std::vector<Record> records_;
 };
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
-// Checks the names of output files and checkpoint, validates a restart against the digest of the scene, and writes
-// checkpoints so rarely that they cost at most a twentieth of the run time.
+// Checks the names of output files and checkpoint, validates a restart by the digest of the scene, and writes
+// checkpoints so rarely that they use at most a twentieth of the run time.
 #include "run/checkpoints.hpp"
 
 #include <fmt/format.h>
@@ -20,43 +20,43 @@
 namespace traverse::app {
 namespace {
 
-constexpr double usual_interval = 900.0;  // s
-constexpr double cost_factor = 20.0;      // checkpoints take at most a twentieth of the time
-constexpr unsigned steps_a_look = 16;     // at the clock
+constexpr double default_interval = 900.0;  // s
+constexpr double cost_factor = 20.0;        // ratio of the interval to the duration of writing a checkpoint
+constexpr unsigned calls_per_reading = 16;  // calls of wanted() between two readings of the clock
 constexpr std::array<std::string_view, 11> free_options = {
     "ts_max_time",  "scene_tail",   "scene_name",   "restart",         "checkpoint_interval", "output_file",
     "output_quiet", "options_file", "ts_max_steps", "checkpoint_file", "accuracy_cache"};
 
-std::string given(const char* name) {
+std::string option_value(const char* name) {
   const options::Entry* entry = options::in_force().find(name);
   return entry == nullptr ? std::string() : entry->value;
 }
 
 std::string path_for(const Scene& scene) {
-  std::string asked = given("checkpoint_file");
-  if (asked == "none") return "";
-  if (!asked.empty()) return asked;
+  std::string name = option_value("checkpoint_file");
+  if (name == "none") return "";
+  if (!name.empty()) return name;
   return scene.output.file.empty() ? "" : scene.output.file + ".checkpoint";
 }
 
-/// InputError where results and checkpoint, each with its name until it is complete, would be one file.
-void check_that_outputs_differ(const std::string& results, const std::string& checkpoint) {
+/// InputError if results and checkpoint, including their temporary files, would be the same file.
+void check_distinct_outputs(const std::string& results, const std::string& checkpoint) {
   if (checkpoint.empty() || results.empty()) return;
   std::error_code ignored;
   const auto place = [&](const std::string& name) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(name), ignored);
   };
   for (const std::string& name : {results, results + ".part"})
-    for (const std::string& other : {checkpoint, results::aside_of_checkpoint(checkpoint)})
+    for (const std::string& other : {checkpoint, results::temporary_checkpoint(checkpoint)})
       if (place(name) == place(other))
         throw InputError(fmt::format("checkpoint_file = {}: the results file {} would be written to the same place",
                                      checkpoint, results));
 }
 
-/// InputError where the results of another run are to be read and written over; a study or a run that goes on does so.
-void check_that_none_is_read(const Scene& scene) {
-  const bool goes_on = !given("restart").empty() || (scene.study && scene.study->resume);
-  if (scene.output.file.empty() || goes_on) return;
+/// InputError if the results file is an input of the run; a continued study or run is an exception.
+void check_output_is_no_input(const Scene& scene) {
+  const bool continued = !option_value("restart").empty() || (scene.study && scene.study->resume);
+  if (scene.output.file.empty() || continued) return;
   std::vector<std::string> inputs = {results::opened_origin()};
   for (const options::InputText& input : options::inputs_read()) inputs.push_back(input.name);
   std::error_code ignored;
@@ -65,16 +65,16 @@ void check_that_none_is_read(const Scene& scene) {
       throw InputError(fmt::format("output_file = {}: the run reads this file; name another one", scene.output.file));
 }
 
-/// The results of a run that goes on are its own, unless the command line names another file for them. The name in a
-/// checkpoint ends as one in a file of options does.
-void take_results_file(const std::string& earlier, const std::string& restart, Scene& scene) {
+/// A continued run appends to its results file, unless the command line gives another one. The name in a checkpoint
+/// must be valid as in an options file.
+void set_results_file(const std::string& earlier, const std::string& restart, Scene& scene) {
   const options::Entry* output = options::in_force().find("output_file");
-  const bool asked = output != nullptr && !output->from_file() && !results::is_new_name(*output);
-  if (asked && earlier.empty() && !scene.output.file.empty())
+  const bool new_name = output != nullptr && !output->from_file() && !results::is_new_name(*output);
+  if (new_name && earlier.empty() && !scene.output.file.empty())
     throw InputError("restart = " + restart +
                      ": that run had no results file, its rows so far are nowhere; go on with -output_file none, or "
                      "begin anew without -restart");
-  if (asked) return;
+  if (new_name) return;
   if (!earlier.empty() && !earlier.ends_with(".h5"))
     throw InputError("restart = " + restart + ": the name of its results file, " + earlier +
                      ", does not end in .h5; name the file with -output_file");
@@ -86,9 +86,9 @@ void take_results_file(const std::string& earlier, const std::string& restart, S
 results::Place claim_outputs(MPI_Comm comm, const Scene& scene) {
   const bool one_run = scene.analysis == Analysis::transient && !scene.study && !scene.sweep;
   const std::string checkpoint = one_run ? path_for(scene) : "";
-  check_that_outputs_differ(scene.output.file, checkpoint);
+  check_distinct_outputs(scene.output.file, checkpoint);
   results::Place place = results::claim_place(comm, scene.output.file);
-  check_that_none_is_read(scene);
+  check_output_is_no_input(scene);
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   std::string failure;
@@ -104,7 +104,7 @@ results::Place claim_outputs(MPI_Comm comm, const Scene& scene) {
 std::string digest_of(const Scene& scene) { return digest_of(scene, free_options, options::tables_read()); }
 
 std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
-  const std::string path = given("restart");
+  const std::string path = option_value("restart");
   if (path.empty()) return std::nullopt;
   if (scene.study || scene.sweep)
     throw InputError("restart = " + path + ": studies and sweeps have no checkpoints; a study goes on by study_resume");
@@ -115,36 +115,36 @@ std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
     throw InputError("restart = " + path +
                      ": is of another scene; only ts_max_time, scene_tail, ts_max_steps and the names of files may be "
                      "changed");
-  take_results_file(earlier.results.file, path, scene);
+  set_results_file(earlier.results.file, path, scene);
   return earlier;
 }
 
-Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& watch,
-                         results::Recorder& recorder, results::Checkpoint so_far)
+Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& observer,
+                         results::Recorder& recorder, results::Checkpoint state)
     : comm_(comm),
       passage_(passage),
-      watch_(watch),
+      observer_(observer),
       recorder_(recorder),
-      so_far_(std::move(so_far)),
-      own_(results::id_at(given("restart").c_str())),
-      interval_(usual_interval) {
+      state_(std::move(state)),
+      own_file_(results::id_at(option_value("restart").c_str())),
+      interval_(default_interval) {
   if (scene.analysis != Analysis::transient) return;
   path_ = path_for(scene);
-  if (const std::string interval = given("checkpoint_interval"); !interval.empty())
+  if (const std::string interval = option_value("checkpoint_interval"); !interval.empty())
     (void)options::parse_number(interval, interval_);
   if (trouble_ = passage.no_archive(); !trouble_.empty()) path_.clear();
-  so_far_.digest = digest_of(scene);
-  so_far_.end_time = passage.plan().end_time;
-  so_far_.time_step = passage.plan().time_step;
-  so_far_.interval = passage.plan().interval;
-  so_far_.stored = passage.plan().stored;
-  so_far_.of_ranks.clear();
+  state_.digest = digest_of(scene);
+  state_.end_time = passage.plan().end_time;
+  state_.time_step = passage.plan().time_step;
+  state_.interval = passage.plan().interval;
+  state_.stored = passage.plan().stored;
+  state_.of_ranks.clear();
 }
 
 bool Checkpoints::wanted() {
   if (!possible()) return false;
-  if (checkpoint_asked()) return true;
-  if (interval_ == 0.0 || ++looks_ % steps_a_look != 0) return false;
+  if (checkpoint_requested()) return true;
+  if (interval_ == 0.0 || ++calls_ % calls_per_reading != 0) return false;
   return std::chrono::duration<double>(Clock::now() - last_).count() > std::max(interval_, cost_factor * cost_);
 }
 
@@ -153,18 +153,19 @@ void Checkpoints::write(double time, double wall_seconds) {
   const auto begin = Clock::now();
   base::Archive archive(comm_);
   passage_.keep(archive);
-  watch_.keep(archive);
-  so_far_.results = recorder_.secure();
-  so_far_.time = time;
-  so_far_.wall_seconds = wall_seconds;
-  results::write_checkpoint(comm_, path_, so_far_, archive.take());
-  own_ = results::id_at(path_.c_str());
+  observer_.keep(archive);
+  state_.results = recorder_.secure();
+  state_.time = time;
+  state_.wall_seconds = wall_seconds;
+  results::write_checkpoint(comm_, path_, state_, archive.release());
+  own_file_ = results::id_at(path_.c_str());
   last_ = Clock::now();
   cost_ = std::chrono::duration<double>(last_ - begin).count();
 }
 
 void Checkpoints::forget() {
-  if (possible() && own_.there && results::id_at(path_.c_str()) == own_) results::remove_checkpoint(comm_, path_);
+  if (possible() && own_file_.there && results::id_at(path_.c_str()) == own_file_)
+    results::remove_checkpoint(comm_, path_);
 }
 
 }  // namespace traverse::app

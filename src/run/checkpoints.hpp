@@ -1,4 +1,4 @@
-// When a single run in time writes what it could go on from: by the clock, and where signals ask for it.
+// Writes checkpoints of a single run in time, at intervals of the clock and on signals.
 #pragma once
 
 #include <mpi.h>
@@ -15,35 +15,35 @@
 
 namespace traverse::app {
 
-/// Of all that results follow from: the options, but for those that only say how long a run goes on, where its files
-/// are and what is shown, and the files that they name.
+/// Digest of all inputs that determine the results: the options, except for those of duration, file names and display,
+/// and the files that they name.
 std::string digest_of(const Scene& scene);
 
-/// Collective. The checkpoint that the option `restart` names; none where it is not given. InputError where it is of
-/// another scene, or of a kind of run that has no checkpoints. The scene takes its results file from it where the
-/// command line names none.
+/// Collective. The checkpoint of the option `restart`; empty if it is not given. InputError if it belongs to another
+/// scene, or if the kind of run has no checkpoints. Sets the scene's results file from the checkpoint if the command
+/// line does not give one.
 std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene);
 
-/// Collective. The place of the results, and a look at that of the checkpoints: InputError or FileError where a file
-/// would be written over that is no output of a run before, before anything is computed.
+/// Collective. Claims the place of the results and checks that of the checkpoint, before any computation. InputError or
+/// FileError if a file would be overwritten that is not the output of an earlier run.
 results::Place claim_outputs(MPI_Comm comm, const Scene& scene);
 
 class Checkpoints {
  public:
-  /// Those of a run whose parts must outlive it. `so_far`: all that follows from neither.
-  Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& watch, results::Recorder& recorder,
-              results::Checkpoint so_far);
+  /// For a run whose parts must outlive this object. state: all data that are in none of the parts.
+  Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& observer, results::Recorder& recorder,
+              results::Checkpoint state);
 
-  /// Whether one is wanted now, as this rank sees it. It costs no more than a look at the clock now and then.
+  /// Whether this rank requires a checkpoint now. The clock is read at intervals only.
   bool wanted();
-  /// Collective. FileError where it cannot be written. wall_seconds: of the time loop.
+  /// Collective. FileError if it cannot be written. wall_seconds: duration of the time loop.
   void write(double time, double wall_seconds);
-  /// Whether there are any: not where this run has no file for them or cannot write its state.
+  /// False if the run has no file for checkpoints or cannot write its state.
   bool possible() const { return !path_.empty(); }
   const std::string& path() const { return path_; }
-  /// Why there are none, where it is not that nobody wants them; empty: there are.
+  /// The reason why checkpoints are not possible; empty if they are possible or not wanted.
   const std::string& trouble() const { return trouble_; }
-  /// The run has ended by itself: it needs none any more, of those that it has written or gone on from.
+  /// After a complete run: removes the checkpoint that the run has written or was restarted from.
   void forget();
 
  private:
@@ -51,15 +51,15 @@ class Checkpoints {
 
   MPI_Comm comm_;
   Passage& passage_;
-  RunObserver& watch_;
+  RunObserver& observer_;
   results::Recorder& recorder_;
-  results::Checkpoint so_far_;
+  results::Checkpoint state_;
   std::string path_, trouble_;
-  results::FileId own_;  // the file that the run has written or goes on from
-  double interval_;      // s; 0: only where a signal asks
-  double cost_ = 0.0;    // s, of the last one
+  results::FileId own_file_;  // the file that the run has written or was restarted from
+  double interval_;           // s; 0: only on a signal
+  double cost_ = 0.0;         // s, duration of the last write
   Clock::time_point last_ = Clock::now();
-  unsigned looks_ = 0;
+  unsigned calls_ = 0;
 };
 
 }  // namespace traverse::app

@@ -15,54 +15,56 @@
 namespace traverse::app {
 namespace {
 
-constexpr double least_frequency = 30.0;  // Hz; EN 1990, A2.4.4.2.1
-constexpr double of_the_first = 1.5;      // times the first frequency, in the same place
-constexpr std::size_t counted = 3;        // distinct frequencies
-constexpr double wanted_instants = 20.0;  // in a period of the frequency that counts
-constexpr double least_instants = 8.0;    // in the same
-constexpr double slack_of_spacing = 1e-9;
-constexpr double at_an_instant = 1e-6;     // of the interval
-constexpr double copies = 1e-6;            // relative distance below which two frequencies are one
-constexpr int cheap_nodes = 1000;          // up to which frequencies take no time
-constexpr double extremes_behind = 1.5;    // instants: the last one after which an extreme is known from the next
-constexpr double unsettled_periods = 3.0;  // of the filter's frequency, until an end has died away
+constexpr double least_frequency = 30.0;    // Hz; EN 1990, A2.4.4.2.1
+constexpr double first_factor = 1.5;        // factor of the first frequency; EN 1990, A2.4.4.2.1
+constexpr std::size_t frequency_count = 3;  // number of distinct frequencies
+constexpr double wanted_instants = 20.0;    // in a period of the cut-off frequency
+constexpr double least_instants = 8.0;      // in a period of the cut-off frequency
+constexpr double interval_tolerance = 1e-9;
+constexpr double instant_tolerance = 1e-6;  // relative to the interval
+constexpr double same_frequency = 1e-6;     // relative difference below which two frequencies are equal
+constexpr int cheap_nodes = 1000;           // largest number of nodes for which computing frequencies is cheap
+constexpr double extreme_delay = 1.5;       // instants: an extreme is known one and a half instants later
+constexpr double unsettled_periods = 3.0;   // periods of the cut-off frequency, until the effect of an end has decayed
 
-/// rad/s, ascending: those that differ.
+/// The distinct frequencies, ascending, rad/s.
 std::vector<double> distinct_of_modes(const std::vector<double>& omega) {
-  std::vector<double> found;
+  std::vector<double> frequencies;
   for (const double one : omega)
-    if (one > 0.0 && (found.empty() || one > found.back() * (1.0 + copies))) found.push_back(one);
-  found.resize(std::min(found.size(), counted));
-  return found;
+    if (one > 0.0 && (frequencies.empty() || one > frequencies.back() * (1.0 + same_frequency)))
+      frequencies.push_back(one);
+  frequencies.resize(std::min(frequencies.size(), frequency_count));
+  return frequencies;
 }
 
 }  // namespace
 
 std::vector<double> first_frequencies(const SharedBeam& shared) {
-  std::vector<double> found;
+  std::vector<double> frequencies;
   if (shared.beam->model().given)
-    found = distinct_of_modes(shared.beam->model().given->omega);
+    frequencies = distinct_of_modes(shared.beam->model().given->omega);
   else if (const beam::Beam& beam = *shared.beam; beam.rail() == nullptr && !beam.model().nonlinear())
-    found = modes::distinct_frequencies(beam, counted);
+    frequencies = modes::distinct_frequencies(beam, frequency_count);
   else
-    found = modes::distinct_frequencies(beam::Beam(beam.comm(), linearised(bridge_alone(beam.model()))), counted);
-  for (double& omega : found) omega /= 2.0 * std::numbers::pi;
-  return found;
+    frequencies =
+        modes::distinct_frequencies(beam::Beam(beam.comm(), linearised(bridge_alone(beam.model()))), frequency_count);
+  for (double& omega : frequencies) omega /= 2.0 * std::numbers::pi;
+  return frequencies;
 }
 
 bool filters_deck(const Scene& scene) {
   return scene.beam && scene.analysis == Analysis::transient && !scene.output.probes.empty() &&
          scene.output.low_pass.value_or(least_frequency) > 0.0 &&
-         (scene.limits_deck_acceleration() || scene.output.low_pass_asked);
+         (scene.limits_deck_acceleration() || scene.output.low_pass_requested);
 }
 
 bool frequencies_are_cheap(const beam::Beam& beam) {
-  const std::vector<int>& elements = beam.model().elements;  // of which one may have no two frequencies
+  const std::vector<int>& elements = beam.model().elements;  // a mesh with one element may have a single frequency
   return beam.mesh().nodes() <= cheap_nodes && *std::min_element(elements.begin(), elements.end()) > 1;
 }
 
-double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool affordable,
-                             std::vector<std::string>& notes) {
+double cutoff_frequency(const Scene& scene, const SharedBeam& shared, bool affordable,
+                        std::vector<std::string>& notes) {
   if (!shared.beam || scene.output.probes.empty() || scene.analysis != Analysis::transient) return 0.0;
   if (scene.output.low_pass) return *scene.output.low_pass;
   if (!affordable && !shared.modal) {
@@ -73,11 +75,11 @@ double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool 
   }
   const std::vector<double> f = first_frequencies(shared);
   const double first = f.empty() ? 0.0 : f.front(), third = f.empty() ? 0.0 : f.back();
-  const double greatest = std::max({least_frequency, of_the_first * first, third});
+  const double greatest = std::max({least_frequency, first_factor * first, third});
   notes.push_back(fmt::format(
       "deck accelerations without and with a low-pass at {:.6g} Hz: the greatest of 30 Hz, 1.5 f1 = {:.6g} Hz and "
       "f{} = {:.6g} Hz; -output_lowpass changes it",
-      greatest, of_the_first * first, f.size(), third));
+      greatest, first_factor * first, f.size(), third));
   return greatest;
 }
 
@@ -87,14 +89,14 @@ double longest_spacing_for(double frequency) { return 1.0 / (least_instants * fr
 
 double unsettled_end(double frequency) { return unsettled_periods / frequency; }
 
-std::string no_filter(double frequency, const Plan& plan, std::size_t series, const char* what) {
-  if (plan.interval > longest_spacing_for(frequency) * (1.0 + slack_of_spacing))
+std::string filter_obstacle(double frequency, const Plan& plan, std::size_t series, const char* what) {
+  if (plan.interval > longest_spacing_for(frequency) * (1.0 + interval_tolerance))
     return fmt::format("samples or steps of {:g} s are too long for {:g} Hz; allowed: at most {:g} s", plan.interval,
                        frequency, longest_spacing_for(frequency));
   const double numbers = static_cast<double>(series) * (1.0 + plan.end_time / plan.interval);
-  if (numbers > DeckAcceleration::most_kept)
+  if (numbers > DeckAcceleration::max_stored)
     return fmt::format("{} {} at {:.3g} instants take more than {:.0f} MB; take fewer of them", series, what,
-                       1.0 + plan.end_time / plan.interval, DeckAcceleration::most_kept * sizeof(double) / 1048576.0);
+                       1.0 + plan.end_time / plan.interval, DeckAcceleration::max_stored * sizeof(double) / 1048576.0);
   return {};
 }
 
@@ -103,13 +105,13 @@ DeckAcceleration::DeckAcceleration(double frequency, const Plan& plan, const std
       interval_(plan.interval),
       stored_each_(static_cast<std::size_t>(plan.stored)),
       stations_(stations) {
-  kept_.reserve(stations.size() * static_cast<std::size_t>(2.0 + plan.end_time / plan.interval));
+  rows_.reserve(stations.size() * static_cast<std::size_t>(2.0 + plan.end_time / plan.interval));
 }
 
 void DeckAcceleration::add(double t, std::span<const beam::Response> probes) {
   const double due = static_cast<double>(instants_) * interval_;
-  if (std::abs(t - due) > at_an_instant * interval_) return;
-  for (const beam::Response& probe : probes) kept_.push_back(probe.acceleration);
+  if (std::abs(t - due) > instant_tolerance * interval_) return;
+  for (const beam::Response& probe : probes) rows_.push_back(probe.acceleration);
   ++instants_;
 }
 
@@ -121,9 +123,9 @@ std::size_t filter(std::vector<double>& rows, std::size_t count, double frequenc
 }
 
 void DeckAcceleration::finish(ResponseExtremes& peaks) {
-  const std::size_t settled = filter(kept_, stations_.size(), frequency_, interval_);
-  settled_until_ = (static_cast<double>(settled) - extremes_behind) * interval_;
-  peaks.add_low_passed(std::span<const double>(kept_).first(settled * stations_.size()), interval_);
+  const std::size_t settled = filter(rows_, stations_.size(), frequency_, interval_);
+  settled_until_ = (static_cast<double>(settled) - extreme_delay) * interval_;
+  peaks.add_low_passed(std::span<const double>(rows_).first(settled * stations_.size()), interval_);
 }
 
 results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,
@@ -136,8 +138,8 @@ results::Recorder::Dataset DeckAcceleration::stored() const {
   const std::size_t n = stations_.size();
   results::Recorder::Dataset set{"/probes/acceleration_lowpass", {0, n}, {}, "m/s2"};
   for (std::size_t k = 0; k < instants_; k += stored_each_, ++set.shape[0])
-    set.values.insert(set.values.end(), kept_.begin() + static_cast<std::ptrdiff_t>(k * n),
-                      kept_.begin() + static_cast<std::ptrdiff_t>((k + 1) * n));
+    set.values.insert(set.values.end(), rows_.begin() + static_cast<std::ptrdiff_t>(k * n),
+                      rows_.begin() + static_cast<std::ptrdiff_t>((k + 1) * n));
   return set;
 }
 

@@ -1,4 +1,4 @@
-// The deck's acceleration as practice judges it: up to a frequency that counts, above which it is filtered out.
+// The deck acceleration below a cut-off frequency, by a low-pass filter (EN 1990, A2.4.4.2.1).
 #pragma once
 
 #include <cstddef>
@@ -16,67 +16,66 @@
 
 namespace traverse::app {
 
-/// Whether a transient run of the scene filters the accelerations of its probes, where its steps allow.
+/// Whether a transient run of the scene filters the accelerations of its probes, if its steps are short enough.
 bool filters_deck(const Scene& scene);
 
-/// Whether there are two frequencies for certain, and finding them takes no time.
+/// Whether at least two frequencies exist and computing them is cheap.
 bool frequencies_are_cheap(const beam::Beam& beam);
 
-/// Collective. Hz, ascending: the first three distinct frequencies of bending; with model_modes those of its modes.
+/// Collective. The first three distinct bending frequencies, Hz, ascending; with model_modes those of its modes.
 std::vector<double> first_frequencies(const SharedBeam& shared);
 
-/// Collective, after SharedBeam::prepare. The frequency (Hz) up to which accelerations count in this scene; 0: they are
-/// not filtered. As the scene says, else the greatest of 30 Hz, 1.5 f1 and f3, of the bridge's distinct frequencies of
-/// bending. affordable: whether to compute these. Says in `notes` what was chosen.
-double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool affordable,
-                             std::vector<std::string>& notes);
+/// Collective, after SharedBeam::prepare. The cut-off frequency (Hz) of deck accelerations in this scene; 0: they are
+/// not filtered. It is given by the scene, or is the greatest of 30 Hz, 1.5 f1 and f3, the bridge's distinct bending
+/// frequencies. affordable: whether to compute these. Appends the choice to `notes`.
+double cutoff_frequency(const Scene& scene, const SharedBeam& shared, bool affordable, std::vector<std::string>& notes);
 
-/// Longest distance between instants, s, at which an acceleration is filtered well.
+/// The interval of instants, s, for accurate filtering.
 double spacing_for(double frequency);
-/// The same beyond which it is not filtered.
+/// The longest interval with which an acceleration is filtered, s.
 double longest_spacing_for(double frequency);
 
-/// The end of a series, s, in which the filter knows too little of what follows: there it gives about what it was
-/// given, with all that is above its frequency.
+/// The duration of the end of a series, s, in which the filter lacks the later signal: there the filtered signal may
+/// contain components above the cut-off frequency.
 double unsettled_end(double frequency);
 
-/// Why so many series of a run of this plan cannot be filtered at this frequency; empty where they can. what: "probes",
-/// which fewer output_probes make fewer, or "wheels".
-std::string no_filter(double frequency, const Plan& plan, std::size_t series, const char* what = "probes");
+/// The reason why this number of series of a run with this plan cannot be filtered; empty if they can. what: "probes",
+/// which output_probes reduces, or "wheels".
+std::string filter_obstacle(double frequency, const Plan& plan, std::size_t series, const char* what = "probes");
 
-/// The peak of accelerations that have been filtered; rows: of all stations at each instant.
+/// The peak of filtered accelerations; rows: all stations at each instant.
 results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,
                            double interval);
 
-/// Filters series, rows of `count` at instants `interval` s apart from 0 on. Returns how many of the rows lie before
-/// the unsettled end.
+/// Filters series, rows of `count` values at intervals of `interval` s from 0 on. Returns the number of rows before the
+/// unsettled end.
 std::size_t filter(std::vector<double>& rows, std::size_t count, double frequency, double interval);
 
-/// Keeps the acceleration of every probe at the plan's interval until the end of the run, when it is filtered. Eight
-/// bytes an instant and probe, `most_kept` at most.
+/// Stores the acceleration of every probe at the plan's interval and filters all of them at the end of the run. Memory:
+/// 8 bytes for each instant and probe, at most `max_stored` numbers.
 class DeckAcceleration {
  public:
-  static constexpr double most_kept = 33554432.0;  // numbers, 256 MB
+  static constexpr double max_stored = 33554432.0;  // numbers, 256 MB
 
   DeckAcceleration(double frequency, const Plan& plan, const std::vector<double>& stations);
 
-  /// Takes an instant at a multiple of the plan's interval, and leaves out the others.
+  /// Stores an instant at a multiple of the plan's interval; ignores others.
   void add(double t, std::span<const beam::Response> probes);
-  /// After the last instant, once: filters all series, and adds the extremes before their unsettled ends to the peaks.
+  /// After the last instant, once: filters all series and adds the extremes before their unsettled ends to the peaks.
   void finish(ResponseExtremes& peaks);
   /// After finish. The peak of the whole series.
-  results::LowPassed peak() const { return peak_of(kept_, stations_, frequency_, interval_); }
-  /// Whether that is within the unsettled end.
+  results::LowPassed peak() const { return peak_of(rows_, stations_, frequency_, interval_); }
+  /// Whether the peak is within the unsettled end.
   bool ends_unsettled() const { return peak().extreme.time > settled_until_; }
   /// After finish. The filtered series at the stored samples.
   results::Recorder::Dataset stored() const;
-  void keep(base::Bytes& bytes) { bytes(kept_, instants_); }
+  void keep(base::Bytes& bytes) { bytes(rows_, instants_); }
 
  private:
   double frequency_, interval_;
   std::size_t stored_each_;
   std::vector<double> stations_;
-  std::vector<double> kept_;  // a row of probes for each instant
+  std::vector<double> rows_;  // a row of probes for each instant
   std::size_t instants_ = 0;
   double settled_until_ = 0.0;  // s
 };

@@ -1,5 +1,5 @@
-// Deflections at the nodes from the stored displacement vector, and those inside elements by recovery with the loads of
-// that instant.
+// Computes deflections at the nodes from the stored displacement vector, and those inside elements by recovery with the
+// loads of that instant.
 #include "run/deflected_shape.hpp"
 
 #include <algorithm>
@@ -9,11 +9,11 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t at_once = 4000;  // points inside elements, which take a kilobyte each
+constexpr std::size_t points_per_call = 4000;  // points inside elements in one call; each needs a kilobyte
 
 using Point = beam::ShapePoints::Point;
 
-/// Collective. What this rank knows of the nodes, summed up over all.
+/// Collective. Adds the deflections of the nodes of all ranks.
 void add_nodes(const beam::Beam& beam, const std::vector<double>& v, const std::vector<Point>& points,
                std::vector<double>& deflection) {
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -23,16 +23,16 @@ void add_nodes(const beam::Beam& beam, const std::vector<double>& v, const std::
   MPI_Allreduce(MPI_IN_PLACE, deflection.data(), static_cast<int>(deflection.size()), MPI_DOUBLE, MPI_SUM, beam.comm());
 }
 
-/// Collective. Of points[which[0]], points[which[1]], ...
+/// Collective. Sets the deflections of points[which[0]], points[which[1]], ...
 void fill_inside(const beam::Beam& beam, double self_weight, const LargestDeflection& worst,
                  const std::vector<Point>& points, const std::vector<std::size_t>& which,
                  std::vector<double>& deflection) {
   std::vector<double> stations;
   for (const std::size_t i : which) stations.push_back(points[i].x);
   beam::Recovery recovery(beam, std::move(stations), self_weight);
-  std::vector<beam::Response> found;
-  recovery.evaluate(worst.v.data(), worst.w.data(), worst.a.data(), worst.loads, found);
-  for (std::size_t k = 0; k < which.size(); ++k) deflection[which[k]] = found[k].deflection;
+  std::vector<beam::Response> responses;
+  recovery.evaluate(worst.v.data(), worst.w.data(), worst.a.data(), worst.loads, responses);
+  for (std::size_t k = 0; k < which.size(); ++k) deflection[which[k]] = responses[k].deflection;
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ results::Shape shape_of(const beam::Beam& beam, const Scene& scene, const Larges
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].node < 0) which.push_back(i);
-    if (which.size() < at_once && (i + 1 < points.size() || which.empty())) continue;
+    if (which.size() < points_per_call && (i + 1 < points.size() || which.empty())) continue;
     fill_inside(beam, scene.self_weight ? scene.gravity : 0.0, worst, points, which, out.deflection);
     which.clear();
   }

@@ -1,4 +1,4 @@
-// The bridge's shape at the instant of its largest deflection, as it is stored under /shape.
+// The deflected shape of the bridge at the instant of its largest deflection, stored under /shape.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace traverse::app {
 
-/// All that the deflection at any place follows from: this rank's nodal values and the loads on the bridge.
+/// The data of the deflected shape: this rank's nodal values and the loads on the bridge.
 struct LargestDeflection {
   double time = 0.0;  // s
   std::vector<double> v, w, a;
   std::vector<beam::ElementLoad> loads;
 };
 
-/// Collective. The deflection at the nodes, at the probes and at points between them, with what loads inside an element
-/// add: as the probes have it.
+/// Collective. The deflection at the nodes, at the probes and at points in between, with the contribution of loads
+/// inside elements, as at probes.
 results::Shape shape_of(const beam::Beam& beam, const Scene& scene, const LargestDeflection& worst);
 
 }  // namespace traverse::app

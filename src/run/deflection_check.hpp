@@ -1,4 +1,4 @@
-// Whether a bridge's deflection is one that the theory of small displacements can speak of.
+// Checks whether the theory of small displacements is valid for the bridge's deflection.
 #pragma once
 
 #include <mpi.h>
@@ -7,8 +7,8 @@
 
 namespace traverse::app {
 
-/// A note, printed on the first rank, where the deflection (m) is a large part of the longest span. SolverError where
-/// it is beyond any bridge: some quantity is not in SI units. The same on every rank.
+/// Prints a warning on the first rank if the deflection (m) is a large part of the longest span. SolverError if it is
+/// impossibly large: then some quantity is not in SI units. The same on every rank.
 void check_deflection(MPI_Comm comm, const Scene& scene, double deflection);
 
 }  // namespace traverse::app

@@ -8,8 +8,8 @@
 
 namespace traverse::app {
 
-/// /envelope/deflection, acceleration, moment, shear, each [p,2]: least and greatest, between samples as peaks are;
-/// each with _time (s); moment_shear and shear_moment: the shear, and the moment, at these instants. forces: whether
+/// /envelope/deflection, acceleration, moment, shear, each [p,2]: least and greatest, interpolated between samples;
+/// each with _time (s). moment_shear and shear_moment: the shear, and the moment, at these instants. forces: whether
 /// moments and shears are known.
 std::vector<results::Recorder::Dataset> envelopes(const ResponseExtremes& peaks, bool forces);
 

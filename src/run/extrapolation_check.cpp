@@ -14,9 +14,9 @@
 namespace traverse::app {
 namespace {
 
-constexpr unsigned char loose = 1, pressed = 2, pulled = 4;
+constexpr unsigned char unloaded = 1, compressed = 2, tensioned = 4;
 
-bool lets_go(const beam::FoundationLaw& law) { return law.one_sided || law.gap > 0.0; }
+bool may_separate(const beam::FoundationLaw& law) { return law.one_sided || law.gap > 0.0; }
 
 }  // namespace
 
@@ -25,8 +25,8 @@ ExtrapolationCheck::ExtrapolationCheck(double until, const train::Fleet& fleet, 
   if (until == std::numeric_limits<double>::infinity()) return;
   add_springs(fleet);
   if (beam != nullptr) add_supports(*beam);
-  sleepers_ = {seen_.size(), "a sleeper over a gap"};
-  seen_.push_back(0);
+  sleepers_ = {states_.size(), "a sleeper over a gap"};
+  states_.push_back(0);
 }
 
 void ExtrapolationCheck::add_springs(const train::Fleet& fleet) {
@@ -35,9 +35,9 @@ void ExtrapolationCheck::add_springs(const train::Fleet& fleet) {
     const train::Member& member = fleet.members[vehicle];
     const auto add = [&](const auto& springs, int first, bool torsion) {
       for (std::size_t i = 0; i < springs.size(); ++i) {
-        if (!springs[i].law || !springs[i].law->lets_go()) continue;
-        const auto [kind, is_new] = kinds.try_emplace({member.type, torsion, i}, seen_.size());
-        if (is_new) seen_.push_back(0);
+        if (!springs[i].law || !springs[i].law->can_disengage()) continue;
+        const auto [kind, is_new] = kinds.try_emplace({member.type, torsion, i}, states_.size());
+        if (is_new) states_.push_back(0);
         springs_.push_back({member.unit,
                             first + static_cast<int>(i),
                             torsion,
@@ -54,50 +54,50 @@ void ExtrapolationCheck::add_supports(const beam::BeamModel& beam) {
     const beam::FoundationKind& kind = beam::foundation_kinds[row];
     std::map<std::tuple<double, double, double, bool>, std::size_t> kinds;
     const auto add = [&](std::size_t place, const auto& numbers, std::string name) {
-      const auto [found, is_new] = kinds.try_emplace(numbers, seen_.size());
-      if (is_new) seen_.push_back(0);
+      const auto [found, is_new] = kinds.try_emplace(numbers, states_.size());
+      if (is_new) states_.push_back(0);
       supports_.push_back({row, place, {found->second, std::move(name)}});
     };
     if (kind.points != nullptr) {
       const std::vector<beam::PointFoundation>& points = beam.foundation.*kind.points;
       for (std::size_t i = 0; i < points.size(); ++i) {
         const beam::PointFoundation& p = points[i];
-        if (lets_go(p.law))
+        if (may_separate(p.law))
           add(i, std::tuple{p.k, p.c, p.law.gap, p.law.one_sided},
               fmt::format("the {} foundation at {:g} m", kind.name, p.x));
       }
-    } else if (beam.foundation.*kind.bed && lets_go((beam.foundation.*kind.bed)->law)) {
+    } else if (beam.foundation.*kind.bed && may_separate((beam.foundation.*kind.bed)->law)) {
       for (std::size_t span = 0; span < beam.spans.size(); ++span)
         add(span, std::tuple{0.0, 0.0, 0.0, true}, fmt::format("the {} in span {}", kind.name, span));
     }
   }
 }
 
-void ExtrapolationCheck::see(double t, const Part& part, double force) {
-  const unsigned char now = force == 0.0 ? loose : force < 0.0 ? pressed : pulled;
-  unsigned char& seen = seen_[part.kind];
-  if (t > until_ && (seen & now) == 0 && new_event_.empty())
-    new_event_ = fmt::format("{} {} at {:.3g} s", part.name, now == loose ? "lets go" : "touches", t);
-  seen |= now;
+void ExtrapolationCheck::record(double t, const Part& part, double force) {
+  const unsigned char state = force == 0.0 ? unloaded : force < 0.0 ? compressed : tensioned;
+  unsigned char& states = states_[part.kind];
+  if (t > until_ && (states & state) == 0 && new_event_.empty())
+    new_event_ = fmt::format("{} {} at {:.3g} s", part.name, state == unloaded ? "lets go" : "touches", t);
+  states |= state;
 }
 
 void ExtrapolationCheck::add(double t, const train::Fleet& fleet, const structure::NonlinearForces& foundation,
                              ResponseExtremes& peaks) {
-  if (t > until_ && !bends_before_) {
-    bends_before_ = peaks.roughness();
-    peaks.forget_roughness();
+  if (t > until_ && !roughness_before_) {
+    roughness_before_ = peaks.roughness();
+    peaks.reset_roughness();
   }
   for (const Spring& s : springs_) {
     const train::MovingVehicle& vehicle = fleet.vehicles[static_cast<std::size_t>(s.vehicle)];
-    see(t, s.part,
-        s.torsion ? vehicle.mechanism.torsion_spring_moment(vehicle.state, s.spring)
-                  : vehicle.mechanism.spring_force(vehicle.state, s.spring));
+    record(t, s.part,
+           s.torsion ? vehicle.mechanism.torsion_spring_moment(vehicle.state, s.spring)
+                     : vehicle.mechanism.spring_force(vehicle.state, s.spring));
   }
   for (const Support& s : supports_)
     if (const std::vector<double>& forces = foundation.of_kind[s.row]; s.place < forces.size())
-      see(t, s.part, forces[s.place]);
+      record(t, s.part, forces[s.place]);
   if (until_ < std::numeric_limits<double>::infinity())
-    for (const double force : foundation.below_sleepers) see(t, sleepers_, force);
+    for (const double force : foundation.below_sleepers) record(t, sleepers_, force);
 }
 
 }  // namespace traverse::app

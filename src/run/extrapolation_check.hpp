@@ -1,5 +1,5 @@
-// What a run does after the trial runs that chose its step have ended, and these have not seen: springs, supports and
-// sleepers that touch or let go for the first time, and curves that bend more within a step than before.
+// Checks a run after the end of the trial runs that chose its step: springs, supports and sleepers that open or close
+// for the first time, and curves that are rougher within a step than before.
 #pragma once
 
 #include <cstddef>
@@ -18,52 +18,52 @@ namespace traverse::app {
 
 class ExtrapolationCheck {
  public:
-  /// Times what curves bend before, up to which that is no more than runs and their beginnings differ by.
-  static constexpr double alike = 2.0;
+  /// Ratio of roughness up to which the difference between trial runs and run is normal.
+  static constexpr double smooth = 2.0;
 
-  ExtrapolationCheck() = default;  // trial runs have seen all
-  /// until: when they ended, s of the run. beam: null where there is none.
+  ExtrapolationCheck() = default;  // trial runs covered the whole run
+  /// until: end of the trial runs, s of the run. beam: null without a bridge.
   ExtrapolationCheck(double until, const train::Fleet& fleet, const beam::BeamModel* beam);
 
-  /// Whether instants need what vehicles do inside.
-  bool looks_at_springs() const { return !springs_.empty(); }
-  /// The next instant, before `peaks` has it.
+  /// Whether instants need the internal forces of vehicles.
+  bool needs_springs() const { return !springs_.empty(); }
+  /// Evaluates the next instant, before `peaks` does.
   void add(double t, const train::Fleet& fleet, const structure::NonlinearForces& foundation, ResponseExtremes& peaks);
 
-  /// What was first to touch or to let go as it had not done before, and when, in words; "" where nothing was.
+  /// The first part that opened or closed as never before, with the time, in words; "" if there was none.
   const std::string& new_event() const { return new_event_; }
-  /// How many times as much as before curves bend, Bends::times; 0 where nothing came after.
+  /// The ratio of the curves' roughness to that before, SecondDifference::times; 0 if the run has no later part.
   double roughness(const ResponseExtremes& peaks) const {
-    return bends_before_ ? peaks.roughness().times(*bends_before_) : 0.0;
+    return roughness_before_ ? peaks.roughness().ratio_to(*roughness_before_) : 0.0;
   }
 
-  void keep(base::Bytes& bytes) { bytes(seen_, bends_before_, new_event_); }
+  void keep(base::Bytes& bytes) { bytes(states_, roughness_before_, new_event_); }
 
  private:
-  /// What lets go: parts of a kind, as the springs of all vehicles of a type are, count as one.
+  /// A part that may separate. Parts of a kind, such as the springs of all vehicles of a type, count as one.
   struct Part {
     std::size_t kind = 0;
     std::string name;
   };
   struct Spring {
-    int vehicle = 0, spring = 0;  // of the fleet, of its mechanism
+    int vehicle = 0, spring = 0;  // index of the vehicle in the fleet, and of the spring in its mechanism
     bool torsion = false;
     Part part;
   };
   struct Support {
-    std::size_t row = 0, place = 0;  // of foundation_kinds, of its points or spans
+    std::size_t row = 0, place = 0;  // index in foundation_kinds, and of the point or span
     Part part;
   };
   void add_springs(const train::Fleet& fleet);
   void add_supports(const beam::BeamModel& beam);
-  void see(double t, const Part& part, double force);
+  void record(double t, const Part& part, double force);
 
   double until_ = std::numeric_limits<double>::infinity();
   std::vector<Spring> springs_;
   std::vector<Support> supports_;
-  Part sleepers_;                    // those over a gap
-  std::vector<unsigned char> seen_;  // of each kind, one bit each: loose, pressed, pulled
-  std::optional<SecondDifference> bends_before_;
+  Part sleepers_;                      // sleepers over a gap
+  std::vector<unsigned char> states_;  // for each kind, one bit each: unloaded, compressed, tensioned
+  std::optional<SecondDifference> roughness_before_;
   std::string new_event_;
 };
 

@@ -1,4 +1,5 @@
-// The extremes of sampled curves. Between samples a curve is of fourth degree (turn.hpp).
+// Trackers of the extremes of sampled curves. Between samples a curve is interpolated by a polynomial of degree four
+// (turn.hpp).
 #pragma once
 
 #include <algorithm>
@@ -16,90 +17,91 @@ inline bool between(const std::vector<double>& times, double from, double to) {
   return next != times.end() && *next <= to;
 }
 
-/// The extremes of one curve, as samples come. Each is given to note(value, time, outward), where outward tells whether
-/// its magnitude is extreme too: it is the greatest above zero or the least below.
+/// The extremes of one curve, evaluated as samples arrive. For each extreme record(value, time, outward) is called;
+/// outward: its magnitude is extreme too, i.e. it is a maximum above zero or a minimum below.
 class ExtremumTracker {
  public:
   ExtremumTracker() = default;
-  /// of_samples: nothing is known of it between its samples, where it may jump.
+  /// of_samples: the curve may jump between samples, so that it is not interpolated.
   explicit ExtremumTracker(bool of_samples) : of_samples_(of_samples) {}
 
-  /// Calls note for the extreme that is known with this sample, two after it. kinks: ascending times at which the curve
-  /// may have one.
-  template <class Note>
-  void add(double t, double value, const std::vector<double>& kinks, Note&& note) {
-    const double latest = seen_.time[4];
-    if (seen_.count > 1 && t - latest < too_near * (latest - seen_.time[3])) {
-      if (std::abs(value) > std::abs(seen_.value[4])) std::tie(seen_.time[4], seen_.value[4]) = std::tie(t, value);
+  /// Adds a sample and records the extreme two samples before it, if any. kinks: ascending times at which the curve may
+  /// have one.
+  template <class Record>
+  void add(double t, double value, const std::vector<double>& kinks, Record&& record) {
+    const double latest = samples_.time[4];
+    if (samples_.count > 1 && t - latest < min_ratio * (latest - samples_.time[3])) {
+      if (std::abs(value) > std::abs(samples_.value[4]))
+        std::tie(samples_.time[4], samples_.value[4]) = std::tie(t, value);
       return;
     }
-    seen_.push(t, value);
-    if (seen_.count == 1) return note(value, t, true);
-    if (seen_.count >= 4) look(2, kinks, note);
+    samples_.push(t, value);
+    if (samples_.count == 1) return record(value, t, true);
+    if (samples_.count >= 4) evaluate(2, kinks, record);
   }
-  /// After the last sample: the extreme just before it.
-  template <class Note>
-  void rest(const std::vector<double>& kinks, Note&& note) const {
-    if (seen_.count >= 3) look(3, kinks, note);
+  /// After the last sample: records the extreme just before it, if any.
+  template <class Record>
+  void record_last(const std::vector<double>& kinks, Record&& record) const {
+    if (samples_.count >= 3) evaluate(3, kinks, record);
   }
-  /// That, and its value counts too.
-  template <class Note>
-  void finish(const std::vector<double>& kinks, Note&& note) const {
-    rest(kinks, note);
-    if (seen_.count > 0) note(seen_.value.back(), seen_.time.back(), true);
+  /// The same, and records the last value too.
+  template <class Record>
+  void finish(const std::vector<double>& kinks, Record&& record) const {
+    record_last(kinks, record);
+    if (samples_.count > 0) record(samples_.value.back(), samples_.time.back(), true);
   }
-  /// Forgets its samples.
-  void begin_anew() { seen_ = {}; }
-  /// How far the latest three samples are from a straight line: their second difference, 0 where they are fewer.
-  double bend() const {
-    const auto &t = seen_.time, &y = seen_.value;
+  /// Removes all samples.
+  void reset() { samples_ = {}; }
+  /// The second difference of the latest three samples; 0 if there are fewer.
+  double second_difference() const {
+    const auto &t = samples_.time, &y = samples_.value;
     const double before = t[3] - t[2], after = t[4] - t[3];
-    if (seen_.count < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
+    if (samples_.count < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
     return std::abs((y[4] - y[3]) / after - (y[3] - y[2]) / before) * std::min(before, after);
   }
 
  private:
-  // Of the step before: the slope between instants that are nearer than that is made by rounding, and a parabola
-  // through them overshoots.
-  static constexpr double too_near = 1e-2;
+  // Smallest ratio of two successive intervals. Between instants that are closer the slope is determined by rounding
+  // errors, and a parabola would overshoot.
+  static constexpr double min_ratio = 1e-2;
 
-  /// If the sample at i is extreme.
-  template <class Note>
-  void look(std::size_t i, const std::vector<double>& kinks, Note&& note) const {
-    const auto &t = seen_.time, &y = seen_.value;
+  /// Records the sample at i if it is extreme.
+  template <class Record>
+  void evaluate(std::size_t i, const std::vector<double>& kinks, Record&& record) const {
+    const auto &t = samples_.time, &y = samples_.value;
     const bool outward = std::abs(y[i]) >= std::abs(y[i - 1]) && std::abs(y[i]) > std::abs(y[i + 1]);
     if (!outward && !((y[i] - y[i - 1]) * (y[i + 1] - y[i]) < 0.0)) return;
-    const Extreme turn = turn_about(seen_, i, [&](std::size_t from, std::size_t to) {
+    const Extreme extremum = interpolate_extremum(samples_, i, [&](std::size_t from, std::size_t to) {
       return !of_samples_ && y[from] * y[to] > 0.0 && !between(kinks, t[from], t[to]);
     });
-    note(turn.value, turn.time, outward);
+    record(extremum.value, extremum.time, outward);
   }
 
-  Samples seen_;
+  Samples samples_;
   bool of_samples_ = false;
 };
 
-/// The extremes of a curve M that follows a smooth one by M + b dM/dt, but for its kinks, which have samples.
+/// The extremes of a curve M + b dM/dt, where M is smooth except for its kinks, which have samples.
 class LaggedMomentTracker {
  public:
   /// b in s.
-  template <class Note>
-  void add(double t, double value, double rate, double b, Note&& note) {
+  template <class Record>
+  void add(double t, double value, double rate, double b, Record&& record) {
     const double h = t - time_, before = rate_, start = value_;
-    if (!known_) note(value, t, true);
+    if (!known_) record(value, t, true);
     if (known_ && h > 0.0 && before * rate < 0.0) {
       double later = 0.0;
-      const double top = base::extreme_of_lagging(h, start, value, before, rate, b, later);
-      note(top, time_ + later, before * start > 0.0);
+      const double extreme = base::extreme_of_lagging(h, start, value, before, rate, b, later);
+      record(extreme, time_ + later, before * start > 0.0);
     }
     time_ = t;
     value_ = value;
     rate_ = rate;
     known_ = true;
   }
-  template <class Note>
-  void finish(Note&& note) const {
-    if (known_) note(value_, time_, true);
+  template <class Record>
+  void finish(Record&& record) const {
+    if (known_) record(value_, time_, true);
   }
 
  private:
@@ -107,64 +109,68 @@ class LaggedMomentTracker {
   bool known_ = false;
 };
 
-/// The extreme behind a jump of S from one value to another, of V = S + (before - after) exp(-t/b) where S goes on with
-/// that slope; b = 0: S itself.
-struct JumpTurn {
-  bool there = false;
+/// The extreme behind a jump of S from one value to another, for V = S + (before - after) exp(-t/b) where S continues
+/// with the given slope; b = 0: S itself.
+struct JumpExtremum {
+  bool exists = false;
   double value = 0.0, later = 0.0;  // s after the jump
 };
-inline JumpTurn turn_after_jump(double before, double after, double slope, double b) {
+inline JumpExtremum extremum_after_jump(double before, double after, double slope, double b) {
   if (b == 0.0) return {true, after, 0.0};
-  const double way = b * std::log((before - after) / (b * slope));
-  return {way > 0.0 && std::isfinite(way), after + slope * (way + b), way};
+  const double duration = b * std::log((before - after) / (b * slope));
+  return {duration > 0.0 && std::isfinite(duration), after + slope * (duration + b), duration};
 }
 
-/// The extremes of a curve that jumps where loads pass, in pieces between passages: the shear, or the axial force. With
-/// damping b K it relaxes behind a jump, V = S + r exp(-t/b), where S is smooth.
+/// The extremes of a curve with jumps at the passages of loads, in pieces between passages: shear or axial force. With
+/// damping b K it relaxes after a jump, V = S + r exp(-t/b), where S is smooth.
 class JumpingCurve {
  public:
   JumpingCurve() = default;
-  /// of_samples: nobody knows when it jumps.
+  /// of_samples: the times of jumps are unknown.
   explicit JumpingCurve(bool of_samples) : smooth_(of_samples) {}
 
-  /// relaxed: S; unrelaxed: what is left of r, which is looked at where a piece begins. b in s, 0: the curve is S.
-  template <class Note>
-  void add(double t, double relaxed, double unrelaxed, double b, Note&& note) {
+  /// relaxed: S; unrelaxed: the remaining part of r, used at the begin of a piece. b in s; 0: the curve is S.
+  template <class Record>
+  void add(double t, double relaxed, double unrelaxed, double b, Record&& record) {
     if (!known_) {
       begin_ = t;
-      rest_ = b > 0.0 ? unrelaxed : 0.0;
-    } else if (const double rest = rest_at(time_, b); std::abs(rest) > little * std::abs(relaxed)) {
+      transient_ = b > 0.0 ? unrelaxed : 0.0;
+    } else if (const double transient = transient_at(time_, b); std::abs(transient) > negligible * std::abs(relaxed)) {
       const double slope = (relaxed - relaxed_) / (t - time_);
-      const JumpTurn turn = turn_after_jump(relaxed_ + rest, relaxed_, slope, b);
-      if (turn.there && turn.later < t - time_) note(turn.value, time_ + turn.later, slope * turn.value < 0.0);
+      const JumpExtremum extremum = extremum_after_jump(relaxed_ + transient, relaxed_, slope, b);
+      if (extremum.exists && extremum.later < t - time_)
+        record(extremum.value, time_ + extremum.later, slope * extremum.value < 0.0);
     }
     time_ = t;
     relaxed_ = relaxed;
     known_ = true;
-    smooth_.add(t, relaxed, {}, with_rest(b, note));
+    smooth_.add(t, relaxed, {}, with_transient(b, record));
   }
-  /// After the last sample of a piece; the next one begins anew.
-  template <class Note>
-  void finish(double b, Note&& note) {
-    smooth_.finish({}, with_rest(b, note));
-    smooth_.begin_anew();
+  /// After the last sample of a piece; then a new piece begins.
+  template <class Record>
+  void finish(double b, Record&& record) {
+    smooth_.finish({}, with_transient(b, record));
+    smooth_.reset();
     known_ = false;
   }
-  /// What is left of r at a time in the piece that has begun.
-  double rest_at(double t, double b) const { return rest_ == 0.0 ? 0.0 : rest_ * std::exp((begin_ - t) / b); }
+  /// The part of r that remains at a time in the present piece.
+  double transient_at(double t, double b) const {
+    return transient_ == 0.0 ? 0.0 : transient_ * std::exp((begin_ - t) / b);
+  }
 
  private:
-  static constexpr double little = 1e-9;  // of the curve: a rest that does not count
+  static constexpr double negligible = 1e-9;  // relative to the curve: smaller values of r are neglected
 
-  /// For extremes of S: V there.
-  template <class Note>
-  auto with_rest(double b, Note&& note) const {
-    return [this, b, &note](double value, double at, bool outward) { note(value + rest_at(at, b), at, outward); };
+  /// Records extremes of S with the value of V.
+  template <class Record>
+  auto with_transient(double b, Record&& record) const {
+    return
+        [this, b, &record](double value, double at, bool outward) { record(value + transient_at(at, b), at, outward); };
   }
 
   ExtremumTracker smooth_;
-  double time_ = 0.0, relaxed_ = 0.0;  // the latest sample
-  double begin_ = 0.0, rest_ = 0.0;    // of the piece, s, and what is left of r there
+  double time_ = 0.0, relaxed_ = 0.0;     // the latest sample
+  double begin_ = 0.0, transient_ = 0.0;  // begin of the piece, s, and the value of r there
   bool known_ = false;
 };
 

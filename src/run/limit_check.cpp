@@ -1,4 +1,4 @@
-// One function for each quantity of a limit, listed in a table by its name: it returns the extreme with time and place,
+// One function for each quantity of a limit, listed in a table by its name. It returns the extreme with time and place,
 // or the reason why it is unknown.
 #include "run/limit_check.hpp"
 
@@ -13,11 +13,11 @@ namespace traverse::app {
 
 using results::EvaluatedQuantity;
 
-/// One function for each quantity that a limit may be of.
-struct Findings {
-  const LimitCheck& judge;
+/// One function for each quantity that may have a limit.
+struct Quantities {
+  const LimitCheck& check;
   const results::Summary& summary;
-  std::span<const Extreme> deflections;  // the largest one of each probe
+  std::span<const Extreme> deflections;  // the largest one at each probe
 
   EvaluatedQuantity deck_acceleration() const {
     if (!summary.probes) return no_bridge();
@@ -33,29 +33,29 @@ struct Findings {
     if (!summary.probes) return no_bridge();
     EvaluatedQuantity found;
     for (std::size_t p = 0; p < deflections.size(); ++p) {
-      const double ratio = std::abs(deflections[p].value) / span_of(judge.scene_.output.probes[p]);
-      if (p == 0 || ratio > found.value) found = at(ratio, deflections[p].time, judge.scene_.output.probes[p]);
+      const double ratio = std::abs(deflections[p].value) / span_of(check.scene_.output.probes[p]);
+      if (p == 0 || ratio > found.value) found = at(ratio, deflections[p].time, check.scene_.output.probes[p]);
     }
     return found;
   }
 
   EvaluatedQuantity end_rotation() const {
-    if (!judge.rotations_ || judge.rotations_->at_ends().value < 0.0) return no_bridge();
-    const Extreme& largest = judge.rotations_->at_ends();
-    return at(largest.value, largest.time, largest.place == 0 ? 0.0 : judge.scene_.beam->length());
+    if (!check.rotations_ || check.rotations_->at_ends().value < 0.0) return no_bridge();
+    const Extreme& largest = check.rotations_->at_ends();
+    return at(largest.value, largest.time, largest.place == 0 ? 0.0 : check.scene_.beam->length());
   }
 
   EvaluatedQuantity joint_rotation() const {
-    if (!judge.rotations_) return no_bridge();
-    const Extreme& largest = judge.rotations_->at_joints();
+    if (!check.rotations_) return no_bridge();
+    const Extreme& largest = check.rotations_->at_joints();
     if (largest.value < 0.0) return unknown("no two decks meet at a joint");
-    return at(largest.value, largest.time, judge.rotations_->joints()[largest.place]);
+    return at(largest.value, largest.time, check.rotations_->joints()[largest.place]);
   }
 
   EvaluatedQuantity car_acceleration() const {
-    const Extreme& largest = judge.cars_.largest();
+    const Extreme& largest = check.cars_.largest();
     if (largest.value < 0.0) return unknown("the scene has no vehicles");
-    return of(largest, fmt::format("vehicle {}, {}", largest.place, judge.cars_.body(largest.place)));
+    return of(largest, fmt::format("vehicle {}, {}", largest.place, check.cars_.body(largest.place)));
   }
 
   EvaluatedQuantity wheel_unloading() const {
@@ -88,7 +88,7 @@ struct Findings {
     return at(summary.amplification, summary.deflection.time, summary.deflection.place);
   }
 
-  /// Found by norm::NormCheck, where there is one.
+  /// Evaluated by norm::NormCheck, if there is one.
   EvaluatedQuantity of_norm() const { return unknown("static effects of EN 1991-2 are not computed here"); }
   EvaluatedQuantity of_rail() const { return unknown("scene_analysis rail finds it"); }
 
@@ -106,7 +106,7 @@ struct Findings {
     return found;
   }
   EvaluatedQuantity no_wheels() const {
-    return unknown(judge.scene_.start == Start::given ? "with scene_start given no wheel force at rest is known"
+    return unknown(check.scene_.start == Start::given ? "with scene_start given no wheel force at rest is known"
                                                       : "the scene has no wheels");
   }
   EvaluatedQuantity not_filtered() const {
@@ -114,57 +114,57 @@ struct Findings {
   }
   static EvaluatedQuantity no_bridge() { return unknown("the scene has no bridge with probes"); }
 
-  /// Of the span that holds x; at a support the shorter one.
+  /// The length of the span that contains x; at a support the shorter one.
   double span_of(double x) const {
-    double left = 0.0, length = std::numeric_limits<double>::infinity();
-    for (const double span : judge.scene_.beam->spans) {
-      if (x >= left && x <= left + span) length = std::min(length, span);
-      left += span;
+    double start = 0.0, length = std::numeric_limits<double>::infinity();
+    for (const double span : check.scene_.beam->spans) {
+      if (x >= start && x <= start + span) length = std::min(length, span);
+      start += span;
     }
-    return std::isfinite(length) ? length : judge.scene_.beam->spans.back();
+    return std::isfinite(length) ? length : check.scene_.beam->spans.back();
   }
 };
 
 namespace {
 
-struct FindingRow {
+struct QuantityRow {
   std::string_view quantity;
-  EvaluatedQuantity (Findings::*find)() const;
+  EvaluatedQuantity (Quantities::*evaluate)() const;
 };
 
-constexpr FindingRow finding_rows[] = {
-    {"deck_acceleration", &Findings::deck_acceleration},
-    {"unfiltered_deck_acceleration", &Findings::unfiltered_deck_acceleration},
-    {"deflection_over_span", &Findings::deflection_over_span},
-    {"end_rotation", &Findings::end_rotation},
-    {"joint_rotation", &Findings::joint_rotation},
-    {"car_acceleration", &Findings::car_acceleration},
-    {"wheel_unloading", &Findings::wheel_unloading},
-    {"filtered_wheel_unloading", &Findings::filtered_wheel_unloading},
-    {"unloading_time", &Findings::unloading_time},
-    {"contact_loss", &Findings::contact_loss},
-    {"amplification", &Findings::amplification},
-    {"lm71_deflection_over_span", &Findings::of_norm},
-    {"lm71_end_rotation", &Findings::of_norm},
-    {"lm71_joint_rotation", &Findings::of_norm},
-    {"train_over_lm71", &Findings::of_norm},
-    {"rail_tension", &Findings::of_rail},
-    {"rail_compression", &Findings::of_rail},
-    {"rail_slip", &Findings::of_rail},
-    {"deck_displacement", &Findings::of_rail},
-    {"deck_end_displacement", &Findings::of_rail},
-    {"rail_device_opening", &Findings::of_rail},
+constexpr QuantityRow quantity_rows[] = {
+    {"deck_acceleration", &Quantities::deck_acceleration},
+    {"unfiltered_deck_acceleration", &Quantities::unfiltered_deck_acceleration},
+    {"deflection_over_span", &Quantities::deflection_over_span},
+    {"end_rotation", &Quantities::end_rotation},
+    {"joint_rotation", &Quantities::joint_rotation},
+    {"car_acceleration", &Quantities::car_acceleration},
+    {"wheel_unloading", &Quantities::wheel_unloading},
+    {"filtered_wheel_unloading", &Quantities::filtered_wheel_unloading},
+    {"unloading_time", &Quantities::unloading_time},
+    {"contact_loss", &Quantities::contact_loss},
+    {"amplification", &Quantities::amplification},
+    {"lm71_deflection_over_span", &Quantities::of_norm},
+    {"lm71_end_rotation", &Quantities::of_norm},
+    {"lm71_joint_rotation", &Quantities::of_norm},
+    {"train_over_lm71", &Quantities::of_norm},
+    {"rail_tension", &Quantities::of_rail},
+    {"rail_compression", &Quantities::of_rail},
+    {"rail_slip", &Quantities::of_rail},
+    {"deck_displacement", &Quantities::of_rail},
+    {"deck_end_displacement", &Quantities::of_rail},
+    {"rail_device_opening", &Quantities::of_rail},
 };
 
-constexpr const FindingRow* row_of(std::string_view quantity) {
-  for (const FindingRow& row : finding_rows)
+constexpr const QuantityRow* row_of(std::string_view quantity) {
+  for (const QuantityRow& row : quantity_rows)
     if (row.quantity == quantity) return &row;
   return nullptr;
 }
 
 static_assert(std::all_of(std::begin(options::limit_quantities), std::end(options::limit_quantities),
                           [](const options::LimitQuantity& row) { return row_of(row.name) != nullptr; }),
-              "every quantity that a limit may be of has its line in finding_rows");
+              "every quantity that a limit may be of has its line in quantity_rows");
 
 }  // namespace
 
@@ -180,11 +180,11 @@ void LimitCheck::sample(double t, const double* v) {
 
 std::vector<results::Verdict> LimitCheck::verdicts(const results::Summary& summary,
                                                    std::span<const Extreme> deflections) const {
-  const Findings findings{*this, summary, deflections};
+  const Quantities quantities{*this, summary, deflections};
   std::vector<results::Verdict> list;
   for (const options::VerdictLimit& limit : scene_.limits)
     list.push_back({limit, std::string(options::limit_quantity(limit.quantity)->unit),
-                    (findings.*row_of(limit.quantity)->find)(), 1, 0});
+                    (quantities.*row_of(limit.quantity)->evaluate)(), 1, 0});
   return list;
 }
 

@@ -1,4 +1,4 @@
-// From the extremes of a run to a verdict on each limit.
+// Evaluates the quantities of all limits from a run and compares them with the limits.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@
 
 namespace traverse::app {
 
-/// What a run is watched for where there are limits. Scene, fleet and beam must outlive it.
+/// Records the quantities of limits during a run. Scene, fleet and beam must outlive this object.
 class LimitCheck {
  public:
-  /// beam: null where there is none.
+  /// beam: null without a bridge.
   LimitCheck(const Scene& scene, const train::Fleet& fleet, const beam::Beam* beam);
 
-  /// Collective. An observed instant; v: this rank's displacements of the structure.
+  /// Collective. Evaluates an observed instant; v: this rank's displacements of the structure.
   void sample(double t, const double* v);
-  /// The same where only rotations at the rotations' unknowns are known, rad.
-  void rotations(double t, std::span<const double> slopes) { rotations_->note(t, slopes); }
+  /// The same if only the rotations at the rotations' unknowns are known, rad.
+  void rotations(double t, std::span<const double> slopes) { rotations_->record(t, slopes); }
 
-  /// After the last instant. deflections: the largest one of each probe.
+  /// After the last instant. deflections: the largest one at each probe.
   std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Extreme> deflections) const;
 
   void keep(base::Bytes& bytes) {
@@ -32,7 +32,7 @@ class LimitCheck {
   }
 
  private:
-  friend struct Findings;
+  friend struct Quantities;
 
   const Scene& scene_;
   const train::Fleet& fleet_;

@@ -8,7 +8,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr int rotation = 2, rotation_right = 3;  // of a node
+constexpr int rotation = 2, rotation_right = 3;  // unknowns of a node
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void DeckRotations::add(double t, const double* v) {
     slopes_[i] = local >= 0 ? v[local] : 0.0;
   }
   MPI_Allreduce(MPI_IN_PLACE, slopes_.data(), static_cast<int>(slopes_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
-  note(t, slopes_);
+  record(t, slopes_);
 }
 
 CarAccelerations::CarAccelerations(const train::Fleet& fleet) : fleet_(fleet) {

@@ -1,4 +1,4 @@
-// Extremes that only limits ask for: rotations of the deck, accelerations of cars.
+// Extremes that are evaluated for limits only: rotations of the deck, accelerations of cars.
 #pragma once
 
 #include <cmath>
@@ -15,32 +15,32 @@ namespace traverse::app {
 
 using base::Extreme;
 
-/// Rotations of the deck at the two ends of the bridge, and between decks that meet at a joint or a hinge over a
-/// support.
+/// Rotations of the deck at the two ends of the bridge, and the relative rotations of decks at a joint or a hinge over
+/// a support.
 class DeckRotations {
  public:
   explicit DeckRotations(const beam::Beam& beam);
   /// Collective. v: this rank's displacements.
   void add(double t, const double* v);
-  /// The same from rotations that are known, rad, in the order of unknowns().
-  void note(double t, std::span<const double> slopes) {
+  /// The same from given rotations, rad, in the order of unknowns().
+  void record(double t, std::span<const double> slopes) {
     for (std::size_t i = 0; i < 2; ++i) ends_.raise(std::abs(slopes[i]), t, i);
     for (std::size_t i = 0; i < x_.size(); ++i) joints_.raise(std::abs(slopes[2 * i + 3] - slopes[2 * i + 2]), t, i);
   }
-  /// Of the ends, then of the left and right side of each joint.
+  /// The unknowns of the ends, then those of the left and right side of each joint.
   const std::vector<int>& unknowns() const { return unknowns_; }
 
-  // Magnitudes, rad; below 0: there are none.
+  // Magnitudes, rad; below 0: none.
   const Extreme& at_ends() const { return ends_; }      // place: 0 left, 1 right
-  const Extreme& at_joints() const { return joints_; }  // place: of joints()
+  const Extreme& at_joints() const { return joints_; }  // place: index in joints()
   const std::vector<double>& joints() const { return x_; }
   void keep(base::Bytes& bytes) { bytes(ends_, joints_); }
 
  private:
   const beam::Beam& beam_;
   std::vector<int> unknowns_;
-  std::vector<double> slopes_;  // rad, of these
-  std::vector<double> x_;       // m
+  std::vector<double> slopes_;  // rad, of unknowns_
+  std::vector<double> x_;       // m, of the joints
   Extreme ends_{-1.0}, joints_{-1.0};
 };
 
@@ -50,14 +50,14 @@ class CarAccelerations {
   explicit CarAccelerations(const train::Fleet& fleet);
   void add(double t);
 
-  /// m/s2; place: the vehicle; below 0: there is none.
+  /// m/s2; place: the vehicle; value below 0: no vehicle.
   const Extreme& largest() const { return largest_; }
   const std::string& body(std::size_t vehicle) const;
   void keep(base::Bytes& bytes) { bytes(largest_); }
 
  private:
   const train::Fleet& fleet_;
-  std::vector<std::size_t> heaviest_;  // of each vehicle's own bodies
+  std::vector<std::size_t> heaviest_;  // index in each vehicle's bodies
   Extreme largest_{-1.0};
 };
 

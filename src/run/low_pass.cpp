@@ -9,13 +9,14 @@
 namespace traverse::app {
 namespace {
 
-constexpr double periods_beyond = 3.0;  // of the filter's frequency; what came before has died away by then
+constexpr double margin_periods =
+    3.0;  // number of periods of the filter's frequency after which a transient has decayed
 
 }  // namespace
 
 LowPass::LowPass(double frequency, double interval)
-    : margin_(static_cast<std::size_t>(std::ceil(periods_beyond / (frequency * interval)))) {
-  // The bilinear transform of 1/(s^2 + 2 cos(angle) s + 1), with which the filter's frequency stays where it is.
+    : margin_(static_cast<std::size_t>(std::ceil(margin_periods / (frequency * interval)))) {
+  // Bilinear transform of 1/(s^2 + 2 cos(angle) s + 1), which preserves the filter's frequency.
   const double k = std::tan(std::numbers::pi * frequency * interval);
   for (std::size_t i = 0; i < sections_.size(); ++i) {
     const double angle = std::numbers::pi * (2.0 * static_cast<double>(i) + 1.0) / 8.0;
@@ -24,8 +25,8 @@ LowPass::LowPass(double frequency, double interval)
   }
 }
 
-// Both sections follow each other through the rows, and Width series go side by side in registers. x, y, z: what goes
-// in, what leaves the first section and the second, each with the two before it.
+// Both sections are applied row by row to Width series at once in registers. x, y, z: input, output of the first and of
+// the second section, each with its two former values.
 template <std::size_t Width>
 void LowPass::pass(double* row, std::ptrdiff_t to_next, std::size_t rows) const {
   const Section a = sections_[0], b = sections_[1];
@@ -55,20 +56,20 @@ void LowPass::pass(double* row, std::ptrdiff_t to_next, std::size_t rows, std::s
 void LowPass::apply(std::vector<double>& series, std::size_t count) const {
   const std::size_t n = series.size() / count, margin = n > 0 ? std::min(margin_, n - 1) : 0;
   if (n < 2) return;
-  std::vector<double> longer(series.size() + 2 * margin * count);
+  std::vector<double> extended(series.size() + 2 * margin * count);
   const double *front = series.data(), *back = front + (n - 1) * count;
   for (std::size_t i = 0; i < margin; ++i)
     for (std::size_t k = 0; k < count; ++k) {
-      longer[i * count + k] = 2.0 * front[k] - front[(margin - i) * count + k];
-      longer[(margin + n + i) * count + k] = 2.0 * back[k] - front[(n - 2 - i) * count + k];
+      extended[i * count + k] = 2.0 * front[k] - front[(margin - i) * count + k];
+      extended[(margin + n + i) * count + k] = 2.0 * back[k] - front[(n - 2 - i) * count + k];
     }
-  const auto within = longer.begin() + static_cast<std::ptrdiff_t>(margin * count);
-  std::copy(series.begin(), series.end(), within);
+  const auto inner = extended.begin() + static_cast<std::ptrdiff_t>(margin * count);
+  std::copy(series.begin(), series.end(), inner);
   const std::size_t rows = n + 2 * margin;
   const auto to_next = static_cast<std::ptrdiff_t>(count);
-  pass(longer.data(), to_next, rows, count);
-  pass(longer.data() + (rows - 1) * count, -to_next, rows, count);
-  std::copy_n(within, series.size(), series.begin());
+  pass(extended.data(), to_next, rows, count);
+  pass(extended.data() + (rows - 1) * count, -to_next, rows, count);
+  std::copy_n(inner, series.size(), series.begin());
 }
 
 }  // namespace traverse::app

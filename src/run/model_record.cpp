@@ -16,7 +16,7 @@ using Pairs = std::vector<std::pair<std::string, std::string>>;
 constexpr const char* support_words[] = {"free", "roller", "pinned", "clamped", "guided", "along"};
 constexpr const char* joint_words[] = {"continuous", "hinge", "separate"};
 
-/// Rows of so many numbers; nothing where there are no rows.
+/// Adds rows of `columns` numbers; no dataset if there are no rows.
 void add_rows(Recorder& recorder, const std::string& name, std::size_t columns, std::vector<double> values,
               std::string unit) {
   if (values.empty()) return;
@@ -26,7 +26,7 @@ void add_rows(Recorder& recorder, const std::string& name, std::size_t columns, 
   recorder.datasets({{"/model/" + name, std::move(shape), std::move(values), std::move(unit)}});
 }
 
-/// Two rows at a step.
+/// Rows of x and value; two rows at a step.
 std::vector<double> along(const beam::Distribution& quantity, double from, double to) {
   std::vector<double> rows;
   const auto add = [&](double x, double inside) { rows.insert(rows.end(), {x, quantity.at(x, inside)}); };
@@ -113,9 +113,18 @@ void record_type(const Vehicle& vehicle, const std::string& group, Recorder& rec
 }
 
 void record_load(const MovingLoad& load, const std::string& name, Recorder& recorder) {
-  std::vector<double> rows;
-  for (std::size_t i = 0; i < load.forces.size(); ++i) rows.insert(rows.end(), {load.positions[i], load.forces[i]});
-  add_rows(recorder, "forces/" + name, 2, std::move(rows), "m, N");
+  std::vector<double> forces, lines;
+  for (std::size_t i = 0; i < load.forces.size(); ++i) {
+    const double length = length_of(load, i);
+    if (length == 0.0) {
+      forces.insert(forces.end(), {load.positions[i], load.forces[i]});
+    } else {
+      lines.insert(lines.end(),
+                   {load.positions[i] - 0.5 * length, load.positions[i] + 0.5 * length, load.forces[i] / length});
+    }
+  }
+  add_rows(recorder, "forces/" + name, 2, std::move(forces), "m, N");
+  add_rows(recorder, "line_loads/" + name, 3, std::move(lines), "m, m, N/m");
 }
 
 /// How courses run: their number, the first vehicle or force of each, and its speed over time where that bends.
@@ -152,7 +161,7 @@ void record_train(const Scene& scene, Recorder& recorder) {
     record_load(scene.sweep->loads[i], fmt::format("A{}", scene.sweep->trains[i]), recorder);
 }
 
-/// /quantities: what peaks and limits are of, each with its unit.
+/// /quantities: the quantities of peaks and limits, each with its unit.
 void record_quantities(Recorder& recorder) {
   Pairs peaks, limits;
   for (std::size_t q = 0; q < quantities; ++q) peaks.emplace_back(stored_names[q], quantity_units[q]);
@@ -163,9 +172,9 @@ void record_quantities(Recorder& recorder) {
 }  // namespace
 
 void record_model(const Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder) {
-  Pairs said;
-  for (const std::string& note : notes) said.emplace_back(std::to_string(said.size() + 1), note);
-  if (!said.empty()) recorder.tables({{"/model/notes", said}});
+  Pairs rows;
+  for (const std::string& note : notes) rows.emplace_back(std::to_string(rows.size() + 1), note);
+  if (!rows.empty()) recorder.tables({{"/model/notes", rows}});
   record_quantities(recorder);
   if (scene.beam) record_bridge(*scene.beam, recorder);
   record_train(scene, recorder);

@@ -1,4 +1,4 @@
-// What was modelled, as a picture or a report of it needs it: /model of the results file.
+// Stores the model for pictures and reports: /model of the results file.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace traverse::app {
 
-/// Spans, supports, hinges, foundations, stiffness and mass, vehicles and forces at t = 0, and the notes of the run.
+/// Stores spans, supports, hinges, foundations, stiffness and mass, vehicles and forces at t = 0, and the notes of the
+/// run.
 void record_model(const Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder);
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
-// Converts the static wheel loads of a scene to load models for the rules of EN 1991-2, and passes the peaks of its
-// runs on to them.
+// Converts the static wheel loads of a scene to load models for the rules of EN 1991-2, and copies the peaks of its
+// runs for the comparison.
 #include "run/norm_run.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace traverse::app {
 
-norm::LoadModel train_at_rest(std::string name, const std::vector<coupling::StaticLoad>& weights) {
+norm::LoadModel static_train(std::string name, const std::vector<coupling::StaticLoad>& weights) {
   std::vector<double> forces, x;
   for (const coupling::StaticLoad& weight : weights) {
     forces.push_back(weight.force);
@@ -22,7 +22,7 @@ norm::LoadModel train_at_rest(std::string name, const std::vector<coupling::Stat
   return norm::train_of(std::move(name), forces, x);
 }
 
-std::vector<norm::LoadModel> trains_at_rest(const Scene& given, const SharedBeam& shared) {
+std::vector<norm::LoadModel> static_trains(const Scene& given, const SharedBeam& shared) {
   Scene scene = given;
   std::vector<norm::LoadModel> trains;
   const std::size_t count = given.sweep && !given.sweep->loads.empty() ? given.sweep->loads.size() : 1;
@@ -41,7 +41,7 @@ std::vector<norm::LoadModel> trains_at_rest(const Scene& given, const SharedBeam
     std::vector<std::string> ignored;
     Passage passage(scene, shared, ignored);
     passage.start(ignored);
-    trains.push_back(train_at_rest(std::move(name), passage.system().weights().all()));
+    trains.push_back(static_train(std::move(name), passage.system().weights().all()));
   }
   return trains;
 }
@@ -51,12 +51,12 @@ norm::NormCheck norm_check(const Scene& scene, std::vector<norm::LoadModel> trai
   return {*scene.beam, *scene.norm, std::move(trains), scene.output.probes};
 }
 
-norm::Passed passed_once(const Scene& scene, const ResponseExtremes& peaks) {
-  norm::Passed passed{{greatest_speed(scene)}, scene.output.probes, {{}}};
+norm::ComputedPeaks peaks_of_run(const Scene& scene, const ResponseExtremes& peaks) {
+  norm::ComputedPeaks computed{{greatest_speed(scene)}, scene.output.probes, {{}}};
   for (const Extreme& peak : peaks.largest_of_each(deflection))
-    passed.trains[0].deflection.push_back(std::abs(peak.value));
-  for (const Extreme& peak : peaks.largest_of_each(moment)) passed.trains[0].moment.push_back(std::abs(peak.value));
-  return passed;
+    computed.trains[0].deflection.push_back(std::abs(peak.value));
+  for (const Extreme& peak : peaks.largest_of_each(moment)) computed.trains[0].moment.push_back(std::abs(peak.value));
+  return computed;
 }
 
 bool compares_with_lm71(const Scene& scene) {

@@ -1,4 +1,4 @@
-// EN 1991-2's static effects and verdict of a scene: its trains as forces that pass, and the peaks of their runs.
+// Static effects and verdict of EN 1991-2 for a scene: its trains as moving forces, and the peaks of their runs.
 #pragma once
 
 #include <string>
@@ -12,17 +12,17 @@
 
 namespace traverse::app {
 
-/// The wheels of a train as they weigh at rest, and the forces that move with it.
-norm::LoadModel train_at_rest(std::string name, const std::vector<coupling::StaticLoad>& weights);
-/// Those of a scene, one for each train of its sweep. shared: of all ranks that call.
-std::vector<norm::LoadModel> trains_at_rest(const Scene& scene, const SharedBeam& shared);
+/// The static wheel loads of a train and the forces that move with it.
+norm::LoadModel static_train(std::string name, const std::vector<coupling::StaticLoad>& weights);
+/// The trains of a scene, one for each train of its sweep. shared: of all calling ranks.
+std::vector<norm::LoadModel> static_trains(const Scene& scene, const SharedBeam& shared);
 
-/// The same on every rank, each by itself.
+/// Not collective; the result is the same on every rank.
 norm::NormCheck norm_check(const Scene& scene, std::vector<norm::LoadModel> trains);
-/// The peaks of one run that has ended.
-norm::Passed passed_once(const Scene& scene, const ResponseExtremes& peaks);
-/// Whether dynamic effects can be compared with load models: with LM71, and not where the bridge's own weight is in
-/// them.
+/// The peaks of one run after its end.
+norm::ComputedPeaks peaks_of_run(const Scene& scene, const ResponseExtremes& peaks);
+/// Whether dynamic effects can be compared with load models: LM71 is selected, and the results do not contain the
+/// bridge's own weight.
 bool compares_with_lm71(const Scene& scene);
 
 }  // namespace traverse::app

@@ -1,5 +1,4 @@
-// The groups of outputs, each in a file of its own or with its like. A new group is a function and its line in the
-// list.
+// The groups of outputs. A new group is a function and its entry in the list.
 #pragma once
 
 #include "run/outputs.hpp"
@@ -15,7 +14,7 @@ void add_probes(const Source& source, Outputs& outputs);    // outputs_beam.cpp
 void add_supports(const Source& source, Outputs& outputs);  // outputs_beam.cpp
 void add_balance(const Source& source, Outputs& outputs);   // outputs_beam.cpp
 void add_rail(const Source& source, Outputs& outputs);      // outputs_beam.cpp
-/// What given modes say of other quantities than deflections.
+/// The other quantities of given modes than deflections.
 void add_outputs_of_modes(const Source& source, Outputs& outputs);  // outputs_beam.cpp
 void add_foundation(const Source& source, Outputs& outputs);        // outputs_foundation.cpp
 void add_hanging(const Source& source, Outputs& outputs);           // outputs_foundation.cpp

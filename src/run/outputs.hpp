@@ -1,6 +1,6 @@
-// What a run stores of every sample. A quantity is one row of a table: its name, its unit and how its numbers follow
-// from the thing that it belongs to (a probe, a body, a wheel). The width of a dataset follows from the type of its
-// numbers, and the same row describes the dataset and fills it, so that these cannot disagree.
+// The datasets that a run stores at every sample. A quantity is one row of a table: its name, its unit and the function
+// that evaluates it from its object (a probe, a body, a wheel). The width of a dataset follows from the type of the
+// function's result. The same row describes the dataset and fills it, so that both always agree.
 //
 //   constexpr Row<beam::Response> rows[] = {{"moment", "N m", of<&beam::Response::moment>}, ...};
 //   outputs.add_each("/probes/", rows, 12, [](const Observed& now, std::size_t probe) { return now.probes[probe]; });
@@ -24,30 +24,30 @@
 
 namespace traverse::app {
 
-/// Stored energies and integrals of powers, J; `residual` is what does not balance.
+/// Stored energies and integrals of powers, J; `residual` is the imbalance.
 struct EnergyTerms {
   double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0, residual = 0.0;
 };
 
-/// What is known at a stored instant.
+/// The values at a stored instant.
 struct Observed {
-  std::vector<beam::Response> probes, rail;     // at the scene's probes; empty where there is no bridge or no rail
+  std::vector<beam::Response> probes, rail;     // at the scene's probes; empty without a bridge or a rail
   std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam, at the ends of spans
   coupling::Observation motion;
-  std::optional<beam::GroundForces> ground;     // where there is a bridge
+  std::optional<beam::GroundForces> ground;     // with a bridge
   std::optional<beam::SleeperForces> sleepers;  // of output_sleepers
-  std::optional<beam::RailDevices> devices;     // where there is a rail
+  std::optional<beam::RailDevices> devices;     // with a rail
   EnergyTerms energy;
 };
 
-/// What stays as it is through a run: outputs may refer to it.
+/// Objects that do not change during a run; outputs may refer to them.
 struct Source {
   const Scene& scene;
   const train::Fleet& fleet;
   const beam::Beam* beam;  // null: none
 };
 
-/// A quantity of a Thing. `get` gives its numbers, a double or a std::array, and has no state.
+/// A quantity of a Thing. `get` returns its numbers, a double or a std::array, and has no state.
 template <class Thing>
 struct Row {
   template <class Get>
@@ -59,7 +59,7 @@ struct Row {
 
   const char* name;
   const char* unit;
-  std::size_t components;  // 0: one number
+  std::size_t components;  // 0: a single number
   void (*append)(const Thing& thing, std::vector<double>& values);
 
  private:
@@ -75,53 +75,53 @@ struct Row {
   }
 };
 
-/// A member as the quantity itself.
+/// A member as the quantity.
 template <auto member>
 inline constexpr auto of = [](const auto& thing) { return thing.*member; };
 
-/// The datasets of a run that gain a row with each sample.
+/// The datasets of a run that get a row at each sample.
 class Outputs {
  public:
-  /// Datasets `group` + name of one thing: [n] or [n, components]. see(now) gives the thing at an instant. The table
-  /// has to outlive the outputs.
-  template <class Thing, std::size_t rows, class See>
-  void add(const std::string& group, const Row<Thing> (&table)[rows], See see) {
+  /// Adds datasets `group` + name of one thing: [n] or [n, components]. get(now) returns the thing at an instant. The
+  /// table must outlive the outputs.
+  template <class Thing, std::size_t rows, class Get>
+  void add(const std::string& group, const Row<Thing> (&table)[rows], Get get) {
     for (const Row<Thing>& row : table) describe(group + row.name, row.unit, {}, row.components);
-    append_.push_back([table = std::span(table), see](const Observed& now, std::vector<double>& values) {
-      const Thing& thing = see(now);
+    append_.push_back([table = std::span(table), get](const Observed& now, std::vector<double>& values) {
+      const Thing& thing = get(now);
       for (const Row<Thing>& row : table) row.append(thing, values);
     });
   }
-  /// The same of `count` things side by side: [n, count] or [n, count, components]. see(now, i) gives thing i.
-  template <class Thing, std::size_t rows, class See>
-  void add_each(const std::string& group, const Row<Thing> (&table)[rows], std::size_t count, See see) {
+  /// The same for `count` things: [n, count] or [n, count, components]. get(now, i) returns thing i.
+  template <class Thing, std::size_t rows, class Get>
+  void add_each(const std::string& group, const Row<Thing> (&table)[rows], std::size_t count, Get get) {
     for (const Row<Thing>& row : table) describe(group + row.name, row.unit, {count}, row.components);
-    append_.push_back([table = std::span(table), count, see](const Observed& now, std::vector<double>& values) {
+    append_.push_back([table = std::span(table), count, get](const Observed& now, std::vector<double>& values) {
       for (const Row<Thing>& row : table)
-        for (std::size_t i = 0; i < count; ++i) row.append(see(now, i), values);
+        for (std::size_t i = 0; i < count; ++i) row.append(get(now, i), values);
     });
   }
-  /// One dataset [n, count]: see(now, i) gives number i.
-  template <class See>
-  void add_numbers(std::string name, std::string unit, std::size_t count, See see) {
+  /// Adds one dataset [n, count]: get(now, i) returns number i.
+  template <class Get>
+  void add_numbers(std::string name, std::string unit, std::size_t count, Get get) {
     describe(std::move(name), std::move(unit), {count}, 0);
-    append_.push_back([count, see](const Observed& now, std::vector<double>& values) {
-      for (std::size_t i = 0; i < count; ++i) values.push_back(see(now, i));
+    append_.push_back([count, get](const Observed& now, std::vector<double>& values) {
+      for (std::size_t i = 0; i < count; ++i) values.push_back(get(now, i));
     });
   }
-  /// One dataset [n] of a number: see(now) gives it.
-  template <class See>
-  void add_number(std::string name, std::string unit, See see) {
+  /// Adds one dataset [n] of a number that get(now) returns.
+  template <class Get>
+  void add_number(std::string name, std::string unit, Get get) {
     describe(std::move(name), std::move(unit), {}, 0);
-    append_.push_back([see](const Observed& now, std::vector<double>& values) { values.push_back(see(now)); });
+    append_.push_back([get](const Observed& now, std::vector<double>& values) { values.push_back(get(now)); });
   }
-  /// A dataset that does not change with time.
+  /// Adds a dataset that does not change with time.
   void add_constant(std::string name, std::vector<double> values, const char* unit) {
     layout_.constants.push_back({std::move(name), std::move(values), unit});
   }
 
   const results::Layout& layout() const { return layout_; }
-  /// The rows of all datasets at an instant.
+  /// Sets the rows of all datasets at an instant.
   void fill(const Observed& now, std::vector<double>& values) const {
     values.clear();
     for (const auto& append : append_) append(now, values);
@@ -137,10 +137,10 @@ class Outputs {
   std::vector<std::function<void(const Observed&, std::vector<double>&)>> append_;
 };
 
-/// Everything that is stored of a scene. The source's objects have to outlive it.
+/// All outputs of a scene. The source's objects must outlive them.
 Outputs outputs_of(const Source& source);
 
-/// The stations of probes and span ends: what a file of modes or of a sweep holds of these.
+/// The stations of probes and span ends, in files of modes and of sweeps.
 std::vector<results::Layout::Constant> stations(const std::vector<double>& probes, const std::vector<double>& supports);
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
-// Outputs of the structure: its response at the probes and that of a rail there, the reactions of supports, and the
-// balance of all forces.
+// Outputs of the structure: its response and that of a rail at the probes, the reactions of supports, and the balance
+// of all forces.
 #include <numeric>
 
 #include "output_groups.hpp"
@@ -17,20 +17,20 @@ constexpr Row<Response> motion_rows[] = {
     {"acceleration", "m/s2", of<&Response::acceleration>},
 };
 
-// Of beams by their elements.
+// For beams by elements.
 constexpr Row<Response> force_rows[] = {
     {"moment", "N m", of<&Response::moment>},
     {"axial_displacement", "m", of<&Response::axial_displacement>},
     {"axial_force", "N", of<&Response::axial_force>},
 };
 
-// Of the bridge alone.
+// For the bridge only.
 constexpr Row<Response> shear_rows[] = {{"shear", "N", of<&Response::shear>}};
 
 constexpr Row<Triple> support_rows[] = {{"reaction", "N, N, N m", [](const Triple& reaction) { return reaction; }}};
 
-/// Resultants {x, y} of everything that acts on the structure, and what is left of their sum; those along x are zero
-/// where the structure has no axial unknowns.
+/// Resultants {x, y} of all forces on the structure, and their sum. Those along x are zero if the structure has no
+/// axial unknowns.
 struct Balance {
   Pair load{}, support{}, foundation{}, inertia{}, drag{}, residual{};
 };
@@ -44,7 +44,7 @@ constexpr Row<Balance> balance_rows[] = {
     {"residual", "N, N", of<&Balance::residual>},
 };
 
-/// gravity: of the structure's own weight, m/s2; 0: it has none.
+/// gravity: for the structure's own weight, m/s2; 0 without it.
 Balance balance_of(const Observed& now, double gravity, bool axial) {
   const beam::GroundForces& ground = *now.ground;
   Balance b;

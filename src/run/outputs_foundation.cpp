@@ -1,5 +1,4 @@
-// Outputs of the foundation and of a layered track: the forces of points and of sleepers one by one, those of beds on
-// each span.
+// Outputs of the foundation and of a layered track: forces of single points and sleepers, and of beds on each span.
 #include <algorithm>
 #include <optional>
 
@@ -9,14 +8,14 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t most_points = 2000;  // of a kind whose forces are stored one by one
+constexpr std::size_t max_points = 2000;  // largest number of points of a kind whose forces are stored
 
-/// How many numbers are stored of a kind of foundation: one a point, or one a span on a bed; 0: the beam has none of
-/// it.
+/// The number of stored forces of a kind of foundation: one for each point, or for each span on a bed; 0: the beam has
+/// none of this kind.
 std::size_t forces_stored(const beam::BeamModel& model, const beam::FoundationKind& kind) {
   if (!present(model.foundation, kind) || !acts(kind, model)) return 0;
   const std::size_t count = kind.bed != nullptr ? model.spans.size() : (model.foundation.*kind.points).size();
-  return count <= most_points ? count : 0;
+  return count <= max_points ? count : 0;
 }
 
 std::vector<double> stations_of(const std::vector<beam::PointFoundation>& points) {
@@ -25,8 +24,8 @@ std::vector<double> stations_of(const std::vector<beam::PointFoundation>& points
   return x;
 }
 
-/// Where the sleepers over a gap stand, from left to right, m.
-std::vector<double> hanging_at(const beam::Beam& beam) {
+/// The positions of sleepers over a gap, in ascending order, m.
+std::vector<double> hanging_positions(const beam::Beam& beam) {
   std::vector<double> x;
   for (const beam::NonlinearPoint& sleeper : beam::hanging_sleepers(beam.bridge(), beam.layout(), 0, beam.columns()))
     x.push_back(sleeper.x);
@@ -45,7 +44,7 @@ void add_foundation(const Source& source, Outputs& outputs) {
     if (kind.points != nullptr) outputs.add_constant(group + "x", stations_of(model.foundation.*kind.points), "m");
     const beam::FoundationForceName& force = beam::force_name(kind);
     outputs.add_numbers(group + std::string(force.quantity), std::string(force.unit), count,
-                        [k](const Observed& now, std::size_t i) {  // what is linear, and what is not
+                        [k](const Observed& now, std::size_t i) {  // sum of linear and nonlinear forces
                           const double linear = now.ground->of_kind(k)[i];
                           const std::vector<double>& other = now.motion.beam.foundation.of_kind[k];
                           return i < other.size() ? linear + other[i] : linear;
@@ -55,8 +54,8 @@ void add_foundation(const Source& source, Outputs& outputs) {
 
 // Sleepers over a gap.
 void add_hanging(const Source& source, Outputs& outputs) {
-  const std::vector<double> x = hanging_at(*source.beam);
-  if (x.empty() || x.size() > most_points) return;
+  const std::vector<double> x = hanging_positions(*source.beam);
+  if (x.empty() || x.size() > max_points) return;
   outputs.add_constant("/track/hanging/x", x, "m");
   outputs.add_numbers("/track/hanging/force", "N", x.size(),
                       [](const Observed& now, std::size_t i) { return now.motion.beam.foundation.below_sleepers[i]; });
@@ -64,12 +63,12 @@ void add_hanging(const Source& source, Outputs& outputs) {
                       [](const Observed& now, std::size_t i) { return now.motion.beam.foundation.open_gaps[i]; });
 }
 
-// What a gap's spring pushes is no part of the linear forces.
+// The force of a gap's spring is not part of the linear forces.
 void add_sleepers(const Source& source, Outputs& outputs) {
   if (source.scene.output.sleepers.empty()) return;
-  const std::vector<double> hanging = hanging_at(*source.beam);
+  const std::vector<double> hanging = hanging_positions(*source.beam);
   const std::vector<double> x = beam::SleeperForces(*source.beam, source.scene.output.sleepers).x();
-  std::vector<std::optional<std::size_t>> gap;  // its number, of sleepers over one
+  std::vector<std::optional<std::size_t>> gap;  // index of the gap, for sleepers over one
   for (const double station : x) {
     const auto found = std::find(hanging.begin(), hanging.end(), station);
     gap.push_back(found == hanging.end() ? std::nullopt : std::optional<std::size_t>(found - hanging.begin()));

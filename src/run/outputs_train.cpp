@@ -7,7 +7,7 @@ namespace traverse::app {
 namespace {
 
 using Triple = std::array<double, 3>;
-constexpr auto itself = [](const auto& numbers) { return numbers; };
+constexpr auto identity = [](const auto& numbers) { return numbers; };
 
 struct BodyMotion {
   Triple position, velocity, acceleration;  // x, y, angle
@@ -41,11 +41,11 @@ constexpr Row<SensorMotion> sensor_rows[] = {
 };
 
 // On the second body.
-constexpr Row<Triple> joint_rows[] = {{"reaction", "N, N, N m", itself}};
-constexpr Row<double> spring_rows[] = {{"force", "N", itself}};  // tension
-constexpr Row<double> torsion_spring_rows[] = {{"moment", "N m", itself}};
+constexpr Row<Triple> joint_rows[] = {{"reaction", "N, N, N m", identity}};
+constexpr Row<double> spring_rows[] = {{"force", "N", identity}};  // positive in tension
+constexpr Row<double> torsion_spring_rows[] = {{"moment", "N m", identity}};
 
-// Of a joint, on the vehicle behind.
+// The reaction of a joint on the rear vehicle.
 constexpr Row<Triple> coupler_rows[] = {
     {"fx", "N", [](const Triple& r) { return r[0]; }},
     {"fy", "N", [](const Triple& r) { return r[1]; }},
@@ -57,7 +57,7 @@ Triple triple(const Eigen::VectorXd& x, std::size_t body) {
   return {x[i], x[i + 1], x[i + 2]};
 }
 
-SensorMotion sensed(const multibody::MechanismState& state, std::size_t body, const Eigen::Vector2d& arm) {
+SensorMotion sensor_motion(const multibody::MechanismState& state, std::size_t body, const Eigen::Vector2d& arm) {
   const Triple q = triple(state.q, body), rate = triple(state.qd, body), a = triple(state.qdd, body);
   const Eigen::Vector2d r = Eigen::Rotation2Dd(q[2]) * arm;
   const double squared = rate[2] * rate[2];
@@ -108,7 +108,7 @@ class VehicleOutputs {
       outputs_.add(
           group(s.name), sensor_rows,
           [&fleet = fleet_, unit = unit_, arm = s.arm, i = static_cast<std::size_t>(member_.first_body + s.body)](
-              const Observed&) { return sensed(fleet.vehicles[unit].state, i, arm); });
+              const Observed&) { return sensor_motion(fleet.vehicles[unit].state, i, arm); });
   }
 
   void add_contacts() {
@@ -144,7 +144,7 @@ class VehicleOutputs {
 
   const train::Fleet& fleet_;
   const train::Member& member_;
-  std::size_t unit_;  // in fleet.vehicles, whose place in memory may change
+  std::size_t unit_;  // index in fleet.vehicles, whose address may change
   std::string group_;
   Outputs& outputs_;
 };
@@ -156,7 +156,7 @@ void add_vehicles(const Source& source, Outputs& outputs) {
 }
 
 void add_couplers(const Source& source, Outputs& outputs) {
-  std::size_t first = 0;  // of its gaps
+  std::size_t first = 0;  // index of the coupler's first gap
   for (const train::Coupler& c : source.scene.train.couplers) {
     const std::string group = "/couplers/" + c.name + "/";
     outputs.add_constant(group + "gap", {c.gaps.begin(), c.gaps.end()}, "1");

@@ -17,30 +17,30 @@
 namespace traverse::app {
 namespace {
 
-constexpr double rare = 5.0;  // steps for each
+constexpr double min_steps = 5.0;  // steps for each passage
 
-constexpr double usual_solves = 5.0;  // a step of the default method, whose impacts take contact_impact_steps
+constexpr double default_solves = 5.0;  // stage solves of the default method, for which contact_impact_steps is defined
 
-/// When something passes a probe, as long as that is rare among the steps.
+/// The times at which a wheel or force passes a probe; empty if there are too many of them for the steps.
 std::vector<double> passages(const Scene& scene, const Plan& plan) {
   std::vector<double> times;
   for (const std::vector<double>& one : passages_of(scene)) times.insert(times.end(), one.begin(), one.end());
   std::erase_if(times, [&](double t) { return t >= plan.end_time; });
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
-  if (static_cast<double>(times.size()) * rare > plan.end_time / plan.time_step) times.clear();
+  if (static_cast<double>(times.size()) * min_steps > plan.end_time / plan.time_step) times.clear();
   return times;
 }
 
 }  // namespace
 
-coupling::SystemInput system_input(const Scene& scene, bool predicted) {
+coupling::SystemInput system_input(const Scene& scene, bool static_only) {
   coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,         scene.profile,
                                  scene.gravity,  scene.self_weight, scene.impact_steps, scene.model.local_compliance};
-  if (!predicted) {
+  if (!static_only) {
     const auto own = integrate::own_method(scene.model.method);
-    const double solves = own ? static_cast<double>(own->stages.size()) : usual_solves;
-    input.impact_steps *= static_cast<int>(std::max(1.0, usual_solves / solves));
+    const double solves = own ? static_cast<double>(own->stages.size()) : default_solves;
+    input.impact_steps *= static_cast<int>(std::max(1.0, default_solves / solves));
     return input;
   }
   input.train.speed = input.load.speed = 0.0;
@@ -59,11 +59,11 @@ std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBe
 Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes, const Plan* earlier)
     : scene_(scene),
       shared_(shared),
-      still_(scene.analysis != Analysis::transient),
-      input_(system_input(scene, still_)),
+      static_only_(scene.analysis != Analysis::transient),
+      input_(system_input(scene, static_only_)),
       system_(shared.comm, carrier(scene, shared, input_), input_) {
   check_mesh(scene, notes);
-  if (!still_) plan_ = make_plan(scene, system_, shared.first_period(), notes);
+  if (!static_only_) plan_ = make_plan(scene, system_, shared.first_period(), notes);
   if (earlier != nullptr) {
     plan_.time_step = earlier->time_step;
     plan_.interval = earlier->interval;
@@ -80,19 +80,19 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
                                  system_.known_events(plan_.end_time, scene.model.step_kinks),
                                  scene.contact_tolerance.value_or(1e-3 * plan_.time_step)};
     if (scene.model.step_probes) settings.passages = passages(scene, plan_);
-    if (!still_) add_axle_passages(settings.passages);
+    if (!static_only_) add_axle_passages(settings.passages);
     settings.stored = plan_.stored;
     settings.type = scene.model.method;
-    settings.corners = scene.model.step_kinks && !still_;
+    settings.kinks = scene.model.step_kinks && !static_only_;
     stepper_.emplace(system_, std::move(settings));
-    if (!still_) check_times(plan_);
-    if (!still_ && stepper_->hides_long_steps())
+    if (!static_only_) check_times(plan_);
+    if (!static_only_ && stepper_->hides_long_steps())
       check_steps(scene, plan_, shared.first_period(), stepper_->high_order(), notes);
     method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
   }
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
                               system_.fleet().members.size(), system_.freedom(), scene.load.forces.size()));
-  if (!still_)
+  if (!static_only_)
     notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s{}", method, plan_.end_time,
                                 plan_.interval * static_cast<double>(plan_.stored),
                                 plan_.ends_at_sample() || scene.sweep ? "" : ", the end's own apart under /end"));
@@ -107,30 +107,30 @@ void Passage::add_axle_passages(std::vector<double>& times) const {
 
 void Passage::limit_to_active_window(std::vector<std::string>& notes) {
   const beam::Beam* beam = system_.beam();
-  if (still_ || beam == nullptr || scene_.model.modes > 0) return;
-  const bool apart = beam->parts().size() > 2;
-  const double tolerance = scene_.model.rest_tolerance >= 0.0 ? scene_.model.rest_tolerance
-                           : apart                            ? structure::ActiveWindow::quiet
-                                                              : 0.0;
+  if (static_only_ || beam == nullptr || scene_.model.modes > 0) return;
+  const bool separate = beam->parts().size() > 2;
+  const double tolerance = scene_.model.window_tolerance >= 0.0 ? scene_.model.window_tolerance
+                           : separate                           ? structure::ActiveWindow::quiet
+                                                                : 0.0;
   if (tolerance == 0.0) return;
   system_.limit_to_active_window(tolerance, scene_.output.probes);
   notes.push_back(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",
-                              tolerance, scene_.model.rest_tolerance >= 0.0 ? "" : "; -model_window 0 steps all"));
+                              tolerance, scene_.model.window_tolerance >= 0.0 ? "" : "; -model_window 0 steps all"));
 }
 
 void Passage::start(std::vector<std::string>& notes) {
   const results::Stage stage("search for the static equilibrium");
-  if (modal_) {  // the modes have their start; the system notes the weights
+  if (modal_) {  // the modes have their own start; the system stores the static wheel loads
     std::vector<double> y(static_cast<std::size_t>(system_.local_size()));
     system_.start(scene_.start == Start::equilibrium, y.data());
     return;
   }
   double* y = stepper_->state();
-  for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y, still_))
+  for (const std::string& line : system_.start(static_only_ || scene_.start == Start::equilibrium, y, static_only_))
     notes.push_back(line);
-  if (scene_.model.vehicles == VehicleModel::linear && !still_)
+  if (scene_.model.vehicles == VehicleModel::linear && !static_only_)
     for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(line);
-  if (!still_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
+  if (!static_only_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);
 }
 

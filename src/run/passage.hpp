@@ -1,4 +1,4 @@
-// One transient run of a scene on a structure, or its static response: checked when it is built, computed by `run`.
+// One transient run of a scene, or its static response: checked when it is built, computed by `run`.
 #pragma once
 
 #include <functional>
@@ -14,32 +14,32 @@
 
 namespace traverse::app {
 
-/// What a scene puts on its structure. still: it stands where it starts.
-coupling::SystemInput system_input(const Scene& scene, bool predicted);
+/// The vehicles and loads of a scene. static_only: they do not move.
+coupling::SystemInput system_input(const Scene& scene, bool static_only);
 
-/// The bridge by its modes where vehicles run on these; else by its elements, or none.
+/// The bridge by modes if vehicles run on these; otherwise by elements; null without a bridge.
 std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
                                               const coupling::SystemInput& input);
 
 class Passage {
  public:
-  /// Collective. InputError for what cannot be run. Scene and structure must outlive it. earlier: the plan of a run
-  /// that this one goes on from, whose steps and samples stay; null: none.
+  /// Collective. InputError if the scene cannot be run. Scene and structure must outlive this object. earlier: the plan
+  /// of the run that this one continues, with its steps and samples; null: none.
   Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes, const Plan* earlier = nullptr);
 
-  /// Collective. Sets everything to its start; SolverError where there is no equilibrium.
+  /// Collective. Sets the initial state; SolverError if there is no equilibrium.
   void start(std::vector<std::string>& notes);
-  /// As Stepper::begin.
+  /// See Stepper::begin.
   void begin(const std::function<void(const integrate::Instant&)>& sample) {
     stepper_ ? stepper_->begin(sample) : modal_->begin(sample);
   }
-  /// As Stepper::run.
+  /// See Stepper::run.
   void run(const std::function<void(const integrate::Instant&)>& sample, const std::function<bool(double, long)>& step,
            const std::function<void(double)>& between = {});
 
-  /// Collective. The state between two steps, written, or read back after the start.
+  /// Collective. Writes the state between two steps, or reads it after the start.
   void keep(base::Archive& archive);
-  /// Why it cannot be written; empty: it can.
+  /// The reason why the state cannot be written; empty: it can.
   std::string no_archive() const { return stepper_ ? stepper_->no_archive() : ""; }
 
   coupling::System& system() { return system_; }
@@ -55,7 +55,7 @@ class Passage {
 
   const Scene& scene_;
   const SharedBeam& shared_;
-  bool still_;
+  bool static_only_;
   coupling::SystemInput input_;
   coupling::System system_;
   Plan plan_{0.0, 1.0, 1.0};

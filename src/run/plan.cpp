@@ -11,15 +11,16 @@
 namespace traverse::app {
 namespace {
 
-constexpr double first_steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
-constexpr double steps_a_wave = 20.0;           // of the track or of a wheel out of round, at that accuracy
-constexpr double samples_a_period = 20.0;       // of a bridge by its modes, where the interval is left open
-constexpr double looks_a_period = 10.0;         // of the first period: peaks are found among as many at least
-constexpr double mechanism_step = 1e-3;         // s, where there is no beam to judge by
-constexpr double least_steps_a_span = 10.0;
-constexpr double most_steps = 1e10;
-constexpr double stored_samples = 2000.0;  // at most, where the interval is left open
-constexpr double at_a_sample = 1e-3;       // of a step: an end so close to a multiple of the interval is moved there
+constexpr double steps_per_period = 100.0;   // in the first period or a span's crossing, at an accuracy of 1e-3
+constexpr double steps_per_wave = 20.0;      // in a wave of the track or of a wheel out of round, at that accuracy
+constexpr double samples_per_period = 20.0;  // in the first period of a bridge by modes, if the interval is open
+constexpr double samples_per_first_period = 10.0;  // smallest number of samples in the first period for peaks
+constexpr double mechanism_step = 1e-3;            // s, without a beam
+constexpr double min_steps_per_span = 10.0;
+constexpr double max_steps = 1e10;
+constexpr double max_stored_samples = 2000.0;  // largest number, if the interval is open
+constexpr double end_tolerance =
+    1e-3;  // relative to the step: an end so close to a multiple of the interval is moved there
 
 // The largest of 1, 2, 5 times a power of ten that does not exceed x.
 double round_down(double x) {
@@ -38,9 +39,9 @@ double end_of(const Scene& scene, const coupling::System& system) {
   return leaving + scene.tail.value_or(0.0);
 }
 
-// A step that the scene cannot be resolved with gives a wrong answer without any other sign.
+// A step that does not resolve the scene causes a wrong result without any other sign.
 void check_step(const Scene& scene, const Plan& plan) {
-  if (!(plan.end_time / plan.time_step < most_steps) && scene.step_open)
+  if (!(plan.end_time / plan.time_step < max_steps) && scene.step_open)
     throw InputError(fmt::format(
         "{}: the run ends at {:g} s only, which takes too many of the steps of {:g} s that the scene needs; allowed: "
         "{}, "
@@ -49,60 +50,64 @@ void check_step(const Scene& scene, const Plan& plan) {
                        : fmt::format("at {:g} m/s", greatest_speed(scene)),
         plan.end_time, plan.time_step,
         scene.end_time ? "an earlier end" : "a higher train_speed or load_speed, an earlier end (ts_max_time)"));
-  if (!(plan.end_time / plan.time_step < most_steps))
+  if (!(plan.end_time / plan.time_step < max_steps))
     throw InputError(fmt::format(
         "ts_dt = {:g}: too many steps to the end at {:g} s{}; allowed: above {:g} s", plan.time_step, plan.end_time,
         scene.end_time ? "" : fmt::format(", when all has passed at {:g} m/s", greatest_speed(scene)),
-        plan.end_time / most_steps));
+        plan.end_time / max_steps));
   const double speed = greatest_speed(scene);
   if (!scene.beam || speed <= 0.0) return;
   const double crossing = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end()) / speed;
-  if (plan.time_step > crossing / least_steps_a_span)
+  if (plan.time_step > crossing / min_steps_per_span)
     throw InputError(fmt::format("ts_dt = {:g}: the longest span is crossed in {:g} s; allowed: at most {:g} s",
-                                 plan.time_step, crossing, crossing / least_steps_a_span));
+                                 plan.time_step, crossing, crossing / min_steps_per_span));
 }
 
-// s: the shorter of the first period and the crossing of the shortest span, where there is a beam.
+// s: the shorter of the first period and the crossing of the shortest span, for a scene with a beam.
 double shortest_scale(const Scene& scene, double first_period) {
-  const double scale = first_period > 0.0 ? first_period : 1.0, speed = greatest_speed(scene);
+  double scale = first_period > 0.0 ? first_period : 1.0;
+  if (const double frequency = highest_load_frequency(scene.load); frequency > 0.0)
+    scale = std::min(scale, 1.0 / frequency);
+  const double speed = greatest_speed(scene);
   const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
   return speed > 0.0 ? std::min(scale, span / speed) : scale;
 }
 
 double chosen_step(const Scene& scene, double first_period, std::vector<std::string>& notes) {
-  const double finer = std::pow(scene.accuracy / 1e-3, 0.25);
-  const double wave_step = round_down(std::min(shortest_wave(scene) / scene.train.speed, 1e6) / steps_a_wave * finer);
-  const auto by_waves = [&] {
+  const double factor = std::pow(scene.accuracy / 1e-3, 0.25);
+  const double wave_step =
+      round_down(std::min(shortest_wave(scene) / scene.train.speed, 1e6) / steps_per_wave * factor);
+  const auto step_by_waves = [&] {
     notes.push_back(
         fmt::format("time step {:g} s: from accuracy {:g} and the shortest wave of track and wheels; -ts_dt changes it",
                     wave_step, scene.accuracy));
     return wave_step;
   };
   if (!scene.beam) {
-    if (wave_step < mechanism_step) return by_waves();
+    if (wave_step < mechanism_step) return step_by_waves();
     notes.push_back(fmt::format("time step {:g} s: no beam to judge by; -ts_dt changes it", mechanism_step));
     return mechanism_step;
   }
-  const double step = round_down(shortest_scale(scene, first_period) / first_steps_a_period * finer);
-  if (wave_step < step) return by_waves();
+  const double step = round_down(shortest_scale(scene, first_period) / steps_per_period * factor);
+  if (wave_step < step) return step_by_waves();
   notes.push_back(fmt::format(
       "time step {:g} s: from accuracy {:g}, the first period and the crossing of a span; -ts_dt changes it", step,
       scene.accuracy));
   return step;
 }
 
-// How many evenly spaced looks there are among so many steps: no further apart than wanted, each at the end of a step.
-long looks_among(long steps, double step, double longest) {
+// The number of equally spaced samples among `steps` steps: at most `longest` s apart, each at the end of a step.
+long samples_among(long steps, double step, double longest) {
   const double fit = std::min(static_cast<double>(steps), longest / step * (1.0 + 1e-9));
   for (long each = static_cast<long>(fit); each > 1; --each)
     if (steps % each == 0) return steps / each;
   return steps;
 }
 
-// The motion between samples is known: they are as far apart as a curve needs.
+// The motion between samples is exact: their distance follows from the shape of the curves only.
 void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector<std::string>& notes) {
   plan.interval = plan.time_step =
-      std::min(plan.end_time, scene.output.interval.value_or(round_down(first_period / samples_a_period)));
+      std::min(plan.end_time, scene.output.interval.value_or(round_down(first_period / samples_per_period)));
   if (!scene.output.interval)
     notes.push_back(
         fmt::format("samples every {:g} s: from the first period; output_interval changes it, which "
@@ -117,10 +122,10 @@ double sample_next_to_end(const Plan& plan) {
   return std::round(plan.end_time / interval) * interval;
 }
 
-// Leaving times are known to rounding, and a step to an end just behind the last sample would be far too short.
+// Leaving times have rounding errors, and a step to an end just behind the last sample would be far too short.
 void move_end_to_sample(Plan& plan) {
-  const double near = at_a_sample * std::min({plan.time_step, plan.interval, plan.end_time});
-  if (std::abs(sample_next_to_end(plan) - plan.end_time) < near) plan.end_time = sample_next_to_end(plan);
+  const double tolerance = end_tolerance * std::min({plan.time_step, plan.interval, plan.end_time});
+  if (std::abs(sample_next_to_end(plan) - plan.end_time) < tolerance) plan.end_time = sample_next_to_end(plan);
 }
 
 }  // namespace
@@ -150,23 +155,23 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   if (scene.output.interval && *scene.output.interval > plan.end_time)
     notes.push_back(fmt::format("output_interval {:g} s is longer than the run: of its series only the start is stored",
                                 *scene.output.interval));
-  // Peaks are looked for between stored samples, too, where these are further apart.
+  // If stored samples are too far apart for peaks, there are further samples in between.
   const double sampling_interval =
-      scene.beam ? std::min(scene.sampling_interval, shortest_scale(scene, first_period) / looks_a_period)
+      scene.beam ? std::min(scene.sampling_interval, shortest_scale(scene, first_period) / samples_per_first_period)
                  : scene.sampling_interval;
   if (scene.output.interval) {
-    plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
+    plan.interval = std::min(*scene.output.interval, max_steps * plan.time_step);  // long enough for any run
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9))));
     plan.stored = scene.model.step_probes
                       ? steps
-                      : looks_among(steps, plan.interval / static_cast<double>(steps), sampling_interval);
+                      : samples_among(steps, plan.interval / static_cast<double>(steps), sampling_interval);
     plan.interval /= static_cast<double>(plan.stored);
     if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
-    const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples)));
-    plan.stored = scene.model.step_probes ? steps : looks_among(steps, plan.time_step, sampling_interval);
+    const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / max_stored_samples)));
+    plan.stored = scene.model.step_probes ? steps : samples_among(steps, plan.time_step, sampling_interval);
     plan.interval = plan.time_step * static_cast<double>(steps) / static_cast<double>(plan.stored);
   }
   move_end_to_sample(plan);

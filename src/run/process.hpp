@@ -1,4 +1,4 @@
-// What runs and sweeps share towards the world outside: the file's attributes, a disk or a memory that is full.
+// Functions that single runs and studies share: the attributes of the file, messages, and the exit after a failure.
 #pragma once
 
 #include <mpi.h>
@@ -14,14 +14,15 @@
 namespace traverse::app {
 
 std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene);
-/// Rank 0 of comm says what was modelled.
+/// Rank 0 of comm prints the description of the model.
 void print_notes(MPI_Comm comm, const std::vector<std::string>& notes);
-/// One line on standard error, where that can be written.
+/// Prints one line on standard error, if possible.
 void complain(const Error& error);
-/// A file that cannot grow, which the writing rank alone knows: the others are not to wait for it.
+/// Ends all ranks if a file cannot be written. Only the writing rank detects this, and the others would wait for it.
 [[noreturn]] void leave_together(MPI_Comm comm, const Error& error);
 
-/// Any failure as one that ends the program with a message: of memory, what to make smaller.
+/// Converts any failure to an error with a message and an exit status; for lack of memory the message lists how to
+/// reduce the scene.
 Error as_error(const std::exception& failure);
 
 }  // namespace traverse::app

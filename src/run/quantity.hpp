@@ -1,4 +1,4 @@
-// The quantities whose peaks are looked for; `accuracy` promises their errors.
+// The quantities whose peaks are evaluated and whose errors `accuracy` controls.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@ enum Quantity : std::size_t {
 inline constexpr std::array<const char*, quantities> quantity_names = {
     "deflection", "acceleration",       "moment",     "wheel force", "low-passed acceleration",
     "shear",      "axial displacement", "axial force"};
-/// The same in options and in the results file.
+/// Their names in options and in the results file.
 inline constexpr std::array<const char*, quantities> stored_names = {
     "deflection", "acceleration",       "moment",     "wheel_force", "acceleration_lowpass",
     "shear",      "axial_displacement", "axial_force"};
 
 inline constexpr std::array<const char*, quantities> quantity_units = {"m", "m/s2", "N m", "N", "m/s2", "N", "m", "N"};
 
-/// Whether only runs by elements look for its peaks: those by modes and side by side do not.
-inline constexpr bool by_elements_alone(std::size_t q) { return q >= shear_force; }
+/// Whether only single runs by elements evaluate its peaks, not runs by modes or in batches.
+inline constexpr bool by_elements_only(std::size_t q) { return q >= shear_force; }
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
-// Measures the latency of MPI_Allreduce, estimates the time of a stage on every number of ranks from unknowns, vehicles
-// and messages, and selects the number beyond which more ranks gain too little.
+// Measures the latency of MPI_Allreduce, estimates the duration of a stage on every number of ranks from unknowns,
+// vehicles and messages, and selects the number above which more ranks gain too little.
 #include "run/rank_choice.hpp"
 
 #include <fmt/format.h>
@@ -15,14 +15,14 @@
 namespace traverse::app {
 namespace {
 
-// s, of a coach's stage: what its rank does alone, and its contacts, which every rank solves with all others.
-constexpr double vehicle_alone = 3.0e-6, vehicle_contacts = 1.7e-6;
-constexpr double messages = 9.0;         // in a stage, as counted on two ranks (doc/scaling.md)
-constexpr double late = 0.5e-6;          // s, by which ranks come late to a message
-constexpr double worth = 0.85;           // more ranks have to take less than that part of what fewer take
-constexpr int most_told = 1024;          // ranks
-constexpr int batches = 7, batch = 100;  // of messages that tell their latency
-constexpr double pause = 2e-5;           // s, from one of these to the next, in which ranks compute
+// s, of a coach in a stage: computed by its rank only, and its contacts, which every rank solves with all others.
+constexpr double vehicle_seconds = 3.0e-6, contact_seconds = 1.7e-6;
+constexpr double messages = 9.0;            // number of messages in a stage, as counted on two ranks (doc/scaling.md)
+constexpr double delay = 0.5e-6;            // s, mean delay of ranks at a message
+constexpr double required_ratio = 0.85;     // more ranks must need less than this share of the time
+constexpr int max_ranks_considered = 1024;  // ranks
+constexpr int batches = 7, batch = 100;     // numbers of messages, to measure their latency
+constexpr double pause = 2e-5;              // s, of computation between two of these messages
 
 }  // namespace
 
@@ -35,31 +35,31 @@ StageWork stage_work(const Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   const bool spans_apart = beam.all_separate() && beam.spans.size() > 1;
   work.unknowns = unknowns_of(scene);
-  work.each = unknown_seconds(scene);
-  // Every rank steps all vehicles that are linear.
+  work.seconds_per_unknown = unknown_seconds(scene);
+  // Every rank computes all linear vehicles.
   work.vehicles = scene.model.vehicles == VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
-  work.cut = !(scene.model.rest_tolerance > 0.0 || (scene.model.rest_tolerance < 0.0 && spans_apart));
+  work.cut = !(scene.model.window_tolerance > 0.0 || (scene.model.window_tolerance < 0.0 && spans_apart));
   if (scene.model.modes > 0)
-    work.alone = "the modes' steps have no more in them than a message";
+    work.single_rank_reason = "the modes' steps have no more in them than a message";
   else if (work.vehicles == 0.0 && !work.cut)
-    work.alone = "the spans near linear vehicles have no more in them than a message";
+    work.single_rank_reason = "the spans near linear vehicles have no more in them than a message";
   return work;
 }
 
 double stage_seconds(const StageWork& work, int ranks, double latency) {
   const double share = static_cast<double>(ranks);
-  const double structure = work.unknowns * work.each / (work.cut ? share : 1.0);
-  const double vehicles = vehicle_alone * std::ceil(work.vehicles / share) + vehicle_contacts * work.vehicles;
-  return structure + vehicles + messages * (latency + late) * std::ceil(std::log2(share));
+  const double structure = work.unknowns * work.seconds_per_unknown / (work.cut ? share : 1.0);
+  const double vehicles = vehicle_seconds * std::ceil(work.vehicles / share) + contact_seconds * work.vehicles;
+  return structure + vehicles + messages * (latency + delay) * std::ceil(std::log2(share));
 }
 
 int best_ranks(const StageWork& work, int most, double latency) {
   int best = 1;
-  if (!work.alone.empty()) return best;
+  if (!work.single_rank_reason.empty()) return best;
   double least = stage_seconds(work, 1, latency);
   for (int ranks = 2; ranks <= most; ++ranks) {
     const double seconds = stage_seconds(work, ranks, latency);
-    if (seconds > worth * least) continue;
+    if (seconds > required_ratio * least) continue;
     least = seconds;
     best = ranks;
   }
@@ -75,8 +75,8 @@ double message_latency(MPI_Comm comm) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
   };
   std::array<double, 8> numbers{};
-  std::array<double, batches> taken{};
-  for (double& seconds : taken) {
+  std::array<double, batches> durations{};
+  for (double& seconds : durations) {
     MPI_Barrier(comm);
     const auto begin = Clock::now();
     for (int k = 0; k < batch; ++k) {
@@ -87,8 +87,8 @@ double message_latency(MPI_Comm comm) {
     }
     seconds = std::max(0.0, since(begin) / batch - pause);
   }
-  std::nth_element(taken.begin(), taken.begin() + batches / 2, taken.end());
-  double latency = taken[batches / 2] / std::ceil(std::log2(static_cast<double>(ranks)));
+  std::nth_element(durations.begin(), durations.begin() + batches / 2, durations.end());
+  double latency = durations[batches / 2] / std::ceil(std::log2(static_cast<double>(ranks)));
   MPI_Bcast(&latency, 1, MPI_DOUBLE, 0, comm);
   return latency;
 }
@@ -99,20 +99,20 @@ RankChoice choose_ranks(MPI_Comm comm, const Scene& scene) {
   if (ranks == 1) return {};
   const StageWork work = stage_work(scene);
   if (scene.all_ranks) return {ranks, fmt::format("ranks: all {} take the steps, as asked for", ranks)};
-  if (!work.alone.empty())
-    return {1, fmt::format("ranks: 1 of {} takes all steps, the others wait: {}", ranks, work.alone)};
+  if (!work.single_rank_reason.empty())
+    return {1, fmt::format("ranks: 1 of {} takes all steps, the others wait: {}", ranks, work.single_rank_reason)};
   const double latency = message_latency(comm);
-  const int taken = best_ranks(work, ranks, latency), best = best_ranks(work, most_told, latency);
+  const int chosen = best_ranks(work, ranks, latency), best = best_ranks(work, max_ranks_considered, latency);
   const auto gain = [&](int count) { return stage_seconds(work, 1, latency) / stage_seconds(work, count, latency); };
   const std::string measured = fmt::format("messages take {:.2g} us", 1e6 * latency);
-  if (taken == 1)
+  if (chosen == 1)
     return {1, fmt::format("ranks: 1 of {} takes all steps, the others wait: {}, more than sharing would save "
                            "(-step_ranks all shares nevertheless)",
                            ranks, measured)};
-  std::string said = fmt::format("ranks: {} of {} take the steps, {:.2g} times as fast as one where each has a core",
-                                 taken, ranks, gain(taken));
-  if (best != taken) said += fmt::format("; {} would be fastest, {:.2g} times", best, gain(best));
-  return {taken, said + fmt::format(" ({})", measured)};
+  std::string note = fmt::format("ranks: {} of {} take the steps, {:.2g} times as fast as one where each has a core",
+                                 chosen, ranks, gain(chosen));
+  if (best != chosen) note += fmt::format("; {} would be fastest, {:.2g} times", best, gain(best));
+  return {chosen, note + fmt::format(" ({})", measured)};
 }
 
 }  // namespace traverse::app

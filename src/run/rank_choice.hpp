@@ -1,5 +1,5 @@
-// How many ranks a single run is worth: a model of what a step takes on so many of them, from what the scene holds and
-// what a message takes between the ranks at hand (doc/scaling.md).
+// Chooses the number of ranks of a single run by a model of the duration of a step, from the size of the scene and the
+// measured latency of messages between the ranks (doc/scaling.md).
 #pragma once
 
 #include <mpi.h>
@@ -10,28 +10,29 @@
 
 namespace traverse::app {
 
-/// What a step's stages are made of.
+/// Work of a stage.
 struct StageWork {
-  double unknowns = 0.0;  // of the structure, that are stepped
-  double each = 0.0;      // s, a stage takes for one of these
-  double vehicles = 0.0;  // that ranks share
-  bool cut = true;        // ranks share the unknowns: not the few that move on a long bridge at rest
-  std::string alone;      // why one rank takes all steps, in words; empty: ranks may share them
+  double unknowns = 0.0;             // unknowns of the structure in the steps
+  double seconds_per_unknown = 0.0;  // s, for one of the unknowns
+  double vehicles = 0.0;             // vehicles that the ranks share
+  bool cut = true;                   // the ranks share the unknowns; false for the few active ones on a long bridge
+  std::string single_rank_reason;    // the reason for one rank, in words; empty: ranks may share the steps
 };
 StageWork stage_work(const Scene& scene);
 
-/// s, of a stage on so many ranks, with messages that take `latency` s between two of them.
+/// Duration of a stage on `ranks` ranks, s; latency: of a message between two of them, s.
 double stage_seconds(const StageWork& work, int ranks, double latency);
-/// The number of ranks, of those up to `most`, on which a stage takes least; fewer where more save next to nothing.
+/// The number of ranks, at most `most`, with the shortest stage; fewer if more ranks gain little.
 int best_ranks(const StageWork& work, int most, double latency);
 
-/// Collective; the same on every rank. s, of a message between all ranks over its stops, the median of some: between
-/// ranks that compute meanwhile, as in a step, since it is these that find their processors taken by others.
+/// Collective; the same on every rank. The latency of a message between all ranks, divided by its number of stages, s:
+/// the median of several messages between ranks that compute meanwhile, as in a step, because these may have to share
+/// their processors.
 double message_latency(MPI_Comm comm);
 
 struct RankChoice {
-  int ranks = 1;     // that take the steps
-  std::string said;  // one line; empty on one rank
+  int ranks = 1;     // ranks that compute the steps
+  std::string note;  // one line; empty on one rank
 };
 /// Collective; the same on every rank.
 RankChoice choose_ranks(MPI_Comm comm, const Scene& scene);

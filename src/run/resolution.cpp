@@ -15,26 +15,26 @@
 namespace traverse::app {
 namespace {
 
-// Deflection under a force on a bed, of an element as long as so many 1/lambda, lambda = (k/4EI)^(1/4): 2 % off at 1,
+// Element length times lambda, lambda = (k/4EI)^(1/4). The error of the deflection under a force on a bed is 2 % at 1,
 // a fifth at 2, a factor of three at 4.
-constexpr double rough_on_bed = 1.0, longest_on_bed = 2.0;
+constexpr double warning_on_bed = 1.0, limit_on_bed = 2.0;
 
-// Peaks of a bridge of three spans under a moving force (R6): esdirk4 is 3e-3 off at 12 steps a first period, 5e-3 at
-// 7, 3 % at 5 and 5 % at 4; the second-order genalpha 1 % at 36 and 5 % at 12. One span under a sprung mass (R3) is
-// right to 2e-4 at 5.
-constexpr double least_steps_a_period = 4.0, good_steps_a_period = 8.0, second_order_steps_a_period = 40.0;
-// A bridge that is crossed in so many first periods deflects as at rest, to a hundredth, whatever the step.
-constexpr double periods_of_a_slow_crossing = 50.0;
+// Errors of peaks of a bridge of three spans under a moving force (R6): esdirk4 3e-3 with 12 steps in the first period,
+// 5e-3 with 7, 3 % with 5 and 5 % with 4; the second-order genalpha 1 % with 36 and 5 % with 12. For one span under a
+// sprung mass (R3) 2e-4 with 5.
+constexpr double min_steps_per_period = 4.0, good_steps_per_period = 8.0, second_order_steps_per_period = 40.0;
+// If the crossing of a bridge lasts this number of first periods, the deflection is static within 1 %, for any step.
+constexpr double slow_crossing_periods = 50.0;
 
-// Wheel forces over a bump of 2 m: a hundredth off at 20 steps, a tenth at 8, nearly half at 4.
-constexpr double least_steps_a_wave = 8.0, good_steps_a_wave = 20.0;
-// Sleepers and contacts that oscillate stir wheel forces less: a part of what varies is lost.
-constexpr double steps_a_sleeper = 4.0, steps_an_oscillation = 10.0;
+// Errors of wheel forces over a bump of 2 m: 1 % with 20 steps, a tenth with 8, nearly half with 4.
+constexpr double min_steps_per_wave = 8.0, good_steps_per_wave = 20.0;
+// Sleepers and contact oscillations excite wheel forces less: a part of the variation is lost.
+constexpr double steps_per_sleeper = 4.0, steps_per_oscillation = 10.0;
 
-constexpr double most_stored_samples = 1e10;
+constexpr double max_stored_samples = 1e10;
 constexpr double shortest_run = 1e-12;  // s
 
-bool loaded(const Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
+bool has_loads(const Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
 
 void check_waves(const Scene& scene, double step, std::vector<std::string>& notes) {
   double wave = scene.profile.shortest_wave();
@@ -42,40 +42,40 @@ void check_waves(const Scene& scene, double step, std::vector<std::string>& note
     if (course.profile) wave = std::min(wave, course.profile->shortest_wave());
   if (scene.train.vehicles.empty() || scene.train.speed <= 0.0 || !std::isfinite(wave)) return;
   const double passage = wave / scene.train.speed;
-  if (step > passage / least_steps_a_wave)
+  if (step > passage / min_steps_per_wave)
     throw InputError(
         fmt::format("ts_dt = {:g}: the track's shortest wave, {:g} m, is passed in {:g} s; allowed: at most {:g} s, or "
                     "leave ts_dt out",
-                    step, wave, passage, passage / least_steps_a_wave));
-  if (step > passage / good_steps_a_wave)
+                    step, wave, passage, passage / min_steps_per_wave));
+  if (step > passage / good_steps_per_wave)
     notes.push_back(fmt::format(
         "steps of {:g} s are long for the track's shortest wave, {:g} m, passed in {:g} s: wheel forces are rough; "
         "-ts_dt {:.2g} resolves it",
-        step, wave, passage, passage / good_steps_a_wave));
+        step, wave, passage, passage / good_steps_per_wave));
 }
 
-// The bridge does not notice single sleepers, wheels do.
+// Single sleepers affect the wheels, not the bridge.
 void check_sleepers(const Scene& scene, double step, std::vector<std::string>& notes) {
   if (!scene.beam || !scene.beam->track || greatest_speed(scene) <= 0.0) return;
   const double passage = scene.beam->track->spacing / greatest_speed(scene);
-  if (step > passage / steps_a_sleeper)
+  if (step > passage / steps_per_sleeper)
     notes.push_back(
         fmt::format("steps of {:g} s are long for the sleepers, each passed in {:g} s: forces of wheels and rail are "
                     "rough; -ts_dt {:.2g} resolves them",
-                    step, passage, passage / steps_an_oscillation));
+                    step, passage, passage / steps_per_oscillation));
 }
 
 void check_periods(const Scene& scene, double step, double period, bool high_order, std::vector<std::string>& notes) {
   const double speed = greatest_speed(scene);
   if (!scene.beam || period <= 0.0 || speed <= 0.0) return;
   const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
-  if (span / speed > periods_of_a_slow_crossing * period) return;
-  if (step > period / least_steps_a_period)
+  if (span / speed > slow_crossing_periods * period) return;
+  if (step > period / min_steps_per_period)
     throw InputError(fmt::format(
         "ts_dt = {:g}: the first period of the beam is {:g} s, which the load excites; allowed: at most {:g} s, or "
         "leave ts_dt out",
-        step, period, period / least_steps_a_period));
-  const double good = period / (high_order ? good_steps_a_period : second_order_steps_a_period);
+        step, period, period / min_steps_per_period));
+  const double good = period / (high_order ? good_steps_per_period : second_order_steps_per_period);
   if (step <= good) return;
   notes.push_back(
       fmt::format("steps of {:g} s are long for the first period of {:g} s{}: deflections may be some per cent off; "
@@ -83,33 +83,47 @@ void check_periods(const Scene& scene, double step, double period, bool high_ord
                   step, period, high_order ? "" : " and order 2", good, high_order ? "" : " or -ts_type esdirk4"));
 }
 
+void check_harmonics(const Scene& scene, double step, std::vector<std::string>& notes) {
+  const double frequency = highest_load_frequency(scene.load);
+  if (frequency == 0.0) return;
+  const double period = 1.0 / frequency;
+  if (step > period / min_steps_per_period)
+    throw InputError(
+        fmt::format("ts_dt = {:g}: the loads vary with {:g} Hz; allowed: at most {:g} s, or leave ts_dt out", step,
+                    frequency, period / min_steps_per_period));
+  if (step > period / good_steps_per_period)
+    notes.push_back(
+        fmt::format("steps of {:g} s are long for loads that vary with {:g} Hz; -ts_dt {:.2g} resolves them", step,
+                    frequency, period / good_steps_per_period));
+}
+
 /// The greatest lambda in a span, 1/m.
-double bending_on_beds(const beam::BeamModel& beam, double left, double length, int elements) {
+double largest_lambda(const beam::BeamModel& beam, double start, double length, int elements) {
   double lambda = 0.0;
   for (int i = 0; i < elements; ++i) {
-    const double x = left + (i + 0.5) * length / elements;
+    const double x = start + (i + 0.5) * length / elements;
     for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
-      lambda = std::max(lambda, fading_of_bending(kind.direction, bed.k.at(x, x), beam.EI.at(x, x)));
+      lambda = std::max(lambda, bending_decay_rate(kind.direction, bed.k.at(x, x), beam.EI.at(x, x)));
     });
   }
   return lambda;
 }
 
 void check_beds(const beam::BeamModel& beam, std::vector<std::string>& notes) {
-  double left = 0.0;
-  for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
-    const double span = beam.spans[i], lambda = bending_on_beds(beam, left, span, beam.elements[i]);
+  double start = 0.0;
+  for (std::size_t i = 0; i < beam.spans.size(); start += beam.spans[i++]) {
+    const double span = beam.spans[i], lambda = largest_lambda(beam, start, span, beam.elements[i]);
     const auto elements = [&](double length) { return base::whole(std::ceil(lambda * span / length)); };
-    if (beam.elements[i] < elements(longest_on_bed))
+    if (beam.elements[i] < elements(limit_on_bed))
       throw InputError(
           fmt::format("beam_elements_per_span = {}: the beam bends within 1/lambda = {:.3g} m of a wheel on "
                       "its bed; allowed: at least {} in the span of {:g} m, or a softer bed",
-                      beam.elements[i], 1.0 / lambda, elements(longest_on_bed), span));
-    if (beam.elements[i] >= elements(rough_on_bed)) continue;
+                      beam.elements[i], 1.0 / lambda, elements(limit_on_bed), span));
+    if (beam.elements[i] >= elements(warning_on_bed)) continue;
     notes.push_back(
         fmt::format("the beam bends within 1/lambda = {:.3g} m of a wheel on its bed: deflections there are "
                     "some per cent off; -beam_elements_per_span {} resolves them",
-                    1.0 / lambda, elements(rough_on_bed)));
+                    1.0 / lambda, elements(warning_on_bed)));
     return;
   }
 }
@@ -117,7 +131,7 @@ void check_beds(const beam::BeamModel& beam, std::vector<std::string>& notes) {
 }  // namespace
 
 void check_mesh(const Scene& scene, std::vector<std::string>& notes) {
-  if (!scene.beam || scene.beam->track || !loaded(scene)) return;
+  if (!scene.beam || scene.beam->track || !has_loads(scene)) return;
   const beam::BeamModel& beam = *scene.beam;
   const bool moves = scene.analysis == Analysis::transient && greatest_speed(scene) > 0.0;
   if (moves && scene.model.modes == 0 && *std::min_element(beam.elements.begin(), beam.elements.end()) == 1)
@@ -131,9 +145,9 @@ void check_times(const Plan& plan) {
   if (plan.end_time < shortest_run)
     throw InputError(fmt::format("ts_max_time = {:g}: too short a run for rounding; allowed: at least {:g} s",
                                  plan.end_time, shortest_run));
-  if (!(plan.end_time / plan.interval < most_stored_samples))
+  if (!(plan.end_time / plan.interval < max_stored_samples))
     throw InputError(fmt::format("output_interval = {:g}: too many samples to the end at {:g} s; allowed: above {:g} s",
-                                 plan.interval, plan.end_time, plan.end_time / most_stored_samples));
+                                 plan.interval, plan.end_time, plan.end_time / max_stored_samples));
 }
 
 void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
@@ -143,6 +157,7 @@ void check_steps(const Scene& scene, const Plan& plan, double first_period, bool
   check_waves(scene, step, notes);
   check_sleepers(scene, step, notes);
   check_periods(scene, step, first_period, high_order, notes);
+  check_harmonics(scene, step, notes);
 }
 
 void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fleet, std::vector<std::string>& notes) {
@@ -156,11 +171,11 @@ void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fl
     if (stiffness > 0.0) period = std::min(period, 2.0 * std::numbers::pi * std::sqrt(mass / stiffness));
   }
   const double step = std::min(plan.time_step, plan.interval);
-  if (step > period / steps_an_oscillation)
+  if (step > period / steps_per_oscillation)
     notes.push_back(
         fmt::format("steps of {:g} s pass over the wheels' oscillation on their contacts, {:.3g} s a period: where the "
                     "track stirs it, wheel forces are rough; -ts_dt {:.2g} resolves it",
-                    step, period, period / (2.0 * steps_an_oscillation)));
+                    step, period, period / (2.0 * steps_per_oscillation)));
 }
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
-// What the mesh and the step that the user gives cannot resolve. An implicit integrator stays stable and its energy
-// balances at any step, and a mesh always gives some answer: neither shows by itself that the answer is none.
+// Checks whether a given mesh and step resolve the scene. An implicit integrator remains stable with a balanced energy
+// at any step, and every mesh produces a result: neither shows that the result is wrong.
 #pragma once
 
 #include <string>
@@ -10,21 +10,21 @@
 
 namespace traverse::app {
 
-/// InputError where elements are longer than the waves in which the beam bends on its bed. Where they are merely so
-/// long that results are rough, a line in `notes` says so.
+/// InputError if elements are longer than the bending waves of the beam on its bed. If they are only so long that
+/// results are inaccurate, a warning is appended to `notes`.
 void check_mesh(const Scene& scene, std::vector<std::string>& notes);
 
-/// InputError where rounding hides the run's end or its samples.
+/// InputError if the run or its sampling interval is too short for the resolution of floating-point times.
 void check_times(const Plan& plan);
 
-/// InputError where a given step passes over periods of the bridge or waves of the track. Where it is merely so long
-/// that results are rough, a line in `notes` says so. first_period: of the beam, s, 0 where not known; high_order:
-/// whether the integrator's order is above 2.
+/// InputError if a given step does not resolve periods of the bridge or waves of the track. If it is only so long that
+/// results are inaccurate, a warning is appended to `notes`. first_period: of the beam, s, 0 if unknown; high_order:
+/// the integrator's order is above 2.
 void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
                  std::vector<std::string>& notes);
 
-/// After the start: in `notes` whether steps pass over the wheels' oscillation on their contacts, where the track or
-/// their shape stirs it.
+/// After the start: appends a warning to `notes` if steps do not resolve the wheels' oscillation on their contacts,
+/// where the track or the wheels' shape excites it.
 void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fleet, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -9,30 +9,31 @@
 namespace traverse::app {
 namespace {
 
-constexpr double kept = 0.5;           // of the largest extreme so far
-constexpr double compared = 0.6;       // of the largest one
-constexpr double likely = 2.0;         // times the root mean square: what an extreme's error hardly exceeds
-const std::vector<double> smooth;      // without kinks
-constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
+constexpr double stored_share = 0.5;    // relative to the largest extreme so far
+constexpr double compared_share = 0.6;  // relative to the largest one
+constexpr double spread_factor = 2.0;   // times the root mean square: probable bound of an extreme's error
+const std::vector<double> no_kinks;     // an empty list
+constexpr std::size_t max_peaks =
+    1 << 16;  // largest number for a quantity; if exceeded, peaks below `compared_share` are removed
 
 bool earlier(const Extreme& a, const Extreme& b) { return a.place != b.place ? a.place < b.place : a.time < b.time; }
 
-std::vector<Extreme> in_order(std::vector<Extreme> peaks) {
+std::vector<Extreme> sorted(std::vector<Extreme> peaks) {
   std::sort(peaks.begin(), peaks.end(), earlier);
   return peaks;
 }
 
-/// The one of the same place and sign, of those in order, that is nearest in time; null: none is within reach, s.
-const Extreme* nearest(const std::vector<Extreme>& peaks, const Extreme& to, double reach) {
-  const Extreme* found = nullptr;
-  double apart = reach;
-  for (auto peak = std::lower_bound(peaks.begin(), peaks.end(), Extreme{0.0, to.time - reach, to.place}, earlier);
-       peak != peaks.end() && peak->place == to.place && peak->time <= to.time + reach; ++peak) {
-    if (std::abs(peak->time - to.time) > apart || peak->value * to.value < 0.0) continue;
-    apart = std::abs(peak->time - to.time);
-    found = &*peak;
+/// Of the sorted peaks with the same place and sign the nearest one in time; null if none is within max_shift, s.
+const Extreme* nearest(const std::vector<Extreme>& peaks, const Extreme& to, double max_shift) {
+  const Extreme* nearest_peak = nullptr;
+  double distance = max_shift;
+  for (auto peak = std::lower_bound(peaks.begin(), peaks.end(), Extreme{0.0, to.time - max_shift, to.place}, earlier);
+       peak != peaks.end() && peak->place == to.place && peak->time <= to.time + max_shift; ++peak) {
+    if (std::abs(peak->time - to.time) > distance || peak->value * to.value < 0.0) continue;
+    distance = std::abs(peak->time - to.time);
+    nearest_peak = &*peak;
   }
-  return found;
+  return nearest_peak;
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ ResponseExtremes::ResponseExtremes(std::vector<std::vector<double>> passages, st
       motions_(passages_.size()),
       wheels_(wheels),
       ranges_(passages_.size()) {
-  for (std::size_t q = 0; q < quantities; ++q) each_[q].resize(q == wheel_force ? wheels : passages_.size());
+  for (std::size_t q = 0; q < quantities; ++q) largest_of_each_[q].resize(q == wheel_force ? wheels : passages_.size());
 }
 
 ResponseExtremes ResponseExtremes::of_failure() {
@@ -55,16 +56,17 @@ ResponseExtremes ResponseExtremes::of_failure() {
   return none;
 }
 
-void ResponseExtremes::note(Quantity q, std::size_t place, double value, double time) {
+void ResponseExtremes::record_peak(Quantity q, std::size_t place, double value, double time) {
   const Extreme peak{value, time, place};
-  if (std::abs(value) > std::abs(each_[q][place].value)) each_[q][place] = peak;
+  if (std::abs(value) > std::abs(largest_of_each_[q][place].value)) largest_of_each_[q][place] = peak;
   if (std::abs(value) > std::abs(largest_[q].value)) largest_[q] = peak;
-  if (std::abs(value) < kept * std::abs(largest_[q].value) || value == 0.0) return;
-  std::vector<Extreme>& found = found_[q];
-  found.push_back(peak);
-  if (found.size() < most) return;
-  std::erase_if(found, [&](const Extreme& p) { return std::abs(p.value) < compared * std::abs(largest_[q].value); });
-  if (found.size() > most / 2) found.erase(found.begin(), found.end() - most / 2);
+  if (std::abs(value) < stored_share * std::abs(largest_[q].value) || value == 0.0) return;
+  std::vector<Extreme>& peaks = peaks_[q];
+  peaks.push_back(peak);
+  if (peaks.size() < max_peaks) return;
+  std::erase_if(peaks,
+                [&](const Extreme& p) { return std::abs(p.value) < compared_share * std::abs(largest_[q].value); });
+  if (peaks.size() > max_peaks / 2) peaks.erase(peaks.begin(), peaks.end() - max_peaks / 2);
 }
 
 void ResponseExtremes::record_range(Quantity q, std::size_t probe, double value, double time, double other) {
@@ -73,17 +75,17 @@ void ResponseExtremes::record_range(Quantity q, std::size_t probe, double value,
   if (std::isnan(greatest.time) || value > greatest.value) greatest = {value, time, other};
 }
 
-auto ResponseExtremes::record_of(Quantity q, std::size_t probe) {
+auto ResponseExtremes::recorder_of(Quantity q, std::size_t probe) {
   return [this, q, probe](double value, double at, bool outward) {
     record_range(q, probe, value, at, 0.0);
-    if (outward) note(q, probe, value, at);
+    if (outward) record_peak(q, probe, value, at);
   };
 }
 
-auto ResponseExtremes::record_of_forces(std::size_t probe) {
+auto ResponseExtremes::recorder_of_forces(std::size_t probe) {
   return [this, probe](Quantity q, double value, double at, bool outward, double other) {
     record_range(q, probe, value, at, other);
-    if (outward) note(q, probe, value, at);
+    if (outward) record_peak(q, probe, value, at);
   };
 }
 
@@ -91,74 +93,74 @@ void ResponseExtremes::add(double t, std::span<const beam::Response> probes, std
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].axial_displacement};
     const std::size_t known = values.size() - (axial_ ? 0 : 1);
-    for (std::size_t m = 0; m < known; ++m) motions_[i][m].add(t, values[m], smooth, record_of(motions[m], i));
-    forces_[i].add(t, probes[i], passages_[i], lag_, record_of_forces(i));
-    roughness_.acceleration = std::max(roughness_.acceleration, motions_[i][acceleration].bend());
+    for (std::size_t m = 0; m < known; ++m) motions_[i][m].add(t, values[m], no_kinks, recorder_of(motions[m], i));
+    forces_[i].add(t, probes[i], passages_[i], lag_, recorder_of_forces(i));
+    roughness_.acceleration = std::max(roughness_.acceleration, motions_[i][acceleration].second_difference());
   }
   for (std::size_t i = 0; i < wheel_forces.size(); ++i) {
-    wheels_[i].add(t, wheel_forces[i], smooth, [&](double value, double at, bool outward) {
-      if (outward) note(wheel_force, i, value, at);
+    wheels_[i].add(t, wheel_forces[i], no_kinks, [&](double value, double at, bool outward) {
+      if (outward) record_peak(wheel_force, i, value, at);
     });
-    roughness_.wheel_force = std::max(roughness_.wheel_force, wheels_[i].bend());
+    roughness_.wheel_force = std::max(roughness_.wheel_force, wheels_[i].second_difference());
   }
 }
 
 SecondDifference ResponseExtremes::roughness() const {
-  const auto relative = [this](double bend, Quantity q) {
+  const auto relative = [this](double second_difference, Quantity q) {
     const double largest = std::abs(largest_[q].value);
-    return largest > 0.0 ? bend / largest : 0.0;
+    return largest > 0.0 ? second_difference / largest : 0.0;
   };
   return {relative(roughness_.acceleration, acceleration), relative(roughness_.wheel_force, wheel_force)};
 }
 
-double SecondDifference::times(const SecondDifference& others) const {
+double SecondDifference::ratio_to(const SecondDifference& others) const {
   const auto ratio = [](double a, double b) { return a > 0.0 ? a / b : 0.0; };
   return std::max(ratio(acceleration, others.acceleration), ratio(wheel_force, others.wheel_force));
 }
 
 void ResponseExtremes::finish() {
   for (std::size_t i = 0; i < motions_.size(); ++i) {
-    for (std::size_t m = 0; m < motions.size(); ++m) motions_[i][m].finish(smooth, record_of(motions[m], i));
-    forces_[i].finish(passages_[i], lag_, record_of_forces(i));
+    for (std::size_t m = 0; m < motions.size(); ++m) motions_[i][m].finish(no_kinks, recorder_of(motions[m], i));
+    forces_[i].finish(passages_[i], lag_, recorder_of_forces(i));
   }
   for (std::size_t i = 0; i < wheels_.size(); ++i)
-    wheels_[i].finish(smooth, [&](double value, double at, bool outward) {
-      if (outward) note(wheel_force, i, value, at);
+    wheels_[i].finish(no_kinks, [&](double value, double at, bool outward) {
+      if (outward) record_peak(wheel_force, i, value, at);
     });
 }
 
 namespace {
 
-/// Calls note(value, time) for the outward extremes of one of the series. Returns its curve.
-template <class Note>
-ExtremumTracker follow(std::span<const double> rows, std::size_t series, std::size_t which, double interval,
-                       Note&& note) {
+/// Calls record(value, time) for the extremes of one of the series, and returns its tracker.
+template <class Record>
+ExtremumTracker track_series(std::span<const double> rows, std::size_t series, std::size_t which, double interval,
+                             Record&& record) {
   ExtremumTracker curve;
   double t = 0.0;
   for (std::size_t at = which, k = 0; at < rows.size(); at += series, t = static_cast<double>(++k) * interval)
-    curve.add(t, rows[at], smooth, note);
+    curve.add(t, rows[at], no_kinks, record);
   return curve;
 }
 
 }  // namespace
 
-// The last instant is no end of the run: where a curve still rises there, its extreme is not known.
+// The last instant is not the end of the run: the extreme of a curve that rises there is unknown.
 void ResponseExtremes::add_low_passed(std::span<const double> rows, double interval) {
   for (std::size_t i = 0; i < motions_.size(); ++i) {
-    const auto record_it = [&](double value, double at, bool outward) {
-      if (outward) note(low_passed, i, value, at);
+    const auto record = [&](double value, double at, bool outward) {
+      if (outward) record_peak(low_passed, i, value, at);
     };
-    follow(rows, motions_.size(), i, interval, record_it).rest(smooth, record_it);
+    track_series(rows, motions_.size(), i, interval, record).record_last(no_kinks, record);
   }
 }
 
 Extreme largest_peak(std::span<const double> rows, std::size_t series, double interval) {
   Extreme largest;
   for (std::size_t i = 0; i < series; ++i) {
-    const auto note = [&](double value, double time, bool) {
+    const auto record = [&](double value, double time, bool) {
       if (std::abs(value) > std::abs(largest.value)) largest = {value, time, i};
     };
-    follow(rows, series, i, interval, note).finish(smooth, note);
+    track_series(rows, series, i, interval, record).finish(no_kinks, record);
   }
   return largest;
 }
@@ -168,38 +170,39 @@ double peak_difference(const ResponseExtremes& rough, const ResponseExtremes& fi
   return largest == 0.0 ? 0.0 : std::abs(std::abs(rough.largest(q).value) - largest) / largest;
 }
 
-double difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Quantity q, double reach) {
+double difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Quantity q, double max_shift) {
   const double largest = std::abs(fine.largest(q).value);
   if (rough.failed() || fine.failed()) return 1.0;
   if (largest == 0.0) return 0.0;
-  // Wheel forces vary about the weight: what is near the largest one is seen by that.
-  const double rest = q == wheel_force && !fine.of(q).empty() ? std::abs(fine.of(q).front().value) : 0.0;
-  const double least = rest < largest ? rest + compared * (largest - rest) : compared * largest;
-  const std::vector<Extreme> others = in_order(rough.of(q)), all = in_order(fine.of(q));
+  // Wheel forces vary about the weight: the threshold is relative to the largest variation.
+  const double weight = q == wheel_force && !fine.of(q).empty() ? std::abs(fine.of(q).front().value) : 0.0;
+  const double least = weight < largest ? weight + compared_share * (largest - weight) : compared_share * largest;
+  const std::vector<Extreme> others = sorted(rough.of(q)), all = sorted(fine.of(q));
   double squares = 0.0;
   int count = 0;
   for (const Extreme& peak : all) {
     if (std::abs(peak.value) < least) continue;
-    const Extreme* other = nearest(others, peak, reach);
-    if (other == nullptr || nearest(all, *other, reach) != &peak) continue;
+    const Extreme* other = nearest(others, peak, max_shift);
+    if (other == nullptr || nearest(all, *other, max_shift) != &peak) continue;
     squares += (other->value - peak.value) * (other->value - peak.value);
     ++count;
   }
   const double spread = count > 0 ? std::sqrt(squares / count) / largest : 0.0;
-  return std::max(peak_difference(rough, fine, q), likely * spread);
+  return std::max(peak_difference(rough, fine, q), spread_factor * spread);
 }
 
 std::vector<std::vector<double>> passages_of(const Scene& scene) {
   std::vector<std::vector<double>> passages(scene.output.probes.size());
   if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return passages;
-  std::vector<std::pair<double, base::SpeedLaw>> starts;  // x at t = 0 and how it goes on
-  const auto start = [&](double x, const base::SpeedLaw& law) {
+  std::vector<std::pair<double, base::SpeedLaw>> starts;  // x at t = 0 and speed law
+  const auto add = [&](double x, const base::SpeedLaw& law) {
     if (law.direction() != 0.0) starts.emplace_back(x, law);
   };
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
     if (drive_of(scene.train, i) == train::Drive::constant)
-      for (const double x : wheels_at_start(scene, i)) start(x, law_of(scene.train, i));
-  for (std::size_t i = 0; i < scene.load.positions.size(); ++i) start(scene.load.positions[i], law_of(scene.load, i));
+      for (const double x : wheels_at_start(scene, i)) add(x, law_of(scene.train, i));
+  for (std::size_t i = 0; i < scene.load.positions.size(); ++i)
+    if (length_of(scene.load, i) == 0.0) add(scene.load.positions[i], law_of(scene.load, i));
   for (std::size_t p = 0; p < passages.size(); ++p) {
     for (const auto& [x, law] : starts) {
       const double t = law.time_of(scene.output.probes[p] - x);
@@ -210,7 +213,7 @@ std::vector<std::vector<double>> passages_of(const Scene& scene) {
   return passages;
 }
 
-bool knows_passages(const Scene& scene) {
+bool all_passages_known(const Scene& scene) {
   if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return true;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
     if (drive_of(scene.train, i) != train::Drive::constant) return false;
@@ -218,7 +221,7 @@ bool knows_passages(const Scene& scene) {
 }
 
 ResponseExtremes peaks_for(const Scene& scene, std::size_t wheels, double lag) {
-  return {passages_of(scene), wheels, lag, scene.beam && scene.beam->axial, knows_passages(scene)};
+  return {passages_of(scene), wheels, lag, scene.beam && scene.beam->axial, all_passages_known(scene)};
 }
 
 }  // namespace traverse::app

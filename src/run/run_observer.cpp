@@ -13,18 +13,19 @@
 namespace traverse::app {
 namespace {
 
-// Of what the energies change by; no answer beyond, whatever it looks like. At 5 % wheel forces are a tenth off; a
-// mechanism on its own loses its phase, and at 0.6 % the four-bars are half a turn away.
-constexpr double unbalanced = 0.05, unbalanced_mechanism = 0.005;
-constexpr double diverged = 1.0;   // the same while the run goes on, when they have changed little as yet
-constexpr double rounding = 1e-9;  // of the energies themselves
+// Largest energy residual of a valid result, relative to the change of the energies. At 5 % wheel forces have an error
+// of a tenth. A mechanism without a bridge loses its phase: at 0.6 % the four-bar linkages are half a turn away.
+constexpr double max_imbalance = 0.05, max_imbalance_of_mechanism = 0.005;
+constexpr double diverging_imbalance = 1.0;  // the limit during the run, when energies may have changed little so far
+constexpr double rounding = 1e-9;            // relative to the energies
 
-constexpr double most_static_work = 2e5;  // probes times nodes, up to which static deflections are for every probe
+constexpr double max_static_work =
+    2e5;  // probes times nodes, up to which static deflections are computed at every probe
 
 }  // namespace
 
 void check_balance(const Scene& scene, const results::Summary& summary) {
-  const double allowed = scene.beam ? unbalanced : unbalanced_mechanism;
+  const double allowed = scene.beam ? max_imbalance : max_imbalance_of_mechanism;
   if (summary.energy_residual > allowed * summary.energy_scale + rounding * summary.largest_energy)
     throw StepTooLong(fmt::format(
         "the energy does not balance: {:g} J are missing where the energies change by {:g} J; the step is "
@@ -54,12 +55,12 @@ RunObserver::RunObserver(const Scene& scene, coupling::System& system, const bea
   const double lag = beam != nullptr && scene.model.modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
   peaks_ = peaks_for(scene, wheel_count_, lag);
-  wheels_ = WheelExtremes(wheel_count_, system.corners());
+  wheels_ = WheelExtremes(wheel_count_, system.surface_kinks());
 }
 
 void RunObserver::sample(const integrate::Instant& instant) {
-  const bool stored = instant.purpose != integrate::Purpose::look;
-  const bool all = stored || judge_ || beyond_trials_.looks_at_springs() || scene_.train.drive == Drive::free;
+  const bool stored = instant.purpose != integrate::Purpose::peaks;
+  const bool all = stored || limit_check_ || extrapolation_check_.needs_springs() || scene_.train.drive == Drive::free;
   system_.observe(instant.time, instant.y, instant.acceleration, now_.motion, all);
   const structure::NodalMotion& beam = now_.motion.beam;
   sample_.time = instant.time;
@@ -71,13 +72,14 @@ void RunObserver::sample(const integrate::Instant& instant) {
     for (beam::Response& probe : now_.probes)
       if (!lag_) probe.moment_rate = std::numeric_limits<double>::quiet_NaN();
     if (scene_.by_given_modes())
-      for (beam::Response& probe : now_.probes) probe.moment = probe.shear = 0.0;  // not known
-    for (std::size_t i = 0; i < dragged_.size(); ++i) now_.probes[i].acceleration -= dragged_[i].acceleration;
+      for (beam::Response& probe : now_.probes) probe.moment = probe.shear = 0.0;  // unknown
+    for (std::size_t i = 0; i < drag_response_.size(); ++i)
+      now_.probes[i].acceleration -= drag_response_[i].acceleration;
   }
-  step(instant.time);  // the first instant is no step's end
+  step(instant.time);  // the first instant is not the end of a step
   record_peaks();
-  record_worst();
-  if (judge_) judge_->sample(instant.time, beam.v);
+  record_largest_deflection();
+  if (limit_check_) limit_check_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
   if (stored) store(instant.purpose == integrate::Purpose::end);
@@ -98,19 +100,20 @@ void RunObserver::store(bool end) {
     recorder_.end(sample_);
   else
     recorder_.add(sample_);
-  if (summary_.energy_residual > diverged * summary_.energy_scale + rounding * summary_.largest_energy)
+  if (summary_.energy_residual > diverging_imbalance * summary_.energy_scale + rounding * summary_.largest_energy)
     throw StepTooLong(
         fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
                     "integrator, use a smaller -ts_dt or an implicit -ts_type",
                     now_.energy.residual, sample_.time));
 }
 
-// Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
+// Modal damping acts like inertia: its acceleration contributes to all forces, but not to the accelerations of the
+// probes.
 void RunObserver::drag(const double* drag) {
   structure::NodalMotion& beam = now_.motion.beam;
   const auto size = static_cast<std::size_t>(beam_->local_unknowns());
-  const std::vector<double> predicted(size, 0.0);
-  recovery_->evaluate(predicted.data(), predicted.data(), drag, {}, dragged_);
+  const std::vector<double> zero(size, 0.0);
+  recovery_->evaluate(zero.data(), zero.data(), drag, {}, drag_response_);
   with_drag_.assign(beam.a, beam.a + size);
   for (std::size_t i = 0; i < size; ++i) with_drag_[i] += drag[i];
   beam.a = with_drag_.data();
@@ -124,30 +127,30 @@ void RunObserver::record_peaks() {
     for (std::size_t i = 0; i < member.type->wheels.size(); ++i)
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
-  beyond_trials_.add(sample_.time, fleet, now_.motion.beam.foundation, peaks_);
+  extrapolation_check_.add(sample_.time, fleet, now_.motion.beam.foundation, peaks_);
   peaks_.add(sample_.time, now_.probes, wheel_forces_);
   if (deck_) deck_->add(sample_.time, now_.probes);
 }
 
-void RunObserver::record_worst() {
-  double deflected = 0.0;
-  for (const beam::Response& probe : now_.probes) deflected = std::max(deflected, std::abs(probe.deflection));
-  if (deflected > most_deflected_) {
-    most_deflected_ = deflected;
-    worst_.time = sample_.time;
+void RunObserver::record_largest_deflection() {
+  double deflection = 0.0;
+  for (const beam::Response& probe : now_.probes) deflection = std::max(deflection, std::abs(probe.deflection));
+  if (deflection > largest_deflection_value_) {
+    largest_deflection_value_ = deflection;
+    largest_deflection_.time = sample_.time;
     const structure::NodalMotion& beam = now_.motion.beam;
     const int size = beam_->local_unknowns();
-    worst_.v.assign(beam.v, beam.v + size);
-    worst_.w.assign(beam.w, beam.w + size);
-    worst_.a.assign(beam.a, beam.a + size);
-    worst_.loads = now_.motion.bridge_loads;
+    largest_deflection_.v.assign(beam.v, beam.v + size);
+    largest_deflection_.w.assign(beam.w, beam.w + size);
+    largest_deflection_.a.assign(beam.a, beam.a + size);
+    largest_deflection_.loads = now_.motion.bridge_loads;
   }
 }
 
 void RunObserver::record_energy() {
   const coupling::Energy& e = now_.motion.energy;
-  if (first_) energy_at_start_ = e;
-  first_ = false;
+  if (at_first_sample_) energy_at_start_ = e;
+  at_first_sample_ = false;
   const coupling::Energy& start = energy_at_start_;
   const double stored = (e.kinetic - start.kinetic) + (e.strain - start.strain) + (e.potential - start.potential);
   now_.energy = {e.kinetic, e.strain, e.potential, e.dissipated, e.work, stored + e.dissipated - e.work};
@@ -155,9 +158,9 @@ void RunObserver::record_energy() {
   summary_.energy_residual = std::max(summary_.energy_residual, std::abs(now_.energy.residual));
   for (double term : {e.kinetic, e.strain, e.potential})
     summary_.largest_energy = std::max(summary_.largest_energy, std::abs(term));
-  // Where steps do not end at kinks the drive's work is not known so well that it could be judged without.
-  const bool apart = scene_.train.drive == Drive::constant && scene_.model.step_kinks;
-  const double forward = apart ? start.kinetic : 0.0;
+  // Without steps that end at kinks the work of the drive is not accurate enough to be separated.
+  const bool separate = scene_.train.drive == Drive::constant && scene_.model.step_kinks;
+  const double forward = separate ? start.kinetic : 0.0;
   for (double change :
        {e.kinetic - forward, e.strain - start.strain, e.potential - start.potential, e.dissipated, e.work})
     summary_.energy_scale = std::max(summary_.energy_scale, std::abs(change));
@@ -166,11 +169,11 @@ void RunObserver::record_energy() {
 void RunObserver::step(double t) {
   const train::Fleet& fleet = system_.fleet();
   std::size_t wheel = 0;
-  const bool kept = filtered_wheels_ && filtered_wheels_->wants(t);
+  const bool due = filtered_wheels_ && filtered_wheels_->is_due(t);
   for (const train::WheelContact& c : fleet.wheels)
     if (!c.is_further) {
       const double force = fleet.load(c).normal;
-      if (kept) filtered_wheels_->add(force);
+      if (due) filtered_wheels_->add(force);
       wheels_.add(wheel++, t, fleet.coordinates(c).x(), force);
     }
 }
@@ -184,9 +187,9 @@ void RunObserver::record_wheels() {
   if (std::isinf(least.value)) return;
   summary_.least_wheel_force_time = least.time;
   summary_.least_wheel = wheel_name(fleet, least.place);
-  const Extreme& lost = wheels_.unloading();
-  if (lost.value >= 0.0 && scene_.start == Start::equilibrium)
-    summary_.unloading = {lost.value, lost.time, wheel_name(fleet, lost.place)};
+  const Extreme& largest = wheels_.unloading();
+  if (largest.value >= 0.0 && scene_.start == Start::equilibrium)
+    summary_.unloading = {largest.value, largest.time, wheel_name(fleet, largest.place)};
 }
 
 void RunObserver::record_separations() {
@@ -203,14 +206,15 @@ void RunObserver::record_separations() {
   recorder_.separations(list);
 }
 
-void RunObserver::tell_beyond_trials(double until) {
-  beyond_trials_ = ExtrapolationCheck(until, system_.fleet(), beam_ == nullptr ? nullptr : &beam_->model());
+void RunObserver::check_extrapolation(double until) {
+  extrapolation_check_ = ExtrapolationCheck(until, system_.fleet(), beam_ == nullptr ? nullptr : &beam_->model());
 }
 
-bool RunObserver::met_unseen(double losses_seen_until) const {
+bool RunObserver::has_uncovered_event(double losses_covered_until) const {
   const std::vector<double> lost = losses();
-  return !beyond_trials_.new_event().empty() || beyond_trials_.roughness(peaks_) > ExtrapolationCheck::alike ||
-         std::any_of(lost.begin(), lost.end(), [&](double t) { return t > losses_seen_until; });
+  return !extrapolation_check_.new_event().empty() ||
+         extrapolation_check_.roughness(peaks_) > ExtrapolationCheck::smooth ||
+         std::any_of(lost.begin(), lost.end(), [&](double t) { return t > losses_covered_until; });
 }
 
 std::vector<double> RunObserver::losses() const {
@@ -238,20 +242,20 @@ const results::Summary& RunObserver::finished_extremes() {
 }
 
 void RunObserver::keep(base::Archive& archive) {
-  archive.same(peaks_, beyond_trials_, wheels_, paths_, energy_at_start_, first_, sample_.time, now_.probes,
-               most_deflected_);
+  archive.same(peaks_, extrapolation_check_, wheels_, paths_, energy_at_start_, at_first_sample_, sample_.time,
+               now_.probes, largest_deflection_value_);
   if (lag_) archive.same(*lag_);
-  if (judge_) archive.same(*judge_);
+  if (limit_check_) archive.same(*limit_check_);
   archive.same(axle_passages_);
-  // On the first rank alone.
+  // Only on the first rank.
   deck_ ? archive.same(*deck_) : archive.same();
   filtered_wheels_ ? archive.same(*filtered_wheels_) : archive.same();
   archive.same(summary_.structure_energy, summary_.energy_residual, summary_.largest_energy, summary_.energy_scale);
-  archive.same(worst_.time, worst_.loads);
-  bool noted = most_deflected_ > 0.0;
-  archive.same(noted);
-  if (!noted) return;
-  for (std::vector<double>* nodal : {&worst_.v, &worst_.w, &worst_.a}) {
+  archive.same(largest_deflection_.time, largest_deflection_.loads);
+  bool stored = largest_deflection_value_ > 0.0;
+  archive.same(stored);
+  if (!stored) return;
+  for (std::vector<double>* nodal : {&largest_deflection_.v, &largest_deflection_.w, &largest_deflection_.a}) {
     nodal->resize(static_cast<std::size_t>(beam_->local_unknowns()));
     archive.cut(*nodal);
   }
@@ -287,31 +291,32 @@ results::Summary RunObserver::finish() {
   if (filtered_wheels_) summary_.filtered_unloading = filtered_wheels_->finish(system_.fleet());
   finished_extremes();
   if (beam_ == nullptr) return summary_;
-  int some = worst_.v.empty() && beam_->local_unknowns() > 0 ? 0 : 1;
+  int some = largest_deflection_.v.empty() && beam_->local_unknowns() > 0 ? 0 : 1;
   MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
   if (some == 0) return summary_;
   if (scene_.analysis == Analysis::transient)
     summary_.static_deflection = system_.weights().static_peak(summary_.deflection.place, paths_, sample_.time);
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
-  recorder_.shape(shape_of(*beam_, scene_, worst_));
+  recorder_.shape(shape_of(*beam_, scene_, largest_deflection_));
   recorder_.datasets(envelopes(peaks, !scene_.by_given_modes()));
   record_static_deflections();
   return summary_;
 }
 
-// Of every probe, where that takes no time.
+// At every probe, if that is cheap.
 void RunObserver::record_static_deflections() {
   const std::vector<double>& probes = scene_.output.probes;
   const auto size = static_cast<double>(probes.size()) * beam_->mesh().nodes();
-  if (!recorded_ || summary_.static_deflection <= 0.0 || size > most_static_work) return;
+  if (!recorded_ || summary_.static_deflection <= 0.0 || size > max_static_work) return;
   std::vector<double> deflections;
   for (const double x : probes) deflections.push_back(system_.weights().static_peak(x, paths_, sample_.time));
   recorder_.datasets({{"/envelope/static_deflection", {probes.size()}, std::move(deflections), "m"}});
 }
 
 std::vector<results::Verdict> RunObserver::verdicts(const results::Summary& summary) const {
-  return judge_ ? judge_->verdicts(summary, peaks_.largest_of_each(deflection)) : std::vector<results::Verdict>();
+  return limit_check_ ? limit_check_->verdicts(summary, peaks_.largest_of_each(deflection))
+                      : std::vector<results::Verdict>();
 }
 
 }  // namespace traverse::app

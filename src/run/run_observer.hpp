@@ -1,4 +1,4 @@
-// A transient run: time integration with everything that is recorded on the way.
+// Observes a transient run: samples, extremes, energies and limits.
 #pragma once
 
 #include <optional>
@@ -25,57 +25,57 @@
 
 namespace traverse::app {
 
-/// Watches stored instants and steps: samples for the recorder, extremes for the summary.
+/// Evaluates stored instants and steps: samples for the recorder, extremes for the summary.
 class RunObserver {
  public:
-  /// outputs: what the recorder's layout is of; null: no samples are recorded.
+  /// outputs: the datasets of the recorder; null: no samples are recorded.
   RunObserver(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
               const Outputs* outputs = nullptr);
 
-  /// The deck's accelerations are filtered when the run has ended.
+  /// Stores the deck's accelerations, which are filtered at the end of the run.
   void keep_accelerations(DeckAcceleration deck) { deck_ = std::move(deck); }
 
   /// After finish. Whether the peak of the filtered accelerations is within their unsettled end.
   bool ends_unsettled() const { return deck_ && deck_->ends_unsettled(); }
 
-  /// The wheels' forces are filtered when the run has ended.
+  /// Stores the wheels' forces, which are filtered at the end of the run.
   void keep_wheel_forces(FilteredWheels wheels) { filtered_wheels_ = std::move(wheels); }
 
-  /// The passages of wheels over places of the track are noted.
+  /// Records the passages of wheels over given places of the track.
   void record_axle_passages(AxleLoadRecords passages) { axle_passages_ = std::move(passages); }
 
-  /// The run is judged by the scene's limits when it has ended.
-  void judge() { judge_.emplace(scene_, system_.fleet(), beam_); }
+  /// Compares the run with the scene's limits at its end.
+  void check_limits() { limit_check_.emplace(scene_, system_.fleet(), beam_); }
 
   void sample(const integrate::Instant& instant);
-  /// To be called at the end of every step, also of one that ends at a sample.
+  /// Must be called at the end of every step, also of one that ends at a sample.
   void step(double t);
-  /// Collective. The summary so far, and the shape at the worst instant into the recorder.
+  /// Collective. Returns the summary, and stores the shape at the largest deflection in the recorder.
   results::Summary finish();
-  /// After finish, which gave this summary.
+  /// After finish, which returned this summary.
   std::vector<results::Verdict> verdicts(const results::Summary& summary) const;
-  /// Of the latest instant that was seen, s.
+  /// Time of the latest instant, s.
   double last_time() const { return sample_.time; }
   const results::Summary& extremes() const { return summary_; }
-  /// The peaks, those of wheels and contacts included; after the last sample.
+  /// The extremes with those of wheels and contacts; after the last sample.
   const results::Summary& finished_extremes();
-  /// Trial runs have seen the run until then, s.
-  void tell_beyond_trials(double until);
-  const ExtrapolationCheck& beyond_trials() const { return beyond_trials_; }
-  /// ExtrapolationCheck::bends, after finish.
-  double bends_beyond_trials() const { return beyond_trials_.roughness(peaks_); }
-  /// After finish. Whether anything was unlike what trial runs have seen, wheels that lost contact after some time (s)
-  /// among it.
-  bool met_unseen(double losses_seen_until) const;
-  /// When wheels have lost contact, s.
+  /// Compares the run with its trial runs, which ended at `until`, s.
+  void check_extrapolation(double until);
+  const ExtrapolationCheck& extrapolation_check() const { return extrapolation_check_; }
+  /// ExtrapolationCheck::roughness, after finish.
+  double roughness_ratio() const { return extrapolation_check_.roughness(peaks_); }
+  /// After finish. Whether the run had an event or roughness that trial runs did not cover, or a contact loss after
+  /// losses_covered_until (s).
+  bool has_uncovered_event(double losses_covered_until) const;
+  /// Times at which wheels have lost contact, s.
   std::vector<double> losses() const;
-  /// What was seen at the latest sample.
-  const Observed& seen() const { return now_; }
+  /// The values at the latest sample.
+  const Observed& observed() const { return now_; }
   const train::WheelPaths& paths() const { return paths_; }
-  /// The extremes so far, after the last sample.
+  /// The extremes, after the last sample.
   const ResponseExtremes& finished_peaks();
 
-  /// Collective. What has been seen so far, written or read back.
+  /// Collective. Writes or reads the state of the observer.
   void keep(base::Archive& archive);
 
  private:
@@ -84,7 +84,7 @@ class RunObserver {
   void record_wheels();
   void store(bool end);
   void record_peaks();
-  void record_worst();
+  void record_largest_deflection();
   void record_energy();
   void record_static_deflections();
 
@@ -94,31 +94,31 @@ class RunObserver {
   results::Recorder& recorder_;
   std::optional<beam::Recovery> recovery_, rail_recovery_;
   std::optional<beam::ViscousLag> lag_;
-  const Outputs* outputs_;  // null where this rank writes no file
-  bool recorded_;           // whether some rank stores samples
-  std::vector<beam::Response> dragged_;
-  std::vector<double> with_drag_;  // accelerations with what damping by modes adds to them
+  const Outputs* outputs_;  // null if this rank writes no file
+  bool recorded_;           // whether any rank stores samples
+  std::vector<beam::Response> drag_response_;
+  std::vector<double> with_drag_;  // accelerations including those of modal damping
   ResponseExtremes peaks_;
-  ExtrapolationCheck beyond_trials_;
+  ExtrapolationCheck extrapolation_check_;
   std::optional<DeckAcceleration> deck_;
-  std::optional<LimitCheck> judge_;
+  std::optional<LimitCheck> limit_check_;
   WheelExtremes wheels_;
   std::optional<FilteredWheels> filtered_wheels_;
   AxleLoadRecords axle_passages_;
-  train::WheelPaths paths_;  // where wheels are free to change their distances
+  train::WheelPaths paths_;  // if wheels may change their distances
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;
   bool finished_ = false;
   Observed now_;
   results::Sample sample_;
   results::Summary summary_;
-  double most_deflected_ = 0.0;  // m
-  LargestDeflection worst_;
+  double largest_deflection_value_ = 0.0;  // m
+  LargestDeflection largest_deflection_;
   coupling::Energy energy_at_start_;
-  bool first_ = true;
+  bool at_first_sample_ = true;
 };
 
-/// SolverError where so much energy does not balance that the result is meaningless.
+/// SolverError if the energy residual is so large that the result is invalid.
 void check_balance(const Scene& scene, const results::Summary& summary);
 
 }  // namespace traverse::app

@@ -11,19 +11,20 @@ namespace traverse::app {
 
 std::string digest_of(const Scene& scene, std::span<const std::string_view> free,
                       const std::vector<options::InputText>& files, std::string_view more) {
-  auto all = scene.options;
-  std::erase_if(all, [&](const auto& option) {
+  auto entries = scene.options;
+  std::erase_if(entries, [&](const auto& option) {
     const std::string& name = option.first;
-    const bool shows = name.starts_with("ts_monitor") || name.starts_with("log_") || name.find("_view") != name.npos;
-    return shows || std::find(free.begin(), free.end(), name) != free.end();
+    const bool display_only =
+        name.starts_with("ts_monitor") || name.starts_with("log_") || name.find("_view") != name.npos;
+    return display_only || std::find(free.begin(), free.end(), name) != free.end();
   });
-  std::sort(all.begin(), all.end());
+  std::sort(entries.begin(), entries.end());
   base::Digest digest;
   const auto add = [&](std::string_view text) {
     digest.add(std::to_string(text.size()) + ":");
     digest.add(text);
   };
-  for (const auto& [name, value] : all) {
+  for (const auto& [name, value] : entries) {
     add(name);
     add(value);
   }

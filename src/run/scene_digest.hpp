@@ -1,4 +1,4 @@
-// A short text that tells scenes apart by what is asked of them.
+// A digest of all inputs of a scene.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace traverse::app {
 
-/// Of the scene's options, but for `free` ones and those that only show things, and of the texts of files; `more`: what
-/// else tells.
+/// The digest of the scene's options, except for those in `free` and those of display, and of the texts of files;
+/// `more`: a further text.
 std::string digest_of(const Scene& scene, std::span<const std::string_view> free,
                       const std::vector<options::InputText>& files, std::string_view more = {});
 

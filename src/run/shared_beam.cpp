@@ -15,7 +15,7 @@ namespace {
 
 constexpr double distinct = 1e-6;  // relative difference of two frequencies
 
-std::string what_track(const beam::Beam& beam) {
+std::string track_text(const beam::Beam& beam) {
   const beam::LayeredTrack& t = *beam.model().track;
   const bool shear = t.shear.k > 0.0 || t.shear.c > 0.0;
   return fmt::format(
@@ -32,7 +32,7 @@ std::string what_track(const beam::Beam& beam) {
       beam.block());
 }
 
-std::string what_given(const beam::Beam& beam) {
+std::string given_modes_text(const beam::Beam& beam) {
   const beam::GivenModes& m = *beam.model().given;
   const auto [least, greatest] = std::minmax_element(m.ratio.begin(), m.ratio.end());
   return fmt::format(
@@ -41,7 +41,7 @@ std::string what_given(const beam::Beam& beam) {
       *least < *greatest ? fmt::format("{:.4g} to ", 100.0 * *least) : "", 100.0 * *greatest, m.x.size());
 }
 
-std::string what_beam(const beam::Beam& beam) {
+std::string beam_text(const beam::Beam& beam) {
   const beam::BeamModel& m = beam.model();
   return fmt::format("beam of {:g} m, {} span{}{}, {} elements, {} unknowns a node ({})", m.length(), m.spans.size(),
                      m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "",
@@ -71,16 +71,16 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
         "gaps "
         "open");
   beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
-  notes.push_back(scene.beam->given ? what_given(*beam) : what_beam(*beam));
-  if (beam->rail() != nullptr) notes.push_back(what_track(*beam));
+  notes.push_back(scene.beam->given ? given_modes_text(*beam) : beam_text(*beam));
+  if (beam->rail() != nullptr) notes.push_back(track_text(*beam));
 }
 
 void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
   if (beam->model().given) {
     const std::vector<double>& given = beam->model().given->omega;
-    const auto other =
+    const auto second =
         std::find_if(given.begin(), given.end(), [&](double one) { return one > given.front() * (1.0 + distinct); });
-    omega = {given.front(), other == given.end() ? given.front() : *other};
+    omega = {given.front(), second == given.end() ? given.front() : *second};
     return;
   }
   const results::Stage stage("search for the first frequencies");

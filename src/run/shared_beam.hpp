@@ -1,4 +1,4 @@
-// What the runs of a scene share, however many there are: the beam with its damping, its operator, its modes.
+// Data that all runs of a scene share: the beam with its damping, its operator, its modes.
 #pragma once
 
 #include <memory>
@@ -14,25 +14,25 @@
 namespace traverse::app {
 
 struct SharedBeam {
-  /// Collective. Checks and assembles the beam, if there is one. Says in `notes` what was modelled.
+  /// Collective. Checks and assembles the beam, if there is one. Its description is appended to `notes`.
   SharedBeam(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
   SharedBeam(const SharedBeam&) = delete;
   SharedBeam& operator=(const SharedBeam&) = delete;
 
-  /// Collective, once. Sets the scene's Rayleigh damping. Finds the first two distinct frequencies where damping ratios
+  /// Collective, once. Sets the scene's Rayleigh damping. Computes the first two distinct frequencies if damping ratios
   /// need them or frequencies_wanted is true.
   void damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes);
-  /// Collective, after damp. Prepares what transient and static runs need.
+  /// Collective, after damp. Computes factorisation or modes for transient and static runs.
   void prepare(const Scene& scene, std::vector<std::string>& notes);
 
   const beam::Beam* bridge() const { return beam ? &*beam : nullptr; }
-  double first_period() const;  // s; 0: not known
+  double first_period() const;  // s; 0: unknown
 
   MPI_Comm comm;
   std::optional<beam::Beam> beam;
   std::optional<std::pair<double, double>> omega;  // rad/s, the first two distinct frequencies
   beam::Rayleigh rayleigh;
-  std::shared_ptr<structure::BeamOperator> statics;  // with the factorisations so far
+  std::shared_ptr<structure::BeamOperator> statics;  // with its factorisations
   std::optional<structure::ModalBridge> modal;       // with model_modes
 };
 

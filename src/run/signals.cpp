@@ -19,71 +19,71 @@
 namespace traverse::app {
 namespace {
 
-struct Taken {
+struct HandledSignal {
   int number;
   const char* name;
-  bool ignored;  // when the program started
+  bool ignored;  // at the start of the program
 };
 
-std::array<Taken, 7> signals = {{{SIGINT, "2", false},
-                                 {SIGTERM, "15", false},
-                                 {SIGHUP, "1", false},
-                                 {SIGQUIT, "3", false},
-                                 {SIGPIPE, "13", false},
-                                 {SIGXCPU, "24", false},
-                                 {SIGUSR1, "10", false}}};
+std::array<HandledSignal, 7> signals = {{{SIGINT, "2", false},
+                                         {SIGTERM, "15", false},
+                                         {SIGHUP, "1", false},
+                                         {SIGQUIT, "3", false},
+                                         {SIGPIPE, "13", false},
+                                         {SIGXCPU, "24", false},
+                                         {SIGUSR1, "10", false}}};
 
-std::atomic<int> caught{0}, noting{0};
-std::atomic<bool> speaking{true}, asked{false};
+std::atomic<int> caught{0}, deferring{0};
+std::atomic<bool> printing{true}, checkpoint_flag{false};
 
-/// Only what a signal handler may call.
+/// Calls async-signal-safe functions only.
 [[noreturn]] void end_at_once(int number) {
-  const auto say = [](const char* text) { (void)!write(STDERR_FILENO, text, std::strlen(text)); };
-  for (const Taken& taken : signals) {
-    if (taken.number != number || number == SIGPIPE || !speaking) continue;  // SIGPIPE: nobody reads any more
-    say("traverse: ended by signal ");
-    say(taken.name);
-    say(" during ");
-    say(results::Stage::now());
-    say("\n");
+  const auto print = [](const char* text) { (void)!write(STDERR_FILENO, text, std::strlen(text)); };
+  for (const HandledSignal& signal : signals) {
+    if (signal.number != number || number == SIGPIPE || !printing) continue;  // SIGPIPE: the output has no reader
+    print("traverse: ended by signal ");
+    print(signal.name);
+    print(" during ");
+    print(results::Stage::now());
+    print("\n");
   }
   results::remove_made_place();
   _exit(128 + number);
 }
 
-void take(int number) {
+void handle(int number) {
   if (number == SIGUSR1) {
-    asked = true;
+    checkpoint_flag = true;
     return;
   }
-  const bool again = number == SIGXCPU && caught == number;  // the next one kills
-  if (noting == 0 || again) end_at_once(number);
+  const bool again = number == SIGXCPU && caught == number;  // the next SIGXCPU would kill
+  if (deferring == 0 || again) end_at_once(number);
   caught = number;
 }
 
 }  // namespace
 
-void look_at_ignored_signals() {
-  for (Taken& taken : signals) {
+void store_ignored_signals() {
+  for (HandledSignal& signal : signals) {
     struct sigaction action = {};
-    if (sigaction(taken.number, nullptr, &action) == 0) taken.ignored = action.sa_handler == SIG_IGN;
+    if (sigaction(signal.number, nullptr, &action) == 0) signal.ignored = action.sa_handler == SIG_IGN;
   }
 }
 
 void install_handlers() {
-  for (const Taken& taken : signals) {
+  for (const HandledSignal& signal : signals) {
     struct sigaction action = {};
-    action.sa_handler = taken.ignored ? SIG_IGN : take;
+    action.sa_handler = signal.ignored ? SIG_IGN : handle;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
-    sigaction(taken.number, &action, nullptr);
+    sigaction(signal.number, &action, nullptr);
   }
-  struct sigaction nothing = {};
-  nothing.sa_handler = SIG_IGN;
-  sigaction(SIGXFSZ, &nothing, nullptr);
+  struct sigaction ignore = {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &ignore, nullptr);
 }
 
-void heed_cpu_limit() {
+void set_cpu_limit_timer() {
   struct rlimit limit = {};
   if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
   const auto seconds = static_cast<double>(limit.rlim_cur), before = seconds - std::min(1.0, 0.3 * seconds);
@@ -98,19 +98,19 @@ void heed_cpu_limit() {
   timer_settime(timer, TIMER_ABSTIME, &at, nullptr);
 }
 
-void speak_of_signals(bool speaks) { speaking = speaks; }
+void print_signals(bool prints) { printing = prints; }
 
-SignalsNoted::SignalsNoted() { ++noting; }
+DeferredSignals::DeferredSignals() { ++deferring; }
 
-SignalsNoted::~SignalsNoted() { --noting; }
+DeferredSignals::~DeferredSignals() { --deferring; }
 
 int caught_signal() { return caught; }
 
-bool checkpoint_asked() { return asked.exchange(false); }
+bool checkpoint_requested() { return checkpoint_flag.exchange(false); }
 
-int signal_on_any(MPI_Comm comm) { return asked_on_any(comm, false).signal; }
+int signal_on_any(MPI_Comm comm) { return requests_on_any(comm, false).signal; }
 
-Asked asked_on_any(MPI_Comm comm, bool wanted) {
+Requests requests_on_any(MPI_Comm comm, bool wanted) {
   int ranks = 1, both[2] = {caught_signal(), wanted ? 1 : 0};
   MPI_Comm_size(comm, &ranks);
   if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_INT, MPI_MAX, comm);

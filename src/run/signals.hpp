@@ -1,41 +1,43 @@
-// Signals that ask the program to end. Before anything is stored they end it at once, whatever it computes; while
-// results are being written they are only noted, and the run that writes them ends in order.
+// Signals that end the program. Before results are written they end it at once; while results are being written they
+// are deferred, and the run ends in order.
 #pragma once
 
 #include <mpi.h>
 
 namespace traverse::app {
 
-/// Those that are ignored (nohup) stay so. Called before libraries are set up: UCX takes SIGHUP while it is loaded.
-void look_at_ignored_signals();
-/// Takes over SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE and SIGXCPU, and SIGUSR1, which ends nothing: at the start, and
-/// again after a library has set handlers of its own. SIGXFSZ is ignored: the file that may not grow says so.
+/// Stores which signals are ignored (nohup); they remain ignored. Called before libraries are initialised, because UCX
+/// handles SIGHUP while it is loaded.
+void store_ignored_signals();
+/// Installs handlers for SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU and SIGUSR1, which does not end the run: at
+/// the start, and again after a library has set its own handlers. SIGXFSZ is ignored, because the failed write is
+/// reported.
 void install_handlers();
-/// A limit of the processor's time may kill without a word (ulimit -t): SIGXCPU comes a little before it.
-void heed_cpu_limit();
-/// Only one rank of several tells the user of a signal.
-void speak_of_signals(bool speaks);
+/// Raises SIGXCPU shortly before the limit of processor time (ulimit -t), at which the process may be killed.
+void set_cpu_limit_timer();
+/// Sets whether this rank prints a message on a signal; only one of several ranks does.
+void print_signals(bool prints);
 
-/// While one lives signals are noted for `caught_signal`, whose owner has to ask for it after every step.
-class SignalsNoted {
+/// Signals are deferred while an object of this class exists; its owner must call `caught_signal` after every step.
+class DeferredSignals {
  public:
-  SignalsNoted();
-  ~SignalsNoted();
-  SignalsNoted(const SignalsNoted&) = delete;
-  SignalsNoted& operator=(const SignalsNoted&) = delete;
+  DeferredSignals();
+  ~DeferredSignals();
+  DeferredSignals(const DeferredSignals&) = delete;
+  DeferredSignals& operator=(const DeferredSignals&) = delete;
 };
 
-/// The signal that asks the run to end, or 0.
+/// The deferred signal, or 0.
 int caught_signal();
-/// Whether SIGUSR1 has asked for a checkpoint since the last call.
-bool checkpoint_asked();
+/// Whether SIGUSR1 has requested a checkpoint since the last call.
+bool checkpoint_requested();
 /// Collective. The signal of any rank of comm.
 int signal_on_any(MPI_Comm comm);
-/// Collective. The same, and whether any rank wants something else.
-struct Asked {
+/// Collective. The same, and whether `wanted` is true on any rank.
+struct Requests {
   int signal = 0;
   bool wanted = false;
 };
-Asked asked_on_any(MPI_Comm comm, bool wanted);
+Requests requests_on_any(MPI_Comm comm, bool wanted);
 
 }  // namespace traverse::app

@@ -11,11 +11,11 @@ namespace traverse::app {
 
 using base::Extreme;
 
-/// The last one at the end; times in s.
+/// The latest samples in ascending order of time; times in s.
 struct Samples {
-  static constexpr std::size_t most = base::samples_kept;
-  std::array<double, most> time{}, value{};
-  std::size_t count = 0;  // so many have come
+  static constexpr std::size_t max_count = base::samples_kept;
+  std::array<double, max_count> time{}, value{};
+  std::size_t count = 0;  // number of samples added so far
 
   void push(double t, double y) {
     std::rotate(time.begin(), time.begin() + 1, time.end());
@@ -26,21 +26,21 @@ struct Samples {
   }
 };
 
-/// Where the curve turns about the sample i, which is extreme between its neighbours; smooth(a, b): whether it has no
-/// kink from sample a to b. Of three samples, neighbours much nearer than the other one are passed over for those
-/// behind them; where there are none the curve turns at the sample itself.
+/// The extreme of the curve near sample i, which is extreme between its neighbours; smooth(a, b): the curve has no kink
+/// from sample a to b. With three samples, a neighbour much closer than the other one is replaced by the next sample
+/// behind it; if there is none, the extreme is the sample itself.
 template <class Smooth>
-Extreme turn_about(const Samples& samples, std::size_t i, Smooth&& smooth) {
+Extreme interpolate_extremum(const Samples& samples, std::size_t i, Smooth&& smooth) {
   const auto &t = samples.time, &y = samples.value;
   const base::Stencil by(t.data(), static_cast<int>(i),
-                         static_cast<int>(Samples::most - std::min(samples.count, Samples::most)));
+                         static_cast<int>(Samples::max_count - std::min(samples.count, Samples::max_count)));
   const auto left = static_cast<std::size_t>(by.left), right = static_cast<std::size_t>(by.right);
   const bool five = by.five && smooth(0, 4);
-  const bool turns = (y[i] - y[left]) * (y[right] - y[i]) <= 0.0 && y[right] != y[i];
-  if (!five && !(by.three && turns && smooth(left, right))) return {y[i], t[i]};
-  double behind = 0.0;
-  const double top = base::extreme_between(t.data(), y.data(), static_cast<int>(i), by, five, behind);
-  return {top, t[i] + behind};
+  const bool is_extreme = (y[i] - y[left]) * (y[right] - y[i]) <= 0.0 && y[right] != y[i];
+  if (!five && !(by.three && is_extreme && smooth(left, right))) return {y[i], t[i]};
+  double offset = 0.0;
+  const double extreme = base::extreme_between(t.data(), y.data(), static_cast<int>(i), by, five, offset);
+  return {extreme, t[i] + offset};
 }
 
 }  // namespace traverse::app

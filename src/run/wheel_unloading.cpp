@@ -13,25 +13,25 @@
 namespace traverse::app {
 namespace {
 
-constexpr double at_an_interval = 1e-6;  // of it: an instant that is a multiple
+constexpr double interval_tolerance = 1e-6;  // relative tolerance of a multiple of the interval
 
-/// The longest stretch of a series that stays above a level, by straight lines between its instants, in intervals.
-struct Stretch {
+/// The longest range of a series above a level, by linear interpolation, in intervals.
+struct RangeAbove {
   double length = 0.0, from = 0.0;
 };
 
 template <class Value>
-Stretch longest_above(double level, std::size_t instants, const Value& value) {
-  Stretch longest;
+RangeAbove longest_above(double level, std::size_t instants, const Value& value) {
+  RangeAbove longest;
   double from = 0.0;
   bool above = instants > 0 && value(0) > level;
   const auto end = [&](double at) {
     if (at - from > longest.length) longest = {at - from, from};
   };
   for (std::size_t k = 1; k < instants; ++k) {
-    const double before = value(k - 1), now = value(k);
-    if (above == (now > level)) continue;
-    const double crossing = static_cast<double>(k - 1) + (level - before) / (now - before);
+    const double before = value(k - 1), present = value(k);
+    if (above == (present > level)) continue;
+    const double crossing = static_cast<double>(k - 1) + (level - before) / (present - before);
     if (above)
       end(crossing);
     else
@@ -58,47 +58,47 @@ bool filters_wheels(const Scene& scene) {
   const bool limited = std::any_of(scene.limits.begin(), scene.limits.end(), [](const options::VerdictLimit& limit) {
     return limit.quantity == "filtered_wheel_unloading" || limit.quantity == "unloading_time";
   });
-  const bool rolls = std::any_of(scene.vehicles.begin(), scene.vehicles.end(),
-                                 [](const Vehicle& vehicle) { return !vehicle.wheels.empty(); });
-  return rolls && (limited || scene.output.wheels_filtered) && scene.analysis == Analysis::transient &&
+  const bool has_wheels = std::any_of(scene.vehicles.begin(), scene.vehicles.end(),
+                                      [](const Vehicle& vehicle) { return !vehicle.wheels.empty(); });
+  return has_wheels && (limited || scene.output.wheels_filtered) && scene.analysis == Analysis::transient &&
          scene.start == Start::equilibrium;
 }
 
 FilteredWheels::FilteredWheels(double frequency, double level, const Plan& plan, std::size_t wheels)
     : frequency_(frequency), level_(level), interval_(plan.interval), wheels_(wheels) {
-  kept_.reserve(wheels * static_cast<std::size_t>(2.0 + plan.end_time / plan.interval));
+  rows_.reserve(wheels * static_cast<std::size_t>(2.0 + plan.end_time / plan.interval));
 }
 
-bool FilteredWheels::wants(double t) const {
-  const std::size_t instants = kept_.size() / wheels_;
-  const double due = static_cast<double>(instants) * interval_;
-  return std::abs(t - due) <= at_an_interval * interval_;
+bool FilteredWheels::is_due(double t) const {
+  const std::size_t instants = rows_.size() / wheels_;
+  const double next = static_cast<double>(instants) * interval_;
+  return std::abs(t - next) <= interval_tolerance * interval_;
 }
 
 results::FilteredUnloading FilteredWheels::finish(const train::Fleet& fleet) {
-  const std::vector<double> at_start(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(wheels_));
-  LowPass(frequency_, interval_).apply(kept_, wheels_);
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    const double rest = at_start[i % wheels_];
-    kept_[i] = rest > 0.0 ? std::max(0.0, 1.0 - kept_[i] / rest) : 0.0;
+  const std::vector<double> at_start(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(wheels_));
+  LowPass(frequency_, interval_).apply(rows_, wheels_);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const double initial = at_start[i % wheels_];
+    rows_[i] = initial > 0.0 ? std::max(0.0, 1.0 - rows_[i] / initial) : 0.0;
   }
-  const Extreme largest = largest_peak(kept_, wheels_, interval_);
+  const Extreme largest = largest_peak(rows_, wheels_, interval_);
 
-  results::FilteredUnloading found;
-  found.extreme = {largest.value, largest.time, wheel_name(fleet, static_cast<std::size_t>(largest.place))};
-  found.frequency = frequency_;
-  found.interval = interval_;
-  found.filter = low_pass_name;
-  found.level = level_;
+  results::FilteredUnloading result;
+  result.extreme = {largest.value, largest.time, wheel_name(fleet, static_cast<std::size_t>(largest.place))};
+  result.frequency = frequency_;
+  result.interval = interval_;
+  result.filter = low_pass_name;
+  result.level = level_;
   for (std::size_t wheel = 0; wheel < wheels_; ++wheel) {
-    const Stretch stretch =
-        longest_above(level_, kept_.size() / wheels_, [&](std::size_t k) { return kept_[k * wheels_ + wheel]; });
-    if (stretch.length * interval_ <= found.longest) continue;
-    found.longest = stretch.length * interval_;
-    found.longest_from = stretch.from * interval_;
-    found.longest_wheel = wheel_name(fleet, wheel);
+    const RangeAbove range =
+        longest_above(level_, rows_.size() / wheels_, [&](std::size_t k) { return rows_[k * wheels_ + wheel]; });
+    if (range.length * interval_ <= result.longest) continue;
+    result.longest = range.length * interval_;
+    result.longest_from = range.from * interval_;
+    result.longest_wheel = wheel_name(fleet, wheel);
   }
-  return found;
+  return result;
 }
 
 }  // namespace traverse::app

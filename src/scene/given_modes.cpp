@@ -1,5 +1,5 @@
-// Parses frequencies, modal masses, damping ratios, outputs and mode shapes line by line, sorts modes by frequency and
-// scales their shapes to a modal mass of 1 kg.
+// Parses frequencies, modal masses, damping ratios, outputs and mode shapes line by line, sorts the modes by frequency
+// and scales their shapes to a modal mass of 1 kg.
 #include "given_modes.hpp"
 
 #include <fmt/format.h>
@@ -40,17 +40,17 @@ bool is_name(const std::string& word) {
                                       [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
 }
 
-/// The text of one file, line by line.
-class ModesText {
+/// Parses the text of one file line by line.
+class ModesParser {
  public:
-  ModesText(std::string path, int track) : path_(std::move(path)), track_(track) {}
+  ModesParser(std::string path, int track) : path_(std::move(path)), track_(track) {}
 
   beam::GivenModes read(std::istream& text) {
     for (std::string line; std::getline(text, line);) {
       ++line_;
-      if (const std::vector<std::string> cells = cells_of(line); !cells.empty()) take(cells);
+      if (const std::vector<std::string> cells = cells_of(line); !cells.empty()) parse(cells);
     }
-    check_whole();
+    check_complete();
     normalise();
     return std::move(modes_);
   }
@@ -63,8 +63,8 @@ class ModesText {
 
   double number(const std::string& word) const {
     double value = 0.0;
-    if (!options::parse_number(word, value)) refuse(fmt::format("'{}' is no finite number", word));
-    if (!options::is_quantity(value)) refuse(fmt::format("'{}' is beyond any quantity in SI units", word));
+    if (!options::parse_number(word, value)) refuse(fmt::format("'{}' is not a finite number", word));
+    if (!options::is_quantity(value)) refuse(fmt::format("'{}' is not a possible quantity in SI units", word));
     return value;
   }
   std::vector<double> numbers(const std::vector<std::string>& cells, std::size_t from) const {
@@ -72,90 +72,93 @@ class ModesText {
     for (std::size_t i = from; i < cells.size(); ++i) values.push_back(number(cells[i]));
     return values;
   }
-  /// One for each mode.
-  std::vector<double> of_modes(const std::vector<std::string>& cells, std::size_t from) const {
-    if (frequency_.empty()) refuse(fmt::format("{} before frequency, which says how many modes there are", cells[0]));
+  /// The numbers of a line with one number per mode.
+  std::vector<double> modal_numbers(const std::vector<std::string>& cells, std::size_t from) const {
+    if (frequency_.empty())
+      refuse(fmt::format("{} needs the line frequency before it, which sets the number of modes", cells[0]));
     std::vector<double> values = numbers(cells, from);
     if (values.size() != frequency_.size())
-      refuse(fmt::format("{} holds {} numbers for {} modes; wanted: one a mode", cells[0], values.size(),
+      refuse(fmt::format("{} has {} numbers for {} modes; allowed: one per mode", cells[0], values.size(),
                          frequency_.size()));
     return values;
   }
 
-  void take(const std::vector<std::string>& cells) {
+  void parse(const std::vector<std::string>& cells) {
     const std::string& word = cells.front();
-    if (word == "frequency") return take_frequencies(cells);
-    if (word == "modal_mass") return take_masses(cells);
-    if (word == "damping_ratio") return take_ratios(cells);
-    if (word == "output") return take_output(cells);
-    if (word == "track") return take_track(cells);
+    if (word == "frequency") return parse_frequencies(cells);
+    if (word == "modal_mass") return parse_masses(cells);
+    if (word == "damping_ratio") return parse_ratios(cells);
+    if (word == "output") return parse_output(cells);
+    if (word == "track") return parse_track(cells);
     double x = 0.0;
     if (!options::parse_number(word, x))
       refuse(
-          fmt::format("'{}' begins no line of modes; allowed: frequency, modal_mass, damping_ratio, output, track, or "
+          fmt::format("'{}' cannot begin a line; allowed: frequency, modal_mass, damping_ratio, output, track, or "
                       "a station in m",
                       word));
-    take_station(cells);
+    parse_station(cells);
   }
 
-  void take_frequencies(const std::vector<std::string>& cells) {
+  void parse_frequencies(const std::vector<std::string>& cells) {
     if (!frequency_.empty()) refuse("frequency is given twice");
     frequency_ = numbers(cells, 1);
     if (frequency_.empty() || frequency_.size() > most_given_modes)
-      refuse(fmt::format("frequency holds {} numbers; allowed: 1 to {}", frequency_.size(), most_given_modes));
+      refuse(fmt::format("frequency has {} numbers; allowed: 1 to {}", frequency_.size(), most_given_modes));
     for (std::size_t i = 0; i < frequency_.size(); ++i)
       if (!(frequency_[i] > 0.0))
         refuse(fmt::format("the frequency of mode {} is {:g} Hz; allowed: above 0", i + 1, frequency_[i]));
   }
 
-  void take_masses(const std::vector<std::string>& cells) {
-    mass_ = of_modes(cells, 1);
+  void parse_masses(const std::vector<std::string>& cells) {
+    mass_ = modal_numbers(cells, 1);
     for (std::size_t i = 0; i < mass_.size(); ++i)
       if (!(mass_[i] > 0.0))
         refuse(fmt::format("the modal mass of mode {} is {:g} kg; allowed: above 0", i + 1, mass_[i]));
   }
 
-  void take_ratios(const std::vector<std::string>& cells) {
+  void parse_ratios(const std::vector<std::string>& cells) {
     ratio_ = cells.size() == 2 && !frequency_.empty() ? std::vector<double>(frequency_.size(), number(cells[1]))
-                                                      : of_modes(cells, 1);
+                                                      : modal_numbers(cells, 1);
     for (std::size_t i = 0; i < ratio_.size(); ++i)
       if (!(ratio_[i] >= 0.0))
-        refuse(fmt::format("the damping ratio of mode {} is {:g}; allowed: from 0 on", i + 1, ratio_[i]));
+        refuse(fmt::format("the damping ratio of mode {} is {:g}; allowed: not below 0", i + 1, ratio_[i]));
     const auto lowest = std::min_element(frequency_.begin(), frequency_.end()) - frequency_.begin();
     if (const double first = ratio_[static_cast<std::size_t>(lowest)]; first >= 1.0)
       refuse(fmt::format(
-          "the damping ratio of the lowest mode is {:g}; allowed: below 1, critical damping (no per cent)", first));
+          "the damping ratio of the lowest mode is {:g}; allowed: below 1 (critical damping), not in per cent", first));
   }
 
-  void take_output(const std::vector<std::string>& cells) {
+  void parse_output(const std::vector<std::string>& cells) {
     if (cells.size() < 3 || !is_name(cells[1]) || cells[2].empty())
-      refuse("an output is: output, NAME, UNIT, one number a mode; a name is a word of letters, digits and _");
+      refuse(
+          "allowed for an output: output, NAME, UNIT, one number per mode; the name is a word of letters, digits and "
+          "_");
     for (const beam::GivenModes::Output& other : modes_.outputs)
-      if (other.name == cells[1]) refuse(fmt::format("two outputs are called {}", cells[1]));
-    modes_.outputs.push_back({cells[1], cells[2], of_modes(cells, 3)});
+      if (other.name == cells[1]) refuse(fmt::format("two outputs have the name {}", cells[1]));
+    modes_.outputs.push_back({cells[1], cells[2], modal_numbers(cells, 3)});
   }
 
-  void take_track(const std::vector<std::string>& cells) {
+  void parse_track(const std::vector<std::string>& cells) {
     const double number_of = cells.size() == 2 ? number(cells[1]) : 0.0;
     if (number_of != tracks_ + 1.0)
-      refuse(fmt::format("wanted here: track, {}; tracks are counted from 1", tracks_ + 1));
-    if (tracks_ == 0 && !modes_.x.empty()) refuse("track, 1 has to stand before the first station");
+      refuse(fmt::format("allowed here: track, {}; tracks are counted from 1", tracks_ + 1));
+    if (tracks_ == 0 && !modes_.x.empty()) refuse("track, 1 must be before the first station");
     ++tracks_;
     last_x_ = 0.0;
     stations_ = 0;
   }
 
-  void take_station(const std::vector<std::string>& cells) {
+  void parse_station(const std::vector<std::string>& cells) {
     const std::size_t modes = frequency_.size();
-    if (modes == 0) refuse("a station before frequency, which says how many modes there are");
+    if (modes == 0) refuse("a station needs the line frequency before it, which sets the number of modes");
     if (cells.size() != 1 + modes && cells.size() != 1 + 2 * modes)
       refuse(fmt::format(
-          "a station with {} numbers behind x, for {} modes; wanted: a shape of each, or all shapes and then "
-          "all slopes",
+          "the station has {} numbers after x for {} modes; allowed: one shape per mode, or all shapes and then all "
+          "slopes",
           cells.size() - 1, modes));
     const double x = number(cells.front());
     if (stations_ == 0 && x != 0.0)
-      refuse(fmt::format("the first station is {:g} m; x counts from the bridge's left end, 0", x));
+      refuse(fmt::format("the first station is {:g} m; allowed: 0, the left end of the bridge", x));
     if (stations_ > 0 && !(x > last_x_))
       refuse(fmt::format("stations must increase strictly: {:g} m after {:g} m", x, last_x_));
     last_x_ = x;
@@ -163,7 +166,7 @@ class ModesText {
       refuse(fmt::format("too many stations; allowed: at most {}", most_shape_stations));
     if (std::max(tracks_, 1) != track_) return;
     const bool slopes = cells.size() > 1 + modes;
-    if (!modes_.x.empty() && slopes != has_slopes_) refuse("slopes have to be given at all stations or at none");
+    if (!modes_.x.empty() && slopes != has_slopes_) refuse("slopes must be given at all stations or at none");
     has_slopes_ = slopes;
     modes_.x.push_back(x);
     modes_.shape.resize(modes);
@@ -174,22 +177,22 @@ class ModesText {
     }
   }
 
-  void check_whole() const {
-    if (frequency_.empty()) refuse_file("there is no line frequency, of the modes' frequencies in Hz");
-    if (mass_.empty()) refuse_file("there is no line modal_mass, of the modes' masses in kg");
-    if (ratio_.empty()) refuse_file("there is no line damping_ratio");
+  void check_complete() const {
+    if (frequency_.empty()) refuse_file("the line frequency is missing: the frequencies of the modes in Hz");
+    if (mass_.empty()) refuse_file("the line modal_mass is missing: the masses of the modes in kg");
+    if (ratio_.empty()) refuse_file("the line damping_ratio is missing");
     const int tracks = std::max(tracks_, 1);
     if (track_ > tracks)
       refuse_file(fmt::format("bridge_track is {}; the file has {} track{}", track_, tracks, tracks == 1 ? "" : "s"));
-    if (modes_.x.size() < 2) refuse_file(fmt::format("{} stations; wanted: at least 2", modes_.x.size()));
-    const auto moves = [](const std::vector<double>& shape) {
+    if (modes_.x.size() < 2) refuse_file(fmt::format("{} stations; allowed: at least 2", modes_.x.size()));
+    const auto is_nonzero = [](const std::vector<double>& shape) {
       return std::any_of(shape.begin(), shape.end(), [](double value) { return value != 0.0; });
     };
-    if (std::none_of(modes_.shape.begin(), modes_.shape.end(), moves))
+    if (std::none_of(modes_.shape.begin(), modes_.shape.end(), is_nonzero))
       refuse_file("all shapes are zero along the track");
   }
 
-  /// Ascending frequencies, shapes of a modal mass of 1 kg.
+  /// Sorts the modes by frequency and scales the shapes to a modal mass of 1 kg.
   void normalise() {
     const std::size_t modes = frequency_.size();
     std::vector<std::size_t> order(modes);
@@ -219,10 +222,10 @@ class ModesText {
   std::string path_;
   int track_, tracks_ = 0, line_ = 0;
   std::vector<double> frequency_, mass_, ratio_;  // Hz, kg, 1
-  beam::GivenModes modes_;                        // shapes, slopes and outputs as the file has them
+  beam::GivenModes modes_;                        // shapes, slopes and outputs as in the file
   bool has_slopes_ = false;
   double last_x_ = 0.0;
-  std::size_t stations_ = 0;  // of the track under way
+  std::size_t stations_ = 0;  // of the current track so far
 };
 
 }  // namespace
@@ -232,10 +235,10 @@ beam::GivenModes read_given_modes(const std::string& path, int track) {
     const std::string text = results::modes_as_text(path);
     options::record_text(path, text);
     std::istringstream stream(text);
-    return ModesText(path, track).read(stream);
+    return ModesParser(path, track).read(stream);
   }
-  std::istringstream stream(options::read_text(path, {"", "file of modes", most_characters, true}));
-  return ModesText(path, track).read(stream);
+  std::istringstream stream(options::read_text(path, {"", "a file of modes", most_characters, true}));
+  return ModesParser(path, track).read(stream);
 }
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// A bridge's natural modes out of a file: text, or HDF5 as results/modes_text.hpp has it.
+// Reads the natural modes of a bridge from a file: text, or HDF5 as described in results/modes_text.hpp.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace traverse::app {
 
-/// The modes with their shapes along one of the file's tracks, counted from 1. InputError naming file and line.
+/// The modes with their shapes along one of the tracks of the file, counted from 1. InputError with file and line.
 ///
-/// Lines of the text hold words and numbers with commas between; # begins a comment.
+/// A line has words and numbers separated by commas; # begins a comment.
 ///   frequency, f1, f2, ...            Hz
-///   modal_mass, m1, m2, ...           kg, for the shapes as they are given
-///   damping_ratio, z1, z2, ...        1; one serves all
-///   output, NAME, UNIT, c1, c2, ...   what a coordinate of 1 of each shape gives
-///   track, 1                          the lines that follow are of this track; left out: there is one
-///   x, shape1, shape2, ...            a station, m, with every shape there; or with all slopes behind all shapes
+///   modal_mass, m1, m2, ...           kg, for the given shapes
+///   damping_ratio, z1, z2, ...        1; a single one applies to all modes
+///   output, NAME, UNIT, c1, c2, ...   the value per unit coordinate of each mode
+///   track, 1                          the following lines are of this track; not needed for one track
+///   x, shape1, shape2, ...            a station, m, with all shapes, or with all shapes and then all slopes
 beam::GivenModes read_given_modes(const std::string& path, int track);
 
 }  // namespace traverse::app

@@ -14,16 +14,16 @@
 namespace traverse::app {
 namespace {
 
-// Bytes, as measured on runs of many of each.
+// Bytes for each item, measured in runs with many of them.
 constexpr double a_node = 500.0, a_nodal_unknown = 750.0, a_probe = 2200.0, a_vehicle = 6e4, a_pair_of_vehicles = 1e3,
                  a_force = 400.0, a_spring = 800.0, a_sweep_peak = 200.0;
-constexpr double most_peaks = 1e8;  // of a sweep, which 32 bits can number
+constexpr double most_peaks = 1e8;  // of a sweep; 32 bits can number them
 constexpr int lapack_copies = 3, few_modes = 2;
 
-/// Something that there may be too much of.
+/// The memory of one kind of item.
 struct Need {
   double bytes = 0.0;
-  std::string option, what;  // that asks for it (empty: that of the mesh), and in words
+  std::string option, what;  // the option that sets their number (empty: that of the mesh), and a description
 };
 
 double memory_of_machine() {
@@ -44,7 +44,7 @@ int ranks() {
 
 double sum(const std::vector<int>& numbers) { return std::accumulate(numbers.begin(), numbers.end(), 0.0); }
 
-/// Of the bridge, or of the rail, which has more.
+/// The number of elements of the bridge, or of the rail, which has more.
 double elements_of(const beam::BeamModel& beam) {
   if (!beam.track) return sum(beam.elements);
   return (beam.length() + 2.0 * beam.track->approach) / beam.track->spacing * beam.track->elements_per_bay;
@@ -60,7 +60,7 @@ void check_elements(const options::Options& o, const Scene& scene) {
   const double elements = elements_of(*scene.beam);
   if (!(elements <= most_elements))
     o.refuse(option_of_mesh(o, scene),
-             fmt::format("{:.3g} elements in all; allowed: at most {:g}", elements, most_elements));
+             fmt::format("{:.3g} elements in total; allowed: at most {:g}", elements, most_elements));
 }
 
 Need mesh(const Scene& scene) {
@@ -70,12 +70,12 @@ Need mesh(const Scene& scene) {
 }
 
 Need modes(const Scene& scene) {
-  const bool wanted = scene.analysis == Analysis::modes;
+  const bool modal_analysis = scene.analysis == Analysis::modes;
   const double nodes = elements_of(*scene.beam), unknowns = nodes * (scene.beam->axial ? 3.0 : 2.0);
-  const double count = std::min<double>(wanted ? scene.mode_count : scene.model.modes, unknowns);
+  const double count = std::min<double>(modal_analysis ? scene.mode_count : scene.model.modes, unknowns);
   const bool all = count > unknowns / few_modes;
   const double numbers = all ? lapack_copies * unknowns * unknowns : 6.0 * count * unknowns;
-  return {8.0 * numbers, wanted ? "modes_count" : "model_modes",
+  return {8.0 * numbers, modal_analysis ? "modes_count" : "model_modes",
           fmt::format("{:g} modes of {:g} unknowns", count, unknowns)};
 }
 
@@ -90,7 +90,7 @@ void check_peaks(const options::Options& o, const Scene& scene) {
   const double runs = runs_of(*scene.sweep), probes = static_cast<double>(scene.output.probes.size());
   if (runs * probes > most_peaks)
     o.refuse(option_of(*scene.sweep),
-             fmt::format("{:.3g} runs with {} probes each; allowed: at most {:g} of both multiplied", runs, probes,
+             fmt::format("{:.3g} runs with {} probes each; allowed: at most {:g} runs times probes", runs, probes,
                          most_peaks));
 }
 
@@ -111,7 +111,7 @@ std::vector<Need> needs_of(const Scene& scene) {
                               fmt::format("{:g} vehicles", vehicles)},
                              {forces * a_force, "load_forces", fmt::format("{:g} forces", forces)},
                              {probes * (a_probe + 8.0 * (wheels + forces)), "output_probes",
-                              fmt::format("{:g} probes and what passes each of them", probes)}};
+                              fmt::format("{:g} probes and the wheels and forces that pass them", probes)}};
   if (!scene.beam) return needs;
   const beam::Foundation& f = scene.beam->foundation;
   double springs = 0.0;
@@ -122,7 +122,7 @@ std::vector<Need> needs_of(const Scene& scene) {
   needs.push_back(
       {springs * a_spring, "foundation_vertical_x", fmt::format("{:g} springs of the foundation", springs)});
   needs.push_back({16.0 * (wheels + forces) * kinks, forces > wheels ? "load_forces" : "train_vehicles",
-                   fmt::format("{:g} wheels and forces that pass {:g} kinks of their way", wheels + forces, kinks)});
+                   fmt::format("{:g} wheels and forces that pass {:g} kinks of the surface", wheels + forces, kinks)});
   if (scene.analysis == Analysis::modes || scene.model.modes > 0) needs.push_back(modes(scene));
   if (scene.sweep) needs.push_back(sweep(scene));
   return needs;
@@ -139,15 +139,15 @@ double memory_of(const Scene& scene) {
 void check_size(const options::Options& o, const Scene& scene) {
   if (scene.beam) check_elements(o, scene);
   if (scene.sweep) check_peaks(o, scene);
-  const double there = memory_of_machine(), all = memory_of(scene);
-  if (all <= there) return;
+  const double available = memory_of_machine(), needed = memory_of(scene);
+  if (needed <= available) return;
   const std::vector<Need> needs = needs_of(scene);
   const Need& most =
       *std::max_element(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.bytes < b.bytes; });
   o.refuse(most.option.empty() ? option_of_mesh(o, scene) : most.option,
            fmt::format("the scene needs about {:.2g} GB of memory, {:.2g} GB of it for {}; this machine has "
-                       "{:.2g} GB: make that fewer",
-                       1e-9 * all, 1e-9 * most.bytes, most.what, 1e-9 * there));
+                       "{:.2g} GB; reduce their number",
+                       1e-9 * needed, 1e-9 * most.bytes, most.what, 1e-9 * available));
 }
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// What a scene needs of the machine, by counting, before anything of it is made.
+// The memory that a scene needs, estimated from counts before anything of it is allocated.
 #pragma once
 
 #include "traverse/options/options.hpp"
@@ -6,13 +6,13 @@
 
 namespace traverse::app {
 
-inline constexpr double most_elements = 2e7;  // whose matrices' entries 32 bits can number
+inline constexpr double most_elements = 2e7;  // 32 bits can number the entries of their matrices
 
-/// What a run of the scene takes of memory on this rank, besides the program itself, bytes.
+/// The memory of a run of the scene on this rank in addition to the program itself, in bytes.
 double memory_of(const Scene& scene);
 
-/// InputError where the scene needs more memory than this machine has, or counts go beyond what can be numbered: names
-/// the option that asks for most.
+/// InputError if the scene needs more memory than this machine has, or more items than can be numbered, with the option
+/// that contributes most.
 void check_size(const options::Options& options, const Scene& scene);
 
 }  // namespace traverse::app

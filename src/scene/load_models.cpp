@@ -27,7 +27,7 @@ constexpr ReferenceWagon reference_wagons[] = {
     {"C3", 20.0, 4.50}, {"C4", 20.0, 3.40}, {"D2", 22.5, 7.45}, {"D3", 22.5, 5.90},
     {"D4", 22.5, 4.65}, {"D5", 22.5, 3.62}, {"E4", 25.0, 5.90}, {"E5", 25.0, 4.75},
 };
-constexpr double bogie_wheelbase = 1.8, overhang = 1.5;  // m, the latter from the buffers to the outer axle
+constexpr double bogie_wheelbase = 1.8, overhang = 1.5;  // m; overhang: from the buffers to the outer axle
 
 }  // namespace
 

@@ -17,18 +17,18 @@ namespace {
 
 using options::Options;
 
-constexpr double most_left_out = 0.1;
+constexpr double largest_window_tolerance = 0.1;
 
-// What is left out of the steps: -1 where the run decides.
+/// The relative motion below which parts are excluded from the steps; -1: automatic.
 double read_window(const Options& o) {
   const std::string value = o.text("model_window");
   if (value == "auto") return -1.0;
   char* end = nullptr;
-  const double part = std::strtod(value.c_str(), &end);
-  if (value.empty() || *end != 0 || !(part >= 0.0 && part <= most_left_out))
+  const double fraction = std::strtod(value.c_str(), &end);
+  if (value.empty() || *end != 0 || !(fraction >= 0.0 && fraction <= largest_window_tolerance))
     o.refuse("model_window",
-             fmt::format("allowed: auto, 0, or a part of the largest motion up to {:g}", most_left_out));
-  return part;
+             fmt::format("allowed: auto, 0, or a fraction of the largest motion up to {:g}", largest_window_tolerance));
+  return fraction;
 }
 
 void read_run(const Options& o, Scene& scene) {
@@ -47,7 +47,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.model.step_kinks = o.flag("step_kinks");
   scene.model.step_probes = o.flag("step_probes");
   scene.all_ranks = o.choice("step_ranks") == "all";
-  scene.model.rest_tolerance = read_window(o);
+  scene.model.window_tolerance = read_window(o);
   const std::string vehicles = o.choice("model_vehicles");
   scene.model.vehicles = vehicles == "linear" ? VehicleModel::linear
                          : vehicles == "auto" ? VehicleModel::automatic
@@ -63,7 +63,8 @@ void read_limits(const Options& o, Scene& scene) {
   if (!o.has("limits")) return;
   scene.limits = options::read_verdict_limits(o.path("limits"));
   if (scene.analysis == Analysis::transient) {
-    if (scene.sweep && !o.has("sweep_refine") && scene.judges_runs() && scene.sweep->speeds.size() >= fewest_to_refine)
+    if (scene.sweep && !o.has("sweep_refine") && scene.has_run_limits() &&
+        scene.sweep->speeds.size() >= fewest_to_refine)
       scene.sweep->refine = -1.0;
     return;
   }
@@ -75,10 +76,10 @@ void read_limits(const Options& o, Scene& scene) {
     return;
   }
   scene.limits.clear();
-  scene.notes.emplace_back("limits has no effect: transient runs are checked against limits");
+  scene.notes.emplace_back("limits has no effect with this scene_analysis");
 }
 
-/// A run ends when the last wheel or force has left the beam, or when the user says.
+/// Checks that the run has an end: the last wheel or force leaves the beam, or the user gives the end time.
 void check_end(const Options& o, const Scene& scene) {
   if (scene.analysis != Analysis::transient || scene.end_time) return;
   const auto rolls = [](const Vehicle& v) { return !v.wheels.empty(); };
@@ -90,10 +91,10 @@ void check_end(const Options& o, const Scene& scene) {
   if (!wheels && !forces && scene.beam && scene.vehicles.empty())
     throw InputError(
         "nothing moves over the bridge: neither vehicles (train_vehicles) nor moving forces (load_forces, load_hslm_a, "
-        "load_file, ...) are given; a run without them needs its end (ts_max_time)");
-  std::string why = "nothing leaves a bridge in this scene, so its end has to be given (s)";
-  if (wheels && scene.train.speed == 0.0) why = "train_speed is 0: the train never leaves; give the end of the run (s)";
-  if (forces && scene.load.speed == 0.0) why = "load_speed is 0: the forces never leave; give the end of the run (s)";
+        "load_file, ...) are given; a run without them needs an end time (ts_max_time)");
+  std::string why = "no wheel or force leaves a bridge in this scene, so the end time must be given (s)";
+  if (wheels && scene.train.speed == 0.0) why = "train_speed is 0, so the train never leaves; give the end time (s)";
+  if (forces && scene.load.speed == 0.0) why = "load_speed is 0, so the forces never leave; give the end time (s)";
   o.refuse("ts_max_time", why);
 }
 
@@ -116,6 +117,13 @@ void check_scene(const Options& o, Scene& scene) {
 }
 
 }  // namespace
+
+bool has_own_contact_law(const Scene& scene) {
+  const auto own = [](const auto& contact) { return contact.law.kind == contact::LawKind::other; };
+  return std::ranges::any_of(scene.vehicles, [&](const Vehicle& vehicle) {
+    return std::ranges::any_of(vehicle.wheels, own) || std::ranges::any_of(vehicle.contacts, own);
+  });
+}
 
 double greatest_speed(const Scene& scene) {
   return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
@@ -151,7 +159,7 @@ std::vector<double> wheels_at_start(const Scene& scene) {
 }
 
 Scene read_scene(Options o) {
-  if (asks_for_study(o)) return read_study(o);
+  if (describes_study(o)) return read_study(o);
   Scene scene;
   declare_blocks(o);
   const NamedVehicles vehicles = declare_vehicles(o);
@@ -177,7 +185,7 @@ Scene read_scene(Options o) {
   check_scene(o, scene);
   if (const options::Entry* study = o.first_with_prefix("study_"))
     scene.notes.push_back(study->name + " has no effect: study_vary names no option to vary");
-  check_sense(o, vehicles, scene);
+  check_plausibility(o, vehicles, scene);
   check_size(o, scene);
   scene.options = o.all();
   return scene;

@@ -1,4 +1,4 @@
-// A bridge as it is found: cracks, supports that yield or have settled, its temperature.
+// The state of an existing bridge: cracks, elastic or settled supports, temperature.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,15 +11,15 @@ namespace {
 
 using options::Options;
 
-constexpr double rounding = 1e-9;  // m, of stations
+constexpr double station_rounding = 1e-9;  // m
 
-bool is_nearly(double x, double other) { return std::abs(x - other) < rounding; }
+bool is_nearly(double x, double other) { return std::abs(x - other) < station_rounding; }
 
-/// Cracks of a width: EI is less there, and nodes stand at both ends whatever the mesh.
+/// Cracks with a width, over which EI is reduced. Both ends become nodes of every mesh.
 void read_weak_stretches(const Options& o, const std::vector<double>& x, beam::BeamModel& beam) {
   if (!o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_width", "needs beam_cracks_EI_factor");
-  const std::vector<double> width = o.numbers("beam_cracks_width", x.size(), "as many as stations");
-  const std::vector<double> factor = o.numbers("beam_cracks_EI_factor", x.size(), "as many as stations");
+  const std::vector<double> width = o.numbers("beam_cracks_width", x.size(), "one per station");
+  const std::vector<double> factor = o.numbers("beam_cracks_EI_factor", x.size(), "one per station");
   double before = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     double from = as_division(beam, x[i] - 0.5 * width[i]);
@@ -27,8 +27,8 @@ void read_weak_stretches(const Options& o, const std::vector<double>& x, beam::B
     if (is_nearly(from, before)) from = before;
     if (from < before || to > beam.length())
       o.refuse("beam_cracks_width",
-               fmt::format("the crack from {:g} to {:g} m is not within the beam, or meets the one "
-                           "before; allowed: within 0 to {:g} m, from left to right",
+               fmt::format("the crack from {:g} to {:g} m is outside the beam or overlaps the crack "
+                           "before it; allowed: within 0 to {:g} m, from left to right",
                            from, to, beam.length()));
     before = to;
     beam.EI = beam.EI.with_factor(from, to, factor[i]);
@@ -37,27 +37,29 @@ void read_weak_stretches(const Options& o, const std::vector<double>& x, beam::B
   }
 }
 
+/// The support without its vertical restraint, which a spring replaces.
 beam::Support without_vertical(const Options& o, beam::Support support) {
   using beam::Support;
   if (support == Support::roller) return Support::free;
   if (support == Support::pinned) return Support::along;
   if (support == Support::clamped) return Support::guided;
   o.refuse("support_stiffness",
-           "stands at a support that does not hold the beam vertically; allowed: at rollers, "
-           "pinned and clamped ones (support_types)");
+           "belongs to a support without vertical restraint; allowed: at rollers, pinned and clamped supports "
+           "(support_types)");
 }
 
-void yield_vertically(const Options& o, const std::vector<double>& stiffness, const std::vector<double>& scour,
-                      beam::BeamModel& beam) {
+/// Replaces vertical supports with a stiffness by springs.
+void make_supports_elastic(const Options& o, const std::vector<double>& stiffness, const std::vector<double>& scour,
+                           beam::BeamModel& beam) {
   double x = 0.0;
   for (std::size_t end = 0; end < stiffness.size(); ++end) {
     if (scour[end] > 0.0 && stiffness[end] == 0.0)
-      o.refuse("support_scour", "takes a part of support_stiffness, which is 0 there: rigid");
+      o.refuse("support_scour", "reduces support_stiffness, which is 0 (rigid) there; allowed: 0 at rigid supports");
     if (stiffness[end] > 0.0) {
       const bool inner = end > 0 && end < beam.spans.size();
       if (inner && beam.joint(static_cast<int>(end)) == beam::Joint::separate)
         o.refuse("support_stiffness",
-                 "stands where two beams end on one support; allowed: where the beam goes through");
+                 "belongs to a support on which two beams end; allowed: where the beam is continuous");
       beam.supports[end] = without_vertical(o, beam.supports[end]);
       beam::PointFoundation spring;
       spring.x = std::min(x, beam.length());
@@ -83,30 +85,31 @@ double as_division(const beam::BeamModel& beam, double x) {
 void read_cracks(const Options& o, beam::BeamModel& beam) {
   if (!o.has("beam_cracks_x")) {
     if (const options::Entry* entry = o.first_with_prefix("beam_cracks"))
-      o.refuse(entry->name, "needs beam_cracks_x, the stations");
+      o.refuse(entry->name, "needs beam_cracks_x, the stations of the cracks");
     return;
   }
   const std::vector<double> x = o.numbers("beam_cracks_x");
   const bool springs = o.has("beam_cracks_k"), wide = o.has("beam_cracks_width");
-  if (springs == wide) o.refuse("beam_cracks_x", "needs either beam_cracks_k or beam_cracks_width with its EI_factor");
+  if (springs == wide)
+    o.refuse("beam_cracks_x", "needs either beam_cracks_k, or beam_cracks_width with beam_cracks_EI_factor");
   if (wide) return read_weak_stretches(o, x, beam);
   if (o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_EI_factor", "needs beam_cracks_width");
-  const std::vector<double> k = o.numbers("beam_cracks_k", x.size(), "as many as stations");
+  const std::vector<double> k = o.numbers("beam_cracks_k", x.size(), "one per station");
   for (std::size_t i = 0; i < x.size(); ++i) beam.cracks.push_back({as_division(beam, x[i]), k[i]});
 }
 
 void read_bearings(const Options& o, beam::BeamModel& beam) {
   const std::size_t ends = beam.spans.size() + 1;
-  const auto numbers = [&](const char* name) { return o.numbers(name, ends, "one for every span end"); };
+  const auto numbers = [&](const char* name) { return o.numbers(name, ends, "one per span end"); };
   if (o.has("support_scour") && !o.has("support_stiffness"))
-    o.refuse("support_scour", "needs support_stiffness, of which it takes a part");
+    o.refuse("support_scour", "needs support_stiffness, which it reduces");
   if (o.has("support_settlement")) beam.settlement = numbers("support_settlement");
   if (!o.has("support_stiffness")) return;
   const std::vector<double> stiffness = numbers("support_stiffness"), scour = numbers("support_scour");
-  yield_vertically(o, stiffness, scour, beam);
+  make_supports_elastic(o, stiffness, scour, beam);
   for (std::size_t end = 0; end < beam.settlement.size(); ++end)
     if (beam.settlement[end] != 0.0 && stiffness[end] > 0.0)
-      o.refuse("support_settlement", "a support that settles is rigid; allowed: support_stiffness 0 there");
+      o.refuse("support_settlement", "a support with a settlement must be rigid; allowed: support_stiffness 0 there");
 }
 
 std::optional<beam::Temperature> read_temperature(const Options& o) {

@@ -1,4 +1,4 @@
-// Whether the beam has axial unknowns: only where something in the scene acts along it.
+// Decides whether the beam has axial unknowns, which it needs if something in the scene acts along it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ bool acts_along_x(const options::Options& o, const std::string& actuator) {
   return o.has(actuator + "_table") || o.numbers(actuator + "_force").front() != 0.0;
 }
 
-/// What of a layered track is there for its motion along x alone; empty: nothing.
+/// The option of a layered track that acts only along x; empty if there is none.
 std::string option_along_the_track(const options::Options& o, const Scene& scene) {
   if (!scene.beam->track) return "";
   if (o.number("track_rail_temperature") != 0.0) return "track_rail_temperature";
@@ -21,15 +21,15 @@ std::string option_along_the_track(const options::Options& o, const Scene& scene
   return "";
 }
 
-/// What acts along the beam, in words; empty when nothing does. Normal forces have a horizontal part where the
-/// surface is inclined; it is too small to count.
+/// A description of the action along the beam; empty if there is none. The horizontal components of normal forces on an
+/// inclined surface are neglected.
 std::string longitudinal_action(const options::Options& o, const Scene& scene) {
   const beam::Foundation& foundation = scene.beam->foundation;
   if (present(foundation, beam::Direction::longitudinal)) return "longitudinal foundations";
   if (scene.beam->temperature && scene.beam->temperature->strain() != 0.0) return "temperature";
   if (!option_along_the_track(o, scene).empty()) return "the track's resistance along x";
-  if (scene.analysis == Analysis::rail_forces) return "forces of the rail are asked for";
-  if (scene.analysis == Analysis::modes) return "modes are asked for";
+  if (scene.analysis == Analysis::rail_forces) return "the requested rail forces";
+  if (scene.analysis == Analysis::modes) return "the requested modes";
   const auto& courses = scene.train.courses;
   const bool speed_changes =
       std::any_of(courses.begin(), courses.end(), [](const train::Course& c) { return !c.speed.constant(); });
@@ -51,24 +51,24 @@ std::string longitudinal_action(const options::Options& o, const Scene& scene) {
 
 void decide_axial(const options::Options& o, Scene& scene) {
   if (!scene.beam || scene.beam->given) return;
-  const std::string wanted = o.choice("model_axial");
+  const std::string setting = o.choice("model_axial");
   std::string missing;
   if (!o.has("beam_EA")) missing = "beam_EA";
   for (const char* name : {"track_rail_EA", "track_longitudinal_k"}) {
     if (scene.beam->track && !o.has(name)) missing += (missing.empty() ? "" : ", ") + std::string(name);
   }
   const bool stiffness = missing.empty();
-  const bool lengthens = scene.beam->temperature && scene.beam->temperature->strain() != 0.0;
-  if (lengthens && (!stiffness || wanted == "false"))
-    o.refuse("beam_temperature_uniform", stiffness ? "lengthens the beam; allowed with it: model_axial auto or true"
-                                                   : "lengthens the beam, which needs " + missing);
-  if (wanted == "true" && !stiffness) o.refuse("model_axial", "needs " + missing);
-  if (const std::string along = option_along_the_track(o, scene); !along.empty() && (!stiffness || wanted == "false"))
+  const bool axial_strain = scene.beam->temperature && scene.beam->temperature->strain() != 0.0;
+  if (axial_strain && (!stiffness || setting == "false"))
+    o.refuse("beam_temperature_uniform", stiffness ? "causes axial strain; allowed with it: model_axial auto or true"
+                                                   : "causes axial strain, which needs " + missing);
+  if (setting == "true" && !stiffness) o.refuse("model_axial", "needs " + missing);
+  if (const std::string along = option_along_the_track(o, scene); !along.empty() && (!stiffness || setting == "false"))
     o.refuse(along, stiffness ? "acts along x; allowed with it: model_axial auto or true"
                               : "acts along x, which needs " + missing);
-  if (wanted != "auto") {
-    scene.beam->axial = wanted == "true";
-    scene.notes.push_back(fmt::format("axial unknowns: {}, as asked", scene.beam->axial ? "modelled" : "none"));
+  if (setting != "auto") {
+    scene.beam->axial = setting == "true";
+    scene.notes.push_back(fmt::format("axial unknowns: {}, as requested", scene.beam->axial ? "modelled" : "none"));
     return;
   }
   const beam::Foundation& foundation = scene.beam->foundation;

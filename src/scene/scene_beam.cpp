@@ -1,4 +1,4 @@
-// beam, support and foundation of a scene.
+// Reads the options of beam, supports and foundation of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,9 +14,10 @@ namespace {
 
 using options::Options;
 
-constexpr double most_stations = 1e6;  // of springs at equal distances
+constexpr double most_stations = 1e6;  // of equally spaced springs
 
-/// Even, so that midspan is a node; the error of deflections falls with the fourth power of the element's length.
+/// An even number of elements per span, so that midspan is a node. The error of deflections is of fourth order in the
+/// element length.
 int elements_from_accuracy(double accuracy) {
   const double wanted = 10.0 * std::pow(1e-3 / accuracy, 0.25);
   return std::max(4, 2 * static_cast<int>(std::lround(wanted / 2.0)));
@@ -35,7 +36,7 @@ void read_mesh(const Options& o, Scene& scene) {
   }
   if (std::accumulate(beam.elements.begin(), beam.elements.end(), 0.0) > most_elements) {
     o.refuse(o.has("beam_elements_per_span") ? "beam_elements_per_span" : "beam_spans",
-             fmt::format("more than {0:g} elements in all; allowed: at most {0:g}", most_elements));
+             fmt::format("more than {0:g} elements in total; allowed: at most {0:g}", most_elements));
   }
 }
 
@@ -54,7 +55,7 @@ beam::Joint joint_of(const std::string& word) {
 
 void read_joints(const Options& o, beam::BeamModel& beam) {
   const std::size_t inner = beam.spans.size() - 1;
-  const auto words = o.texts("beam_continuity", std::max<std::size_t>(inner, 1), "one for every inner span end");
+  const auto words = o.texts("beam_continuity", std::max<std::size_t>(inner, 1), "one per inner span end");
   for (const std::string& word : words) beam.joints.push_back(joint_of(word));
   if (!o.has("beam_hinges")) return;
   for (const double x : o.numbers("beam_hinges")) beam.hinges.push_back(as_division(beam, x));
@@ -68,7 +69,7 @@ void read_supports(const Options& o, beam::BeamModel& beam) {
     beam.supports.front() = beam::Support::pinned;
     return;
   }
-  for (const std::string& word : o.texts("support_types", ends, "one for every span end")) {
+  for (const std::string& word : o.texts("support_types", ends, "one per span end")) {
     beam.supports.push_back(support_of(word));
   }
 }
@@ -82,14 +83,14 @@ void read_damping(const Options& o, Damping& damping) {
     damping.ratios = pair_of(o.numbers("beam_damping_ratios", 2, "zeta1 and zeta2"));
   }
   if (!o.has("beam_damping_frequencies")) return;
-  if (!damping.ratios) o.refuse("beam_damping_frequencies", "needs beam_damping_ratios, which belong to them");
+  if (!damping.ratios) o.refuse("beam_damping_frequencies", "needs beam_damping_ratios");
   damping.frequencies = pair_of(o.numbers("beam_damping_frequencies"));
   if (damping.frequencies->first == damping.frequencies->second) {
     o.refuse("beam_damping_frequencies", "allowed: two different frequencies");
   }
 }
 
-/// Whether two ends of beams meet at x, or the slope may jump there.
+/// Whether two beams end at x, or the slope can be discontinuous there.
 bool is_joint(const beam::BeamModel& beam, double x) {
   if (std::find(beam.hinges.begin(), beam.hinges.end(), x) != beam.hinges.end()) return true;
   if (std::any_of(beam.cracks.begin(), beam.cracks.end(), [&](const beam::Crack& c) { return c.x == x; })) return true;
@@ -111,11 +112,11 @@ bool is_span_end(const beam::BeamModel& beam, double x) {
   return found;
 }
 
-/// Adds a point to the list, on the side of a joint that the user names; or one on each.
+/// Adds a point to the list, on the given side of a joint, or one on each side.
 void add_point(const Options& o, const beam::BeamModel& beam, const std::string& option, const std::string& side,
                beam::PointFoundation point, std::vector<beam::PointFoundation>& points) {
   if (side != "right" && !is_joint(beam, point.x)) {
-    o.refuse(option, fmt::format("{} at {:g} m, where the beam goes through; allowed there: right", side, point.x));
+    o.refuse(option, fmt::format("{} at {:g} m, where the beam is continuous; allowed there: right", side, point.x));
   }
   point.from_left = side != "right";
   points.push_back(point);
@@ -124,16 +125,17 @@ void add_point(const Options& o, const beam::BeamModel& beam, const std::string&
   points.push_back(point);
 }
 
-/// The stations as listed, or from the first to the last at equal distances.
+/// The listed stations, or equally spaced ones from the first to the last.
 std::vector<double> read_stations(const Options& o, const std::string& name) {
   std::vector<double> x = o.numbers(name + "_x");
   if (!o.has(name + "_spacing")) return x;
-  if (x.size() != 2 || !(x[1] > x[0])) o.refuse(name + "_x", "with a spacing: the first and the last station");
+  if (x.size() != 2 || !(x[1] > x[0])) o.refuse(name + "_x", "allowed with a spacing: the first and the last station");
   const double spacing = o.number(name + "_spacing"), bays = std::round((x[1] - x[0]) / spacing);
   if (bays > most_stations)
     o.refuse(name + "_spacing", fmt::format("{:.3g} stations; allowed: at most {:g}", bays, most_stations));
   if (std::abs(x[0] + bays * spacing - x[1]) > 1e-6 * spacing)
-    o.refuse(name + "_spacing", fmt::format("does not divide the distance from {:g} to {:g} m", x[0], x[1]));
+    o.refuse(name + "_spacing",
+             fmt::format("does not divide the distance from {:g} to {:g} m into equal parts", x[0], x[1]));
   std::vector<double> all;
   for (int i = 0; i <= static_cast<int>(bays); ++i) all.push_back(x[0] + i * spacing);
   return all;
@@ -151,8 +153,8 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
     return points;
   }
   const std::vector<double> x = read_stations(o, name);
-  const auto numbers = [&](const char* what) { return o.numbers(name + what, x.size(), "as many as stations"); };
-  const auto words = [&](const char* what) { return o.texts(name + what, x.size(), "as many as stations"); };
+  const auto numbers = [&](const char* what) { return o.numbers(name + what, x.size(), "one per station"); };
+  const auto words = [&](const char* what) { return o.texts(name + what, x.size(), "one per station"); };
   const std::vector<double> k = numbers("_k"), c = numbers("_c"), gap = numbers("_gap"), cubic = numbers("_cubic");
   const auto along_x = [&](const char* what) {
     return kind.direction == beam::Direction::longitudinal ? numbers(what) : std::vector<double>(x.size(), 0.0);
@@ -166,13 +168,13 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
   const double length = beam.length();
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (x[i] > length * (1.0 + 1e-12)) {
-      o.refuse(name + "_x", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x[i], length));
+      o.refuse(name + "_x", fmt::format("{:g} is outside the beam; allowed: from 0 to {:g} m", x[i], length));
     }
     const beam::FoundationLaw law{one_sided[i] == "true", gap[i], cubic[i], limit[i]};
     beam::PointFoundation point{std::min(x[i], length), k[i], c[i], false, law};
     point.depth = depth[i];
     if (point.depth != 0.0 && !is_span_end(beam, point.x))
-      o.refuse(name + "_depth", fmt::format("at {:g} m, within a span; allowed: 0, or at span ends", point.x));
+      o.refuse(name + "_depth", fmt::format("at {:g} m, within a span; allowed: 0, or stations at span ends", point.x));
     add_point(o, beam, name + "_side", side[i], point, points);
   }
   return points;
@@ -185,7 +187,7 @@ std::optional<beam::Bed> read_bed(const Options& o, const beam::FoundationKind& 
                                 o.number(name + "_cubic")};
   if (!o.has(name + "_k") && !o.has(name + "_c") && !o.has(name + "_cubic")) {
     for (const char* what : {"_gap", "_one_sided"}) {
-      if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_k, the bed");
+      if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_k, the stiffness of the bed");
     }
     return std::nullopt;
   }
@@ -201,7 +203,8 @@ beam::Distribution read_distribution(const Options& o, const std::string& name) 
   beam::Distribution table(columns[0], columns[1], name + " (" + path + ")");
   const options::Row& row = *o.find_known(name);
   for (const double value : {table.minimum(), table.maximum()}) {
-    if (!row.range.holds(value)) o.refuse(name, fmt::format("holds {:g}; allowed: {}", value, options::allowed(row)));
+    if (!row.range.contains(value))
+      o.refuse(name, fmt::format("contains {:g}; allowed: {}", value, options::allowed(row)));
   }
   return table;
 }

@@ -1,4 +1,4 @@
-// One vehicle's wheels and contacts between bodies out of the options.
+// Reads the wheels, contacts between bodies and sensors of one vehicle.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -19,16 +19,20 @@ double VehicleReader::stiffness(contact::LawKind kind, double radius, const std:
     return number("stiffness");
   }
   if (!has("young")) o_.refuse(key("stiffness"), "missing: a contact needs stiffness, or young and poisson (eq. 48)");
-  if (kind == contact::LawKind::linear) o_.refuse(key("young"), "belongs to law hertz; law linear needs stiffness");
+  if (kind != contact::LawKind::hertz)
+    o_.refuse(key("young"), "is only for law hertz; law " + o_.choice(key("law")) + " needs stiffness");
   const double young = number("young"), poisson = number("poisson");
   return contact::hertz_stiffness(radius, young, poisson, has(other_young) ? number(other_young) : young,
                                   has(other_poisson) ? number(other_poisson) : poisson);
 }
 
-/// `radius` of eq. 48; `other` stands before the second material's options.
+/// The contact law. radius: of eq. 48. other: the prefix of the options of the second material.
 contact::Law VehicleReader::law(double radius, const std::string& other) const {
   contact::Law law;
-  law.kind = o_.choice(key("law")) == "linear" ? contact::LawKind::linear : contact::LawKind::hertz;
+  const std::string kind = o_.choice(key("law"));
+  law.kind = kind == "hertz"    ? contact::LawKind::hertz
+             : kind == "linear" ? contact::LawKind::linear
+                                : contact::LawKind::two_sided;
   law.stiffness = stiffness(law.kind, radius, other);
   law.damping = number("damping");
   if (has("restitution")) {
@@ -40,6 +44,10 @@ contact::Law VehicleReader::law(double radius, const std::string& other) const {
     o_.refuse(key("restitution_law"), "needs " + key("restitution"));
   }
   law.friction = number("friction");
+  if (law.kind == contact::LawKind::two_sided)
+    for (const char* field : {"friction", "restitution"})
+      if (has(field) && number(field) != 0.0)
+        o_.refuse(key(field), "is only for one-sided contacts, not for law two_sided");
   law.transition_speed = number("transition_speed");
   return law;
 }
@@ -53,9 +61,9 @@ void VehicleReader::body_contact(const std::string& name) {
   if (c.bodies[0] == multibody::ground) std::swap(c.bodies[0], c.bodies[1]);
   const bool swapped = index_of(key("bodies"), o_.texts(key("bodies"))[0]) == multibody::ground;
   if (swapped && line)
-    o_.refuse(key("bodies"), "arc_line: the body with the arc comes first, that with the line second");
+    o_.refuse(key("bodies"), "allowed for arc_line: first the body with the arc, then the body with the line");
   const std::size_t arcs = line ? 1 : 2;
-  std::vector<double> radii = o_.numbers(key("radii"), arcs, line ? "the arc's radius" : "one an arc");
+  std::vector<double> radii = o_.numbers(key("radii"), arcs, line ? "the arc's radius" : "one per arc");
   std::vector<double> centres =
       o_.numbers(key("centres"), 2 * arcs, line ? "x, y of the arc's centre" : "x, y of both centres");
   for (std::size_t i = 0; i < arcs; ++i) {
@@ -69,7 +77,7 @@ void VehicleReader::body_contact(const std::string& name) {
     if (!((c.line[1] - c.line[0]).norm() > 0.0)) o_.refuse(key("line"), "allowed: x, y of two different points");
     if (!(c.radii[0] > 0.0)) o_.refuse(key("radii"), "allowed on a line: a radius above 0");
   } else {
-    if (has("line")) o_.refuse(key("line"), "belongs to type arc_line");
+    if (has("line")) o_.refuse(key("line"), "is only for type arc_line");
     const auto [i, j] = c.radii;
     const bool fits = (i > 0.0 && j > 0.0) || (i * j < 0.0 && i + j < 0.0);
     if (!fits)
@@ -101,7 +109,7 @@ track::WheelShape VehicleReader::wheel_shape(double radius) const {
   shape.polygon_phase = number("polygon_phase");
   const double most = radius / (shape.polygon_order * shape.polygon_order);
   if (shape.polygon_amplitude >= most)
-    o_.refuse(key("polygon_amplitude"), fmt::format("the tread would be hollow; allowed: below {:g} m", most));
+    o_.refuse(key("polygon_amplitude"), fmt::format("the tread would be concave; allowed: below {:g} m", most));
   return shape;
 }
 

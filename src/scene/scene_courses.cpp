@@ -1,4 +1,4 @@
-// Several trains and loads, and those whose speed changes or is below 0: their blocks of options, and how they run.
+// Reads the option blocks of several trains and loads, and the courses of those with a variable or negative speed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,31 +20,31 @@ bool is_plain_word(const std::string& name) {
          std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
-/// Whether options already begin with that word.
+/// Whether names of options begin with this word.
 bool is_group(const std::string& name) {
   const auto begins = [&](const options::Row& row) { return row.name == name || row.name.starts_with(name + "_"); };
   const auto rows = options::fixed_rows();
   return name == "vehicle" || std::any_of(rows.begin(), rows.end(), begins);
 }
 
-/// The options of `kind` (train or load) under the names that `list` has.
+/// Declares the options of `kind` (train or load) for each name in `list`.
 void declare_list(Options& o, const std::string& list, const std::string& kind) {
   if (!o.has(list)) return;
   if (const options::Entry* single = o.first_with_prefix(kind + "_"))
-    o.refuse(single->name, fmt::format("{} names blocks of their own: the options of {} go into these", list, kind));
+    o.refuse(single->name, fmt::format("{} names several blocks; give the options of {} in these blocks", list, kind));
   const std::string prefix = kind + "_";
   for (const std::string& name : o.texts(list)) {
     if (!is_plain_word(name))
       o.refuse(list,
-               fmt::format("'{}' cannot be a name; allowed: a word of letters, digits and _, a letter first", name));
+               fmt::format("'{}' cannot be a name; allowed: a word of letters, digits and _ that begins with a letter",
+                           name));
     if (is_group(name)) o.refuse(list, fmt::format("'{}' is the name of a group of options; choose another one", name));
     for (const options::Row& row : options::fixed_rows()) {
       if (!row.name.starts_with(prefix)) continue;
       const std::string full = name + "_" + std::string(row.name.substr(prefix.size()));
       if (options::owned_by_petsc(full))
-        o.refuse(list,
-                 fmt::format("'{}' cannot be a name: {} is an option of PETSc's; choose another one", name, full));
-      if (!o.declare(full, row)) o.refuse(list, fmt::format("there would be two options {}; rename one", full));
+        o.refuse(list, fmt::format("'{}' cannot be a name: {} is an option of PETSc; choose another one", name, full));
+      if (!o.declare(full, row)) o.refuse(list, fmt::format("two options would have the name {}; rename one", full));
     }
   }
 }
@@ -56,20 +56,21 @@ std::vector<std::vector<double>> read_speeds_of(const Options& o, const Block& b
   try {
     return options::read_columns(o.path(file), 2, 2, Order::rising);
   } catch (const InputError& error) {
-    if (std::string_view(error.what()).starts_with(file)) throw;  // the path's own
+    if (std::string_view(error.what()).starts_with(file)) throw;  // an error of the path itself
     o.refuse(file, error.what());
   }
 }
 
-std::string side(double direction) { return direction < 0.0 ? "to the left" : "to the right"; }
+std::string direction_text(double direction) { return direction < 0.0 ? "to the left" : "to the right"; }
 
-std::string in_words(const train::Course& course) {
+std::string course_text(const train::Course& course) {
   const base::SpeedLaw& law = course.speed;
-  if (law.direction() == 0.0) return course.name + " stands";
-  if (law.constant()) return fmt::format("{} at {:g} m/s {}", course.name, law.fastest(), side(law.direction()));
-  const double predicted = law.standstill();
-  return fmt::format("{} at up to {:g} m/s {}{}", course.name, law.fastest(), side(law.direction()),
-                     std::isfinite(predicted) ? fmt::format(", at rest after {:.6g} s", predicted) : "");
+  if (law.direction() == 0.0) return course.name + " at rest";
+  if (law.constant())
+    return fmt::format("{} at {:g} m/s {}", course.name, law.fastest(), direction_text(law.direction()));
+  const double standstill = law.standstill();
+  return fmt::format("{} at up to {:g} m/s {}{}", course.name, law.fastest(), direction_text(law.direction()),
+                     std::isfinite(standstill) ? fmt::format(", at rest after {:.6g} s", standstill) : "");
 }
 
 }  // namespace
@@ -113,7 +114,8 @@ base::SpeedLaw read_speed_file(const Options& o, const Block& block, double fron
 bool needs_courses(const Options& o, const std::vector<Block>& blocks) {
   const auto own = [&](const Block& block) {
     const std::string profile = block.option("profile");
-    return o.has(block.option("speed_file")) || direction_of(o, block) < 0.0 || (o.knows(profile) && o.has(profile));
+    return o.has(block.option("speed_file")) || direction_of(o, block) < 0.0 || (o.knows(profile) && o.has(profile)) ||
+           has_line_loads_or_variation(o, block);
   };
   return blocks.size() > 1 || std::any_of(blocks.begin(), blocks.end(), own);
 }
@@ -127,24 +129,24 @@ void check_courses(const Options& o, Scene& scene) {
   for (const char* list : {"trains", "loads"})
     for (const Block& block : blocks_of(o, list))
       if (const std::string over = block.option("speed_over"); o.has(over) && !o.has(block.option("speed_file")))
-        o.refuse(over, "is of a table of speeds: needs " + block.option("speed_file"));
+        o.refuse(over, "needs a table of speeds: " + block.option("speed_file"));
   const std::size_t trains = scene.train.courses.size(), loads = scene.load.courses.size();
   if (trains + loads == 0) return;
   for (const char* sweep : {"sweep_speed", "sweep_hslm_a"})
     if (o.has(sweep))
       o.refuse(sweep,
-               "runs one train or load to the right at constant speeds, on the track's profile; allowed: a study "
-               "that varies NAME_speed or other options");
+               "a sweep needs one train or load that runs to the right at constant speed on the track's profile; for "
+               "others use a study that varies NAME_speed or other options");
   const bool several = several_courses(scene);
   if (scene.beam && scene.beam->track && several)
-    o.refuse("track_rail_EI", "a layered track carries one train or load, of others each would have a rail of its own");
+    o.refuse("track_rail_EI",
+             "a layered track is allowed with one train or load only, because others would need further rails");
   std::string what;
   for (const std::vector<train::Course>* courses : {&scene.train.courses, &scene.load.courses})
-    for (const train::Course& course : *courses) what += (what.empty() ? "" : "; ") + in_words(course);
+    for (const train::Course& course : *courses) what += (what.empty() ? "" : "; ") + course_text(course);
   scene.notes.push_back("runs: " + what);
   if (several)
-    scene.notes.emplace_back(
-        "tracks side by side: all wheels and forces act on the beam's axis, its torsion is left out");
+    scene.notes.emplace_back("parallel tracks: all wheels and forces act on the beam's axis; its torsion is neglected");
 }
 
 }  // namespace traverse::app

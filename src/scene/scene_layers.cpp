@@ -1,4 +1,4 @@
-// The layered track of a scene: rail, pads, sleepers, ballast and sub-ballast.
+// Reads the layered track of a scene: rail, pads, sleepers, ballast and sub-ballast.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,27 +11,28 @@ namespace {
 
 using options::Options;
 
-constexpr double least_bed_before = 30.0;  // m
-constexpr double behind_train = 12.0;  // m of track behind the last wheel at the start, and before the first at the end
+constexpr double least_track_length = 30.0;  // m
+constexpr double track_margin = 12.0;  // m behind the last wheel at the start and before the first wheel at the end
 
-/// Track on either side long enough for the whole train to stand on it at the start and at the end.
+/// The length of track on either side with which the whole train is on the track at the start and at the end.
 double approach_of(const Scene& scene) {
   double rear = 0.0;
   for (const double x : wheels_at_start(scene)) rear = std::min(rear, x);
   for (const double x : scene.load.positions) rear = std::min(rear, x);
-  if (!scene.train.courses.empty() || !scene.load.courses.empty()) {  // what runs to the left begins at the other end
+  if (!scene.train.courses.empty() || !scene.load.courses.empty()) {  // trains to the left begin at the other end
     std::vector<double> all = wheels_at_start(scene);
     all.insert(all.end(), scene.load.positions.begin(), scene.load.positions.end());
     for (const double x : all) rear = std::min(rear, scene.beam->length() - x);
   }
-  return std::max(least_bed_before, std::ceil(-rear + greatest_speed(scene) * scene.tail.value_or(0.0) + behind_train));
+  return std::max(least_track_length,
+                  std::ceil(-rear + greatest_speed(scene) * scene.tail.value_or(0.0) + track_margin));
 }
 
 beam::Layer read_layer(const Options& o, const std::string& name) {
   return {read_distribution(o, "track_" + name + "_k"), read_distribution(o, "track_" + name + "_c")};
 }
 
-/// A layer is there when its stiffness is given.
+/// A layer that exists if its stiffness is given.
 std::optional<beam::Layer> read_optional_layer(const Options& o, const std::string& name) {
   const std::string k = "track_" + name + "_k";
   if (o.has(k)) return read_layer(o, name);
@@ -41,7 +42,7 @@ std::optional<beam::Layer> read_optional_layer(const Options& o, const std::stri
   return std::nullopt;
 }
 
-/// A stretch of the track, whose layers are known.
+/// A stretch of the track, whose layers have been read.
 beam::TrackStretch read_stretch(const Options& o, const std::string& name, const beam::LayeredTrack& track) {
   const std::string prefix = "track_" + name + "_";
   beam::TrackStretch stretch{name, o.number(prefix + "from"), o.number(prefix + "to"), {}, true};
@@ -54,21 +55,21 @@ beam::TrackStretch read_stretch(const Options& o, const std::string& name, const
     if (!o.has(option)) continue;
     if (property.along(track) == nullptr) {
       const std::string_view layer = property.name.substr(0, property.name.find('_'));
-      o.refuse(option, fmt::format("the track has no {}: it needs track_{}_k", layer, layer));
+      o.refuse(option, fmt::format("the track has no {}, which needs track_{}_k", layer, layer));
     }
     stretch.values[i] = read_distribution(o, option);
   }
   return stretch;
 }
 
-/// Stations of what stands at nodes of the rail, in ascending order.
+/// The stations of items at nodes of the rail, in ascending order. The number of rail elements is then fixed.
 std::vector<double> read_at_nodes(const Options& o, const char* option, const char* things, Scene& scene,
                                   const beam::LayeredTrack& track) {
   if (!o.has(option)) return {};
   std::vector<double> stations = o.numbers(option);
   std::sort(stations.begin(), stations.end());
   if (scene.mesh_open)
-    scene.notes.push_back(fmt::format("the rail has {} elements a bay, which its {} ({}) stand on",
+    scene.notes.push_back(fmt::format("the rail has {} elements per bay, because its {} ({}) are at nodes",
                                       track.elements_per_bay, things, option));
   scene.mesh_open = false;
   return stations;
@@ -82,7 +83,7 @@ void declare_stretches(Options& o) {
     for (const options::Row& row : options::stretch_rows()) {
       const std::string full = fmt::format("track_{}_{}", name, row.name);
       if (!o.declare(full, row))
-        o.refuse("track_stretches", fmt::format("there would be two options {}; rename a stretch", full));
+        o.refuse("track_stretches", fmt::format("two options would have the name {}; rename a stretch", full));
     }
 }
 
@@ -126,15 +127,16 @@ void read_layers(const Options& o, Scene& scene) {
   track.shear = {o.number("track_shear_k"), o.number("track_shear_c")};
   for (const char* name : {"track_ballast_own_mass", "track_shear_k", "track_shear_c"})
     if (o.has(name) && !(track.ballast && track.subballast))
-      o.refuse(name, "needs ballast that moves by itself: track_ballast_k, track_ballast_mass and track_subballast_k");
+      o.refuse(name,
+               "needs ballast masses that move separately: track_ballast_k, track_ballast_mass and track_subballast_k");
   if (o.has("track_stretches"))
     for (const std::string& name : o.texts("track_stretches")) track.stretches.push_back(read_stretch(o, name, track));
   const auto approach = o.optional_number("track_approach");
   track.approach = approach.value_or(approach_of(scene));
   if (!approach)
     scene.notes.push_back(
-        fmt::format("track: {:g} m on either side, so that the whole train stands on it at the start "
-                    "and the end; -track_approach changes it",
+        fmt::format("track: {:g} m on either side, so that the whole train is on it at the start "
+                    "and at the end; -track_approach changes it",
                     track.approach));
   if (o.has("beam_elements_per_span"))
     scene.notes.emplace_back(

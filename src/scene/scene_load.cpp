@@ -1,4 +1,4 @@
-// The moving forces of a scene: how many, from where, how fast.
+// Reads the moving forces of a scene: their number, positions and speed.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,28 +14,31 @@ using options::Options;
 
 constexpr double most_forces = 1e5;
 
-/// One load: its options, and where it runs to.
-struct ReadLoad {
+/// The options and the direction of one load.
+struct LoadBlock {
   const Block& block;
   double direction = 1.0;
 };
 
 /// x of the first axle at t = 0.
-double read_first_axle(const Options& o, const ReadLoad& load, const Scene& scene, const std::string& trains) {
+double read_first_axle(const Options& o, const LoadBlock& load, const Scene& scene, const std::string& trains) {
   const std::string positions = load.block.option("positions");
   if (!o.has(positions)) return entrance(scene, load.direction);
   const std::vector<double> given = o.numbers(positions);
-  if (given.size() != 1) o.refuse(positions, "with " + trains + ": one number, x of the first axle at t = 0");
+  if (given.size() != 1) o.refuse(positions, "allowed with " + trains + ": one number, x of the first axle at t = 0");
   return given.front();
 }
 
 MovingLoad placed(const AxleList& axles, double first, double direction) {
-  MovingLoad load{axles.forces, axles.offsets, 0.0, {}};
+  MovingLoad load;
+  load.forces = axles.forces;
+  load.positions = axles.offsets;
   for (double& x : load.positions) x = first + direction * x;
   return load;
 }
 
-/// Over three sleepers (EN 1991-2, 6.3.6.1). from_zero: the foremost part stands where the foremost force stood.
+/// Distributes each force over three sleepers (EN 1991-2, 6.3.6.1). from_zero: the foremost part is at the position of
+/// the foremost force.
 void spread(double spacing, bool from_zero, double direction, MovingLoad& load) {
   MovingLoad parts;
   for (std::size_t i = 0; i < load.forces.size(); ++i)
@@ -47,7 +50,7 @@ void spread(double spacing, bool from_zero, double direction, MovingLoad& load) 
   load.positions = parts.positions;
 }
 
-/// The train that an option of the block other than forces and sweep_hslm_a asks for.
+/// The train that an option of the block selects, other than forces and sweep_hslm_a.
 AxleList named_train(const Options& o, const Block& block, const std::string& option) {
   if (option == block.option("hslm_a")) return hslm_a(o.integer(option));
   if (option == block.option("en15528")) return en15528(o.text(option), o.integer(block.option("wagons")));
@@ -58,29 +61,31 @@ AxleList named_train(const Options& o, const Block& block, const std::string& op
   return hslm_b(static_cast<int>(given[0]), given[1]);
 }
 
-void read_forces(const Options& o, const ReadLoad& from, const Scene& scene, MovingLoad& load) {
+void read_forces(const Options& o, const LoadBlock& from, const Scene& scene, MovingLoad& load) {
   const std::string positions_option = from.block.option("positions"), forces_option = from.block.option("forces");
   const std::vector<double> positions =
       o.has(positions_option) ? o.numbers(positions_option) : std::vector<double>{entrance(scene, from.direction)};
   const std::vector<double> forces = o.numbers(forces_option);
   if (forces.size() == 1 || forces.size() == positions.size()) {
-    load.forces = o.numbers(forces_option, positions.size(), "one a position");
+    load.forces = o.numbers(forces_option, positions.size(), "one per position");
     load.positions = positions;
     return;
   }
   const std::string why =
-      fmt::format("{} forces but {} positions; wanted: one a force", forces.size(), positions.size());
+      fmt::format("{} forces but {} positions; allowed: one position per force", forces.size(), positions.size());
   o.refuse(positions_option, o.has(positions_option) ? why : "missing: x of each force at t = 0");
 }
 
-/// The forces of one load at their places; `option` says which.
-MovingLoad read_one_load(const Options& o, const ReadLoad& from, const std::string& option, Scene& scene) {
-  const bool swept = option == "sweep_hslm_a", anywhere = !o.has(from.block.option("positions"));
+/// The forces of one load with their positions; `option` selects them.
+MovingLoad read_one_load(const Options& o, const LoadBlock& from, const std::string& option, Scene& scene) {
+  const bool swept = option == "sweep_hslm_a", default_position = !o.has(from.block.option("positions"));
   MovingLoad load;
   std::vector<MovingLoad> others;
   if (option == from.block.option("forces")) {
     read_forces(o, from, scene, load);
-  } else {
+  } else if (option == from.block.option("moments")) {
+    place_moments(o, from.block, entrance(scene, from.direction), load);
+  } else if (option != from.block.option("distributed")) {
     const double first = read_first_axle(o, from, scene, option);
     load =
         placed(swept ? hslm_a(scene.sweep->trains.front()) : named_train(o, from.block, option), first, from.direction);
@@ -89,15 +94,30 @@ MovingLoad read_one_load(const Options& o, const ReadLoad& from, const std::stri
   }
   if (const std::string option_of_spread = from.block.option("spread"); o.has(option_of_spread)) {
     const double spacing = o.number(option_of_spread);
-    spread(spacing, anywhere, from.direction, load);
-    for (MovingLoad& other : others) spread(spacing, anywhere, from.direction, other);
+    spread(spacing, default_position, from.direction, load);
+    for (MovingLoad& other : others) spread(spacing, default_position, from.direction, other);
   }
+  if (o.has(from.block.option("moments")) && option != from.block.option("moments")) add_moments(o, from.block, load);
+  if (o.has(from.block.option("distributed"))) add_line_loads(o, from.block, load);
   if (swept) scene.sweep->loads = std::move(others);
   if (option != from.block.option("en15528") && o.has(from.block.option("wagons")))
     scene.notes.push_back(from.block.option("wagons") + " has no effect: it is for " + from.block.option("en15528"));
   if (option != from.block.option("file") && o.has(from.block.option("file_x")))
     scene.notes.push_back(from.block.option("file_x") + " has no effect: it is for " + from.block.option("file"));
   return load;
+}
+
+/// Appends the forces of one block to those of the blocks before it.
+void append(const MovingLoad& load, MovingLoad& all) {
+  const std::size_t before = all.forces.size(), size = before + load.forces.size();
+  all.forces.insert(all.forces.end(), load.forces.begin(), load.forces.end());
+  all.positions.insert(all.positions.end(), load.positions.begin(), load.positions.end());
+  all.lengths.resize(size, 0.0);
+  all.moments.resize(size, 0.0);
+  for (std::size_t i = before; i < size; ++i) {
+    all.lengths[i] = length_of(load, i - before);
+    all.moments[i] = moment_of(load, i - before);
+  }
 }
 
 double read_load_speed(const Options& o, const Block& block, const Scene& scene) {
@@ -120,6 +140,8 @@ std::string load_option(const Options& o, const std::string& load) {
       if (!given.empty()) o.refuse(option, fmt::format("give either {} or {}", given, option));
       given = option;
     }
+  for (const char* word : {"_moments", "_distributed"})
+    if (given.empty() && o.has(load + word)) given = load + word;
   return given;
 }
 
@@ -130,7 +152,7 @@ void read_load(const Options& o, Scene& scene) {
   const std::vector<Block> blocks = blocks_of(o, "loads");
   const bool courses =
       needs_courses(o, blocks) || (o.has("train_speed") && !o.has("load_speed") && o.number("train_speed") < 0.0);
-  if (swept && o.has("loads")) o.refuse("sweep_hslm_a", "is of one load; loads names several");
+  if (swept && o.has("loads")) o.refuse("sweep_hslm_a", "is for one load; loads names several");
   for (const Block& block : blocks) {
     const std::string option = swept ? "sweep_hslm_a" : load_option(o, block.name);
     if (option.empty() && o.has("loads")) o.refuse(block.option("forces"), "missing: the forces of this load");
@@ -138,7 +160,7 @@ void read_load(const Options& o, Scene& scene) {
     if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
     const bool file = o.has(block.option("speed_file"));
     const double speed = file ? 0.0 : read_load_speed(o, block, scene);
-    const ReadLoad from{block, file ? direction_of(o, block) : speed < 0.0 ? -1.0 : 1.0};
+    const LoadBlock from{block, file ? direction_of(o, block) : speed < 0.0 ? -1.0 : 1.0};
     MovingLoad load = read_one_load(o, from, option, scene);
     if (!courses) {
       scene.load = std::move(load);
@@ -148,11 +170,13 @@ void read_load(const Options& o, Scene& scene) {
     train::Course course;
     course.name = block.name;
     course.first = scene.load.forces.size();
-    course.speed = file ? read_speed_file(o, block, load.positions.front()) : base::SpeedLaw(speed);
+    const double front = load.positions.front() +
+                         (option == block.option("distributed") ? 0.5 * from.direction * load.lengths.front() : 0.0);
+    course.speed = file ? read_speed_file(o, block, front) : base::SpeedLaw(speed);
+    course.variation = read_variation(o, block);
     scene.load.speed = std::max(scene.load.speed, course.speed.fastest());
     scene.load.courses.push_back(std::move(course));
-    scene.load.forces.insert(scene.load.forces.end(), load.forces.begin(), load.forces.end());
-    scene.load.positions.insert(scene.load.positions.end(), load.positions.begin(), load.positions.end());
+    append(load, scene.load);
   }
 }
 

@@ -1,4 +1,4 @@
-// One vehicle's mechanism out of the options: bodies, joints, springs, actuators, drivers; couplers of trains.
+// Reads the mechanism of one vehicle (bodies, joints, springs, actuators, drivers) and the couplers of trains.
 #include <fmt/format.h>
 
 #include "options/data_file.hpp"
@@ -65,14 +65,14 @@ void VehicleReader::joint_friction(multibody::Joint& j) const {
   for (const char* field : {"friction", "friction_force", "transition_speed"}) {
     if (!has(field)) continue;
     if (!j.type->slides)
-      o_.refuse(key(field), "belongs to joints that slide: " +
+      o_.refuse(key(field), "is only for joints that slide: " +
                                 multibody::joint_names([](const auto& row) { return row.slides; }, ", ", " or "));
     if (!j.friction.acts() && std::string_view(field) == "transition_speed")
       o_.refuse(key(field), "needs friction or friction_force");
   }
 }
 
-/// The numbers that joints of this type have of their own; those of other types are refused.
+/// The numbers of joints of this type; those of other types are refused.
 void VehicleReader::joint_numbers(multibody::Joint& j) const {
   for (const multibody::JointRow& row : multibody::joint_rows()) {
     for (std::size_t i = 0; i < row.numbers.size(); ++i) {
@@ -80,19 +80,19 @@ void VehicleReader::joint_numbers(multibody::Joint& j) const {
       if (j.type == multibody::JointType(row)) {
         j.numbers[i] = number(field);
       } else if (has(field)) {
-        o_.refuse(key(field), fmt::format("belongs to joints of type {}", row.name));
+        o_.refuse(key(field), fmt::format("is only for joints of type {}", row.name));
       }
     }
   }
 }
 
-/// What `make` makes of the columns of the option's file; errors name the option, too.
+/// The result of `make` for the columns of the option's file; errors also name the option.
 template <class Make>
 auto VehicleReader::from_table(std::string_view field, std::size_t least, std::size_t most, Make&& make) const {
   try {
     return make(options::read_columns(o_.path(key(field)), least, most, options::Order::rising));
   } catch (const InputError& error) {
-    if (std::string_view(error.what()).starts_with(key(field))) throw;  // the path's own
+    if (std::string_view(error.what()).starts_with(key(field))) throw;  // an error of the path itself
     o_.refuse(key(field), error.what());
   }
 }
@@ -101,7 +101,7 @@ multibody::Polyline VehicleReader::polyline(std::string_view field) const {
   return from_table(field, 2, 2, [](auto columns) { return multibody::Polyline(columns[0], columns[1]); });
 }
 
-/// Nothing for a linear spring.
+/// The force law of a nonlinear spring; none for a linear one.
 std::optional<multibody::ForceLaw> VehicleReader::force_law() const {
   const std::string side = o_.choice(key("side"));
   multibody::ForceLaw law;
@@ -109,16 +109,17 @@ std::optional<multibody::ForceLaw> VehicleReader::force_law() const {
   law.side = side == "tension"       ? multibody::Side::tension
              : side == "compression" ? multibody::Side::compression
                                      : multibody::Side::both;
-  if (!law.lets_go() && !has("table") && !has("damper_table")) return {};
+  if (!law.can_disengage() && !has("table") && !has("damper_table")) return {};
   for (const auto& [table, constant] : {std::pair("table", "stiffness"), std::pair("damper_table", "damping")}) {
     if (has(table) && has(constant)) o_.refuse(key(table), fmt::format("give either {} or {}", table, key(constant)));
   }
   law.elastic = has("table") ? polyline("table") : multibody::Polyline::line(number("stiffness"));
   law.damper = has("damper_table") ? polyline("damper_table") : multibody::Polyline::line(number("damping"));
-  if (const std::string gains = law.damper.opposing(); !gains.empty())
-    o_.refuse(key("damper_table"), "a damper takes energy, its force must have the sign of the rate; " + gains);
-  if (const std::string pushes = law.lets_go() ? law.elastic.opposing() : ""; !pushes.empty())
-    o_.refuse(key("table"), "with a gap or a side the force must have the sign of the elongation; " + pushes);
+  if (const std::string where = law.damper.opposing(); !where.empty())
+    o_.refuse(key("damper_table"),
+              "the force of a damper must have the sign of the rate, so that it dissipates energy; " + where);
+  if (const std::string where = law.can_disengage() ? law.elastic.opposing() : ""; !where.empty())
+    o_.refuse(key("table"), "with a gap or a side the force must have the sign of the elongation; " + where);
   return law;
 }
 
@@ -147,7 +148,8 @@ void VehicleReader::spring(const std::string& name) {
   s.preload = o_.optional_number(key("preload"));
   if (s.free_length && s.preload) o_.refuse(key("preload"), "give either a preload or " + key("free_length"));
   if (s.law && s.preload && !s.law->elongation_at(*s.preload)) {
-    o_.refuse(key("preload"), "allowed: a force that the spring has at one elongation, or " + key("free_length"));
+    o_.refuse(key("preload"),
+              "allowed: a force that the spring has at exactly one elongation, or " + key("free_length"));
   }
   vehicle_.mechanism.springs.push_back(s);
 }
@@ -210,8 +212,8 @@ void VehicleReader::driver(const std::string& name) {
     if (has("value") || has("rate")) o_.refuse(key("table"), "give either a table or value and rate");
     d.value = from_table("table", 2, 2, [](const auto& columns) { return base::TimeFunction(columns[0], columns[1]); });
   } else {
-    const double now = vehicle_.mechanism.bodies[static_cast<std::size_t>(d.body)].position[d.coordinate];
-    d.value = base::TimeFunction(has("value") ? number("value") : now, number("rate"));
+    const double initial = vehicle_.mechanism.bodies[static_cast<std::size_t>(d.body)].position[d.coordinate];
+    d.value = base::TimeFunction(has("value") ? number("value") : initial, number("rate"));
   }
   vehicle_.mechanism.drivers.push_back(d);
 }

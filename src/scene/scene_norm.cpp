@@ -1,4 +1,4 @@
-// EN 1991-2 in a scene: its load models and verdict, and its lower bounds of damping.
+// Reads the options of EN 1991-2: load models and the check of 6.4.6.5, and lower bounds of damping.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ options::BridgeMaterial material_of(const std::string& name) {
   return static_cast<options::BridgeMaterial>(row - std::begin(options::damping_bounds));
 }
 
-/// What asks for static effects; empty: nothing does.
-std::string asks_for_static_effects(const Options& o, const Scene& scene) {
+/// The option that requires static effects; empty if none does.
+std::string option_of_static_effects(const Options& o, const Scene& scene) {
   if (o.has("norm_load_models")) return "norm_load_models";
   if (scene.analysis == Analysis::static_envelope) return "scene_analysis";
   const bool limited = std::any_of(scene.limits.begin(), scene.limits.end(), [](const options::VerdictLimit& limit) {
@@ -35,7 +35,7 @@ std::string asks_for_static_effects(const Options& o, const Scene& scene) {
 void read_damping_bound(const Options& o, Scene& scene) {
   if (!o.has("model_damping_bound")) {
     if (o.has("model_additional_damping"))
-      o.refuse("model_additional_damping", "needs model_damping_bound, which it is added to");
+      o.refuse("model_additional_damping", "needs model_damping_bound, to which it is added");
     return;
   }
   if (!scene.beam) o.refuse("model_damping_bound", "needs a bridge (beam_spans)");
@@ -46,38 +46,44 @@ void read_damping_bound(const Options& o, Scene& scene) {
   const double more = o.flag("model_additional_damping") ? norm::additional_damping(span) : 0.0;
   const double ratio = least + more;
   scene.notes.push_back(
-      fmt::format("damping {:.4g} %: EN 1991-2 table 6.6, {}, span {:g} m{}; of the first two frequencies, Rayleigh's "
-                  "of all others",
+      fmt::format("damping {:.4g} %: EN 1991-2 table 6.6, {}, span {:g} m{}; at the first two frequencies, Rayleigh "
+                  "damping at all others",
                   100.0 * ratio, o.choice("model_damping_bound"), span,
                   more > 0.0 ? fmt::format(", with {:.3g} % by 6.4.6.4", 100.0 * more) : ""));
-  scene.damping.ratios = {ratio, ratio};  // one law, which elements and modes have alike
+  scene.damping.ratios = {ratio, ratio};  // the same law for elements and modes
 }
 
 void read_norm(const Options& o, Scene& scene) {
-  const std::string asked = asks_for_static_effects(o, scene);
+  const std::string asked = option_of_static_effects(o, scene);
   if (asked.empty()) {
     for (const char* name : {"norm_alpha", "norm_track", "norm_length", "norm_spacing"})
       if (o.has(name))
         scene.notes.push_back(std::string(name) + " has no effect: norm_load_models names no load model");
     return;
   }
-  if (!scene.beam) o.refuse(asked, "static effects are those of a bridge: there is none (beam_spans)");
+  if (!scene.beam) o.refuse(asked, "static effects need a bridge (beam_spans)");
   if (scene.analysis != Analysis::transient && scene.analysis != Analysis::static_envelope) {
-    scene.notes.push_back(asked +
-                          " has no effect: static effects belong to transient runs and to scene_analysis envelope");
+    scene.notes.push_back(
+        asked + " has no effect: static effects are computed in transient runs and with scene_analysis envelope");
     return;
   }
   if (several_courses(scene))
-    o.refuse(asked, "static effects are of one train or load wherever it stands; several run here (trains, loads)");
+    o.refuse(asked, "static effects are computed for one train or load; several are given (trains, loads)");
+  if (!only_axle_loads(scene.load)) {
+    const std::string why = "static effects are computed for constant concentrated forces";
+    if (asked == "scene_analysis") o.refuse(asked, why);
+    scene.notes.push_back(asked + ": " + why + "; there is no verdict of EN 1991-2");
+    return;
+  }
   if (scene.beam->foundation.nonlinear()) {
     const std::string why =
-        "influence lines do not hold: the foundation is one-sided, slides, has a gap or a cubic term";
+        "influence lines are not valid: the foundation is one-sided, slides, has a gap or a cubic term";
     if (asked == "scene_analysis") o.refuse(asked, why);
-    scene.notes.push_back(asked + ": " + why + "; there are no static effects and no verdict of EN 1991-2");
+    scene.notes.push_back(asked + ": " + why + "; static effects and the verdict of EN 1991-2 are not computed");
     return;
   }
   if (scene.beam->spans.size() > norm::StaticBridge::most_spans)
-    o.refuse(asked, fmt::format("static effects of {} spans; allowed: {}", scene.beam->spans.size(),
+    o.refuse(asked, fmt::format("static effects of {} spans; allowed: at most {}", scene.beam->spans.size(),
                                 norm::StaticBridge::most_spans));
   options::NormRules rules;
   if (o.has("norm_load_models"))
@@ -87,7 +93,7 @@ void read_norm(const Options& o, Scene& scene) {
   std::vector<std::string> sorted = rules.load_models;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-    o.refuse("norm_load_models", "allowed: every load model once");
+    o.refuse("norm_load_models", "allowed: each load model once");
   rules.alpha = o.number("norm_alpha");
   rules.careful = o.choice("norm_track") == "careful";
   rules.length = o.optional_number("norm_length");
@@ -98,12 +104,12 @@ void read_norm(const Options& o, Scene& scene) {
   scene.norm = rules;
   if (scene.self_weight && scene.analysis == Analysis::transient)
     scene.notes.emplace_back(
-        "beam_self_weight: peaks hold the bridge's own weight, so there is no verdict of EN 1991-2 6.4.6.5");
+        "beam_self_weight: peaks include the bridge's own weight, so there is no verdict of EN 1991-2 6.4.6.5");
   else if (scene.beam->strained() && scene.analysis == Analysis::transient)
     scene.notes.emplace_back(
-        "peaks hold what temperature and settlements do, so there is no verdict of EN 1991-2 6.4.6.5");
+        "peaks include the effects of temperature and settlements, so there is no verdict of EN 1991-2 6.4.6.5");
   if (scene.beam->track)
-    scene.notes.emplace_back("static effects: loads stand on the bridge itself, the track spreads none");
+    scene.notes.emplace_back("static effects: loads act directly on the bridge, without distribution by the track");
 }
 
 }  // namespace traverse::app

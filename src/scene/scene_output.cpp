@@ -1,4 +1,4 @@
-// What is stored of a scene's runs: stations, filters, places on the track, the file.
+// Reads the options of the results: file, stations, filters and places on the track.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@ using options::Options;
 constexpr std::size_t most_default_probes = 200;
 constexpr int parts_of_a_span = 10;
 constexpr double most_even_probes = 1e5;
-constexpr double one_station = 1e-9;        // m: stations nearer than that are one
-constexpr double nearly_one = 1.0 - 1e-12;  // of the parts of a span
+constexpr double same_station = 1e-9;       // m: stations closer than this are the same
+constexpr double nearly_one = 1.0 - 1e-12;  // factor against rounding errors of the number of parts of a span
 
-/// Evenly in every span, both ends included.
+/// Adds evenly spaced probes in each span, with both ends.
 void add_even_probes(const Options& o, const std::vector<double>& spans, std::vector<double>& probes) {
   const double spacing = o.number("output_probes_spacing");
   double count = 1.0, left = 0.0;
@@ -35,8 +35,8 @@ void add_even_probes(const Options& o, const std::vector<double>& spans, std::ve
   probes.back() = left;
 }
 
-/// Whether a limit is on the deck wherever it moves most.
-bool judges_deck(const Scene& scene) {
+/// Whether a limit applies to the largest response of the deck at any station.
+bool limits_largest_deck_response(const Scene& scene) {
   static constexpr std::array quantities = {"deck_acceleration", "unfiltered_deck_acceleration",
                                             "deflection_over_span"};
   return std::any_of(scene.limits.begin(), scene.limits.end(), [](const options::VerdictLimit& limit) {
@@ -44,28 +44,27 @@ bool judges_deck(const Scene& scene) {
   });
 }
 
-/// Behind the stations given, evenly in every span: where a limit asks for the most that the deck does, wherever.
-void add_judged_probes(bool middles, Scene& scene) {
+/// Adds evenly spaced probes in each span for limits of the largest response of the deck.
+void add_probes_for_limits(bool middles, Scene& scene) {
   const std::vector<double>& spans = scene.beam->spans;
   const int parts = std::min(static_cast<int>(most_default_probes / spans.size()), parts_of_a_span);
-  if (parts < 2 || !judges_deck(scene)) return;
+  if (parts < 2 || !limits_largest_deck_response(scene)) return;
   double left = 0.0;
   for (const double span : spans) {
     for (int i = 1; i < parts; ++i)
       if (!middles || 2 * i != parts) scene.output.probes.push_back(left + span * i / parts);
     left += span;
   }
-  scene.notes.push_back(
-      fmt::format("probes: limits are on the deck wherever it moves most, so there are further ones at every 1/{} of a "
-                  "span; output_probes_spacing sets others",
-                  parts));
+  scene.notes.push_back(fmt::format(
+      "probes: limits apply to the largest response of the deck, so there are further probes at every 1/{} of "
+      "a span; output_probes_spacing changes this",
+      parts));
 }
 
 void read_probes(const Options& o, Scene& scene) {
   const bool named = o.has("output_probes"), even = o.has("output_probes_spacing");
   if (!scene.beam) {
-    if (named || even)
-      o.refuse(named ? "output_probes" : "output_probes_spacing", "there is no beam to probe (beam_spans)");
+    if (named || even) o.refuse(named ? "output_probes" : "output_probes_spacing", "needs a beam (beam_spans)");
     return;
   }
   const std::vector<double>& spans = scene.beam->spans;
@@ -81,19 +80,19 @@ void read_probes(const Options& o, Scene& scene) {
   if (named) probes = o.numbers("output_probes");
   for (double& x : probes) {
     if (x > length * (1.0 + 1e-12))
-      o.refuse("output_probes", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x, length));
+      o.refuse("output_probes", fmt::format("{:g} is outside the beam; allowed: from 0 to {:g} m", x, length));
     x = std::min(x, length);
   }
-  if (!even) return add_judged_probes(!named, scene);
+  if (!even) return add_probes_for_limits(!named, scene);
   add_even_probes(o, spans, probes);
   std::sort(probes.begin(), probes.end());
-  const auto same = [](double a, double b) { return b - a < one_station; };
+  const auto same = [](double a, double b) { return b - a < same_station; };
   probes.erase(std::unique(probes.begin(), probes.end(), same), probes.end());
 }
 
 constexpr double most_frequency = 1e6;  // Hz
 
-// The frequency up to which accelerations count: none where the run decides, 0 where they are not filtered.
+/// The cut-off frequency of deck accelerations: none for auto, 0 for no filter.
 std::optional<double> read_low_pass(const Options& o) {
   const std::string value = o.text("output_lowpass");
   if (value == "auto") return {};
@@ -111,19 +110,18 @@ constexpr const char* low_passed_peak = "acceleration_lowpass";  // in accuracy_
 void read_filter(const Options& o, Scene& scene) {
   scene.output.low_pass = read_low_pass(o);
   scene.output.low_passed_series = o.flag("output_lowpass_series");
-  const std::vector<std::string>& promised = scene.accuracy_of;
-  const bool named = std::find(promised.begin(), promised.end(), low_passed_peak) != promised.end();
+  const std::vector<std::string>& estimated = scene.accuracy_of;
+  const bool named = std::find(estimated.begin(), estimated.end(), low_passed_peak) != estimated.end();
   if (named && scene.output.low_pass == 0.0)
-    o.refuse("accuracy_of", fmt::format("{} is wanted, but with output_lowpass none nothing is low-passed; leave out "
-                                        "one of the two",
-                                        low_passed_peak));
-  scene.output.low_pass_asked = o.has("output_lowpass") || scene.output.low_passed_series || named;
+    o.refuse("accuracy_of",
+             fmt::format("{} needs a filter, but output_lowpass is none; remove one of the two", low_passed_peak));
+  scene.output.low_pass_requested = o.has("output_lowpass") || scene.output.low_passed_series || named;
   for (const char* name : {"output_lowpass", "output_lowpass_series"})
     if (o.has(name) && (!scene.beam || scene.analysis != Analysis::transient))
       scene.notes.push_back(std::string(name) + " has no effect: it is for transient runs over a bridge");
   if (scene.output.low_passed_series && scene.sweep)
     scene.notes.emplace_back("output_lowpass_series has no effect: sweeps store no series");
-  if (scene.sweep) promise_what_many_runs_find(scene);
+  if (scene.sweep) drop_peaks_without_estimate(scene);
 }
 
 void read_wheel_filter(const Options& o, Scene& scene) {
@@ -133,13 +131,13 @@ void read_wheel_filter(const Options& o, Scene& scene) {
   if (scene.output.wheels_filtered && (scene.vehicles.empty() || scene.analysis != Analysis::transient))
     scene.notes.emplace_back("output_wheel_lowpass has no effect: it is for transient runs with vehicles");
   if (scene.output.wheels_filtered && scene.sweep && scene.limits.empty())
-    scene.notes.emplace_back("output_wheel_lowpass has no effect: in sweeps and studies it is for limits");
+    scene.notes.emplace_back("output_wheel_lowpass has no effect: in sweeps and studies it is only for limits");
 }
 
 void read_passages(const Options& o, Scene& scene) {
   if (!o.has("output_passages")) return;
   const std::vector<double> places = o.numbers("output_passages");
-  if (scene.analysis != Analysis::transient || wheels_at_start(scene).empty() || scene.sweep || asks_for_study(o)) {
+  if (scene.analysis != Analysis::transient || wheels_at_start(scene).empty() || scene.sweep || describes_study(o)) {
     scene.notes.emplace_back("output_passages has no effect: it is for a single transient run of vehicles with wheels");
     return;
   }
@@ -152,8 +150,8 @@ void read_sleepers(const Options& o, Scene& scene) {
   if (!o.has("output_sleepers")) return;
   if (!scene.beam || !scene.beam->track) o.refuse("output_sleepers", "needs a layered track (track_rail_EI)");
   const bool runs = scene.analysis == Analysis::transient || scene.analysis == Analysis::static_response;
-  if (!runs || scene.sweep || asks_for_study(o)) {
-    scene.notes.emplace_back("output_sleepers has no effect: it is for a single run in time or at rest");
+  if (!runs || scene.sweep || describes_study(o)) {
+    scene.notes.emplace_back("output_sleepers has no effect: it is for a single transient or static run");
     return;
   }
   const beam::LayeredTrack& track = *scene.beam->track;
@@ -169,7 +167,8 @@ void read_sleepers(const Options& o, Scene& scene) {
     if (!track.has_sleeper(station))
       o.refuse("output_sleepers", fmt::format("the sleeper at x = {:g} m is missing (track_stretches)", station));
     if (std::find(chosen.begin(), chosen.end(), station) != chosen.end())
-      o.refuse("output_sleepers", fmt::format("names the sleeper at x = {:g} m twice; allowed: each once", station));
+      o.refuse("output_sleepers",
+               fmt::format("names the sleeper at x = {:g} m twice; allowed: each sleeper once", station));
     chosen.push_back(station);
   }
 }
@@ -178,33 +177,33 @@ bool has_control_character(const std::string& text) {
   return std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
 }
 
-/// The name is a part of a file's name, which stays in the folder of results.
+/// Checks the name of the scene. It is part of a file name, so that the file remains in the folder of results.
 void check_name(const Options& o, const std::string& name) {
   if (name.find('/') != std::string::npos || name == "." || name == ".." || has_control_character(name))
-    o.refuse("scene_name", "allowed: a name without / and line breaks; -output_file takes a path");
+    o.refuse("scene_name", "allowed: a name without / and line breaks; use -output_file for a path");
 }
 
-/// Only the user himself, by the command line, gives a file another kind of name: one that a file of options gives may
-/// be of somebody else's, and no shell or desktop starts what ends like this.
+/// Checks the ending of a file name that a file of options gives. Such a file may come from another person, and no
+/// shell or desktop executes a file with these endings. The command line, which the user writes, may give any name.
 void check_ending(const Options& o, const std::string& name, const std::string& ending) {
   const options::Entry* entry = o.entries().find(name);
   if (entry == nullptr || !entry->from_file() || entry->value == "none" || o.text(name).ends_with(ending)) return;
-  o.refuse(name, "allowed in a file: a name that ends in " + ending + "; the command line takes any");
+  o.refuse(name, "allowed in an options file: a name that ends in " + ending + "; the command line may give any name");
 }
 
 }  // namespace
 
-void promise_what_many_runs_find(Scene& scene) {
-  scene.output.low_pass_asked = false;
-  const auto leave_out = [&](const char* name, const char* why) {
+void drop_peaks_without_estimate(Scene& scene) {
+  scene.output.low_pass_requested = false;
+  const auto drop = [&](const char* name, const char* why) {
     if (std::erase(scene.accuracy_of, name) == 0) return;
     scene.notes.push_back(
         fmt::format("accuracy_of {}: its error is not estimated: the runs of sweeps and studies {}{}", name, why,
                     scene.accuracy_of.empty() ? "; the errors of all other peaks are estimated instead" : ""));
   };
   if (!scene.limits_deck_acceleration())
-    leave_out(low_passed_peak, "low-pass deck accelerations only where limits ask for deck_acceleration");
-  for (const char* name : {"shear", "axial_displacement", "axial_force"}) leave_out(name, "do not look for its peaks");
+    drop(low_passed_peak, "low-pass deck accelerations only if limits need deck_acceleration");
+  for (const char* name : {"shear", "axial_displacement", "axial_force"}) drop(name, "do not evaluate its peaks");
 }
 
 void read_output(const Options& o, Scene& scene) {

@@ -1,4 +1,4 @@
-// The readers that read_scene is made of: each fills its part of the scene and checks it.
+// The readers that read_scene calls. Each fills its part of the scene and checks it.
 #pragma once
 
 #include <optional>
@@ -11,95 +11,123 @@
 
 namespace traverse::app {
 
-/// A block of options that describes a train or a load, with the vehicles of the former.
+/// A block of options of a train or a load.
 struct Block {
-  std::string name;                   // "train", "load" or as trains and loads name it
-  std::vector<std::string> vehicles;  // front one first
+  std::string name;                   // "train", "load" or a name from the options trains and loads
+  std::vector<std::string> vehicles;  // of a train, front one first
+  /// The name of an option of this block.
   std::string option(std::string_view word) const { return name + "_" + std::string(word); }
 };
 
+/// The names of all vehicles.
 struct NamedVehicles {
   std::vector<std::string> train;   // of all trains, front one first
-  std::vector<Block> trains;        // one a train
-  std::vector<std::string> unused;  // defined, and in no train
+  std::vector<Block> trains;        // one per train
+  std::vector<std::string> unused;  // defined, but in no train
 };
 
-/// Finds the vehicles of a scene, reads their files and makes the options of their parts known.
+/// Finds the vehicles of a scene, reads their files and declares the options of their parts.
 NamedVehicles declare_vehicles(options::Options& options);
+/// Reads one vehicle.
 Vehicle read_vehicle(const options::Options& options, const std::string& name);
 
-/// Makes the options of the trains and loads that `trains` and `loads` name known.
+/// Declares the options of the trains and loads that `trains` and `loads` name.
 void declare_blocks(options::Options& options);
-/// The blocks of `trains` or of `loads`; train or load alone where none are named.
+/// The blocks of `trains` or of `loads`; the block train or load if none are named.
 std::vector<Block> blocks_of(const options::Options& options, const char* list);
-/// Where a block's speed or speed_file leads: 1 to the right, -1 to the left.
+/// The direction of a block's speed or speed_file: 1 to the right, -1 to the left.
 double direction_of(const options::Options& options, const Block& block);
-/// x where something that runs in this direction enters the bridge, m.
+/// x of the bridge end at which trains in this direction enter, m.
 double entrance(const Scene& scene, double direction);
-/// The law of a block's speed_file for something whose first wheel or force is at `front` at t = 0.
+/// The speed law of a block's speed_file for a first wheel or force at `front` at t = 0.
 base::SpeedLaw read_speed_file(const options::Options& options, const Block& block, double front);
-/// Whether the runs of block after block need courses: several of them, or a speed that changes or is below 0.
+/// Whether the blocks need courses: there are several, or one has a variable or negative speed or its own profile.
+/// Whether a load has line loads, moments or a part that varies over time.
+bool has_line_loads_or_variation(const options::Options& options, const Block& block);
+/// A load of moments alone (load_moments), the first at `entrance` without positions.
+void place_moments(const options::Options& options, const Block& block, double entrance, MovingLoad& load);
+/// Adds load_moments to the forces of a load.
+void add_moments(const options::Options& options, const Block& block, MovingLoad& load);
+/// Appends the line loads of load_distributed.
+void add_line_loads(const options::Options& options, const Block& block, MovingLoad& load);
+/// load_table and the harmonics of load_frequency; throws InputError with one line.
+train::ForceVariation read_variation(const options::Options& options, const Block& block);
 bool needs_courses(const options::Options& options, const std::vector<Block>& blocks);
-/// Whether there are several trains or loads, or a train and a load of which one has a course.
+/// Whether there are several courses, or a train and a load of which one has a course.
 bool several_courses(const Scene& scene);
-/// Notes what runs where there are courses, and refuses what does not go with them.
+/// Adds a note on the courses, and refuses options that are not allowed with them.
 void check_courses(const options::Options& options, Scene& scene);
 
-/// Makes the options of the trains' couplers known.
+/// Declares the options of the trains' couplers.
 void declare_couplers(options::Options& options);
-/// Makes the options of a layered track's stretches known.
+/// Declares the options of the stretches of a layered track.
 void declare_stretches(options::Options& options);
-/// Bodies are not yet looked for.
+/// Reads a coupler of a train, without checking its bodies.
 Coupler read_coupler(const options::Options& options, const Block& train, const std::string& name);
 
-void read_beam(const options::Options& options, Scene& scene);  // beam, supports, damping
-/// A bridge by given modes; false where the scene names none.
+/// Reads beam, supports, foundation and damping.
+void read_beam(const options::Options& options, Scene& scene);
+/// Reads a bridge with given modes; false if the scene has none.
 bool read_given_bridge(const options::Options& options, Scene& scene);
-/// How many of these, and what they cannot be asked for: last, in place of read_modal.
+/// Reads the number of these modes and refuses results that they do not have. Called instead of read_modal.
 void read_modes_of_given(const options::Options& options, Scene& scene);
-/// Of a beam whose spans and joints are known.
+/// Reads the foundation of a beam whose spans and joints have been read.
 beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);
-/// x, or the end of a span that it is but for rounding; of a beam whose spans are known.
+/// x, or the span end that equals x within rounding. The spans must have been read.
 double as_division(const beam::BeamModel& beam, double x);
-/// Cracks as springs, or as stretches of less EI; of a beam whose EI is known.
+/// Reads cracks as springs, or as stretches of reduced EI. EI must have been read.
 void read_cracks(const options::Options& options, beam::BeamModel& beam);
-/// Supports that yield or have settled; of a beam whose supports and foundation are known.
+/// Reads elastic and settled supports. Supports and foundation must have been read.
 void read_bearings(const options::Options& options, beam::BeamModel& beam);
+/// The temperature of the beam; none without temperature differences.
 std::optional<beam::Temperature> read_temperature(const options::Options& options);
-/// A number or a file of x,value, inside the range of its row.
+/// A number or the table of a file x,value, checked for the range of the option.
 beam::Distribution read_distribution(const options::Options& options, const std::string& name);
+/// Reads the trains with their vehicles, positions and speeds.
 void read_trains(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
+/// Reads the moving forces.
 void read_load(const options::Options& options, Scene& scene);
-void read_sweep(const options::Options& options, Scene& scene);  // before train and load: it may give their speed
-inline constexpr std::size_t fewest_to_refine = 3;               // speeds, between which others can be added
-/// The speeds of sweep_speed, which is given.
+/// Reads the options of a sweep, before train and load, because it may set their speed.
+void read_sweep(const options::Options& options, Scene& scene);
+inline constexpr std::size_t fewest_to_refine = 3;  // least number of speeds between which others can be added
+/// The speeds of sweep_speed, which must be given.
 std::vector<double> read_speeds(const options::Options& options);
-bool asks_for_study(const options::Options& options);
+/// Whether the options describe a study.
+bool describes_study(const options::Options& options);
 /// The scene of a study's first run, with the study.
 Scene read_study(const options::Options& options);
-/// The option that says which forces of a load move, of which one may be given; empty: none.
+/// The one given option that selects the forces of a load; empty if there is none.
 std::string load_option(const options::Options& options, const std::string& load = "load");
-/// Whether any forces move.
+/// Whether there are any moving forces.
 bool forces_move(const options::Options& options);
-void read_modal(const options::Options& options, Scene& scene);  // last: it depends on what moves
-void read_track(const options::Options& options, Scene& scene);  // after train: the roughness begins before it
-/// The profile of the options with this prefix, "track" or a train's; roughness begins at `start`.
+/// Reads model_modes and its damping, after trains and loads, on which it depends.
+void read_modal(const options::Options& options, Scene& scene);
+/// Reads the running surface, after the trains, because the roughness begins at their first wheel.
+void read_track(const options::Options& options, Scene& scene);
+/// A running surface, with the roughness that it is a sample of, if any.
 struct ReadProfile {
   track::Profile profile;
   std::optional<Roughness> roughness;
 };
+/// The profile of the options with this prefix, "track" or the name of a train. Roughness begins at `start`.
 ReadProfile read_profile(const options::Options& options, const std::string& prefix, double start, bool to_the_left,
                          Scene& scene);
-void read_layers(const options::Options& options, Scene& scene);  // after train and load: the track is as long
-void read_output(const options::Options& options, Scene& scene);  // after layers and limits
-/// In sweeps and studies, whose runs filter deck accelerations where limits ask for it alone, and have no peaks of
-/// shear and axial forces.
-void promise_what_many_runs_find(Scene& scene);
-void decide_axial(const options::Options& options, Scene& scene);        // after beam and train
-void read_damping_bound(const options::Options& options, Scene& scene);  // after modal
-void read_norm(const options::Options& options, Scene& scene);           // after beam and output, whose limits it reads
-void read_rail_loads(const options::Options& options, Scene& scene);     // after the track
-/// Refuses what can run but cannot be meant, notes what is possible but unusual. Last.
-void check_sense(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
+/// Reads the layered track, after trains and loads, which set its length.
+void read_layers(const options::Options& options, Scene& scene);
+/// Reads the options of the results, after layers and limits.
+void read_output(const options::Options& options, Scene& scene);
+/// Removes from accuracy_of the peaks that the runs of sweeps and studies do not evaluate: shear and axial ones, and
+/// low-passed deck accelerations without a limit on them.
+void drop_peaks_without_estimate(Scene& scene);
+/// Decides whether the beam has axial unknowns, after beam, trains and track.
+void decide_axial(const options::Options& options, Scene& scene);
+/// Reads the lower bounds of damping of EN 1991-2, after read_modal.
+void read_damping_bound(const options::Options& options, Scene& scene);
+/// Reads the options of the static effects of EN 1991-2, after beam and limits.
+void read_norm(const options::Options& options, Scene& scene);
+/// Reads the loads of UIC 774-3, after the track.
+void read_rail_loads(const options::Options& options, Scene& scene);
+/// Refuses input that is possible but certainly not intended, and adds notes on unusual input. Called last.
+void check_plausibility(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// The loads of UIC 774-3, for the forces between rail and bridge.
+// Reads the loads of UIC 774-3 for the track-bridge interaction.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,14 +14,15 @@ using options::RailLoads;
 constexpr double most_fronts = 1e4;
 constexpr double behind_the_bridge = 90.0, step_of_fronts = 10.0;  // m
 
-/// First, last and step, as the user or the bridge has them.
+/// The positions of the train's front, from the given first, last and step or from the length of the bridge.
 std::vector<double> read_fronts(const Options& o, double length) {
   std::vector<double> given = {0.0, length + behind_the_bridge, step_of_fronts};
   if (o.has("uic774_fronts")) given = o.numbers("uic774_fronts");
   const double steps = (given[1] - given[0]) / given[2];
   if (!(given[2] > 0.0) || !(steps >= 0.0) || steps > most_fronts)
-    o.refuse("uic774_fronts",
-             fmt::format("allowed: first, last, step, not descending, at most {:g} of them", most_fronts));
+    o.refuse(
+        "uic774_fronts",
+        fmt::format("allowed: first, last, step, with last not below first and at most {:g} positions", most_fronts));
   std::vector<double> fronts;
   for (int i = 0; i <= std::floor(steps + 1e-9); ++i) fronts.push_back(given[0] + i * given[2]);
   return fronts;
@@ -62,7 +63,7 @@ void read_rail_loads(const Options& o, Scene& scene) {
   const double needed = std::max(rear, front);
   if (std::min(before, behind) < needed * (1.0 - 1e-9))
     o.refuse("track_approach",
-             fmt::format("the train would stand beyond the modelled track (uic774_train_length, uic774_fronts); "
+             fmt::format("the train would extend beyond the modelled track (uic774_train_length, uic774_fronts); "
                          "allowed: at least {:g} m",
                          needed));
   scene.rail_loads = loads;

@@ -1,4 +1,4 @@
-// What a scene can hold without an error and is hardly meant: a train behind the bridge, speeds in km/h, short tables.
+// Checks for input that is possible but unusual: a train behind the bridge, speeds in km/h, short tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,16 +16,16 @@ using options::Options;
 
 constexpr double fastest_train = 160.0;   // m/s: the record of a train on rails is 574.8 km/h
 constexpr double far_away = 1000.0;       // m
-constexpr double rounding = 1e-6;         // of a length
-constexpr double least_approach = 100.0;  // m: a few waves of the slowest motion of a car
+constexpr double rounding = 1e-6;         // relative to a length
+constexpr double least_approach = 100.0;  // m: a few wavelengths of the slowest motion of a car
 
-/// What moves over the bridge: wheels or forces. Counted from where it comes from: to the left, from the right end on.
+/// The wheels or forces of one course. x is measured from the bridge end at which they enter.
 struct Moving {
   std::vector<double> x;  // at the start, m
   base::SpeedLaw law;
-  bool driven = true;     // goes on at that speed
-  const char* what = "";  // one of them, in words
-  std::string option;     // that places them
+  bool driven = true;     // its speed is prescribed
+  const char* what = "";  // "wheel" or "force"
+  std::string option;     // the option of the positions
 };
 
 std::vector<Moving> moving_things(const Scene& scene) {
@@ -44,11 +44,13 @@ std::vector<Moving> moving_things(const Scene& scene) {
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
     add(course_of(scene.train, i), law_of(scene.train, i), wheel, "train", wheels_at_start(scene, i));
   for (std::size_t i = 0; i < scene.load.positions.size(); ++i)
-    add(course_of(scene.load, i), law_of(scene.load, i), force, "load", {scene.load.positions[i]});
+    add(course_of(scene.load, i), law_of(scene.load, i), force, "load",
+        {scene.load.positions[i] - 0.5 * length_of(scene.load, i),
+         scene.load.positions[i] + 0.5 * length_of(scene.load, i)});
   return things;
 }
 
-/// Where the bridge ends, with its track: what starts beyond never loads it.
+/// The end of the bridge with its track. Wheels and forces that start beyond it never load it.
 double end_of_bridge(const beam::BeamModel& beam) {
   return std::accumulate(beam.spans.begin(), beam.spans.end(), beam.track ? beam.track->approach : 0.0);
 }
@@ -62,18 +64,18 @@ void check_start(const Options& o, const Moving& moving, Scene& scene) {
                                         moving.law.direction() < 0.0 ? scene.beam->length() - end : end);
     if (scene.analysis == Analysis::transient && moving.law.direction() != 0.0 && moving.driven)
       o.refuse(moving.option, why + ", and moves away from it; allowed: positions before or on the bridge");
-    scene.notes.push_back(fmt::format("{}: {} ({})", moving.option, why, "nothing stands on it"));
+    scene.notes.push_back(fmt::format("{}: {} ({})", moving.option, why, "no load on the bridge"));
   }
   if (scene.analysis != Analysis::transient || moving.law.direction() == 0.0 || front >= 0.0) return;
   const double arrival = moving.law.time_of(-front * moving.law.direction());
   if (std::isinf(arrival)) {
-    scene.notes.push_back(fmt::format("{}: the first {} starts {:g} m before the bridge and comes to rest before it",
+    scene.notes.push_back(fmt::format("{}: the first {} starts {:g} m before the bridge and stops before it",
                                       moving.option, moving.what, -front));
     return;
   }
   if (scene.end_time && *scene.end_time < arrival) {
     scene.notes.push_back(
-        fmt::format("the run ends at {:g} s (ts_max_time), before the first {} comes onto the bridge at {:g} s",
+        fmt::format("the run ends at {:g} s (ts_max_time), before the first {} reaches the bridge at {:g} s",
                     *scene.end_time, moving.what, arrival));
   } else if (front < -far_away) {
     scene.notes.push_back(fmt::format("{}: the first {} starts {:g} m before the bridge and reaches it after {:g} s",
@@ -87,7 +89,7 @@ std::pair<double, double> extent(const Scene& scene, std::size_t vehicle) {
   return {*std::min_element(x.begin(), x.end()), *std::max_element(x.begin(), x.end())};
 }
 
-/// By how much two neighbours stand in each other, m: their wheels, or what their lengths leave between them.
+/// The overlap of two neighbouring vehicles, m, by their wheels or by their lengths.
 double overlap(const Options& o, const Scene& scene, std::size_t front, std::size_t rear) {
   const auto name = [&](std::size_t i) {
     return scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])].name;
@@ -111,7 +113,7 @@ void record_overlaps(const Options& o, Scene& scene) {
   std::size_t pairs = 0, first = 0;
   double deepest = 0.0;
   for (std::size_t i = 0; i + 1 < order.size(); ++i) {
-    if (course(order[i]) != course(order[i + 1])) continue;  // tracks side by side
+    if (course(order[i]) != course(order[i + 1])) continue;  // on different tracks
     const double by = overlap(o, scene, order[i], order[i + 1]);
     if (!(by > rounding * (1.0 + std::abs(x[order[i]])))) continue;
     if (pairs++ == 0) first = i;
@@ -124,13 +126,13 @@ void record_overlaps(const Options& o, Scene& scene) {
       order[first], order[first + 1], pairs > 1 ? fmt::format(" and {} more pairs", pairs - 1) : "", deepest));
 }
 
-/// Wheels that start in equilibrium stand on something.
+/// Checks that wheels that start in equilibrium are on a surface.
 void check_ground(const Options& o, const Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   for (const bool right : {false, true}) {
     const char* option = right ? "surface_right" : "surface_left";
     if (beam.ground[right ? 1 : 0]) continue;
-    if (beam.track) o.refuse(option, "a layered track goes on beyond the bridge, on the ground; allowed: rigid");
+    if (beam.track) o.refuse(option, "a layered track continues on the ground beyond the bridge; allowed: rigid");
     if (scene.start != Start::equilibrium) continue;
     for (const double x : wheels_at_start(scene))
       if (right ? x > beam.length() : x < 0.0)
@@ -149,7 +151,7 @@ void record_speeds(const Options& o, Scene& scene) {
                                     option, speed, 3.6 * speed));
 }
 
-/// A table that does not reach the ends of the beam is continued by its end values.
+/// Adds a note on a table that does not cover the beam, which is continued by its end values, or is longer.
 void record_table(const std::string& option, const beam::Distribution& table, double length, Scene& scene) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::vector<double> x = table.breaks(-infinity, infinity);
@@ -158,8 +160,8 @@ void record_table(const std::string& option, const beam::Distribution& table, do
   const bool late = x.front() > slack, early = x.back() < length - slack;
   if (late || early) {
     scene.notes.push_back(
-        fmt::format("{}: the table goes from {:g} to {:g} m, the beam from 0 to {:g} m: {} holds beyond it", option,
-                    x.front(), x.back(), length,
+        fmt::format("{}: the table goes from {:g} to {:g} m, the beam from 0 to {:g} m; {} applies outside the table",
+                    option, x.front(), x.back(), length,
                     late && early ? "each end value"
                     : late        ? "its first value"
                                   : "its last value"));
@@ -185,7 +187,7 @@ void record_tables(Scene& scene) {
   });
 }
 
-/// Neither the bridge nor what it stands on takes energy out of its motion.
+/// Adds a note if neither the bridge nor its foundation dissipates energy.
 void record_damping(Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   if (scene.analysis != Analysis::transient || scene.damping.rayleigh || scene.damping.ratios || beam.given ||
@@ -199,43 +201,44 @@ void record_damping(Scene& scene) {
   });
   if (dampers) return;
   scene.notes.emplace_back(
-      "damping: none is given (beam_damping_ratios, model_damping_bound), so the bridge swings on for ever and its "
-      "resonances are higher and narrower than real ones; EN 1991-2 table 6.6 has ratios from 0.5 % on");
+      "damping: none is given (beam_damping_ratios, model_damping_bound), so free vibration does not decay and "
+      "resonances "
+      "are higher and narrower than real ones; EN 1991-2 table 6.6 has ratios of at least 0.5 %");
 }
 
-/// Roughness begins at the first wheel and grows to its height over some way: wheels that start at the bridge meet
-/// little of it in the first span.
+/// Adds a note if the roughness, which begins at the first wheel and increases to its full height over some distance,
+/// is small on the first span.
 void record_rough_start(Scene& scene) {
   if (scene.analysis != Analysis::transient || !scene.roughness || scene.train.vehicles.empty() ||
       scene.train.courses.size() > 1)
     return;
   const double from = scene.roughness->start;
   const bool left = scene.roughness->to_the_left;
-  const double ahead = left ? from - scene.beam->length() : -from, grown = scene.profile.fade();
-  if (ahead >= grown) return;
-  const double approach = std::max(least_approach, 2.0 * grown), x = scene.train.positions.front();
+  const double ahead = left ? from - scene.beam->length() : -from, fade = scene.profile.fade();
+  if (ahead >= fade) return;
+  const double approach = std::max(least_approach, 2.0 * fade), x = scene.train.positions.front();
   scene.notes.push_back(
-      fmt::format("train_positions: the track is rough from the first wheel on and its waves grow to their height over "
-                  "{:g} m, but that wheel starts {:g} m before the bridge: the first span sees little of them; "
+      fmt::format("train_positions: the roughness begins at the first wheel and has its full height after {:g} m, but "
+                  "that wheel starts {:g} m before the bridge, so the roughness is small on the first span; "
                   "-train_positions {:g} starts {:g} m before it",
-                  grown, ahead > 0.0 ? ahead : 0.0, left ? x - ahead + approach : x + ahead - approach, approach));
+                  fade, ahead > 0.0 ? ahead : 0.0, left ? x - ahead + approach : x + ahead - approach, approach));
 }
 
-/// Rows of a file of axles whose x grows lie ahead of each other.
+/// Adds a note on a file of axles with increasing x, where the last row is the front axle.
 void record_axles(const Options& o, Scene& scene) {
   for (const Block& block : blocks_of(o, "loads")) {
     const std::string file = block.option("file");
     if (!o.has(file) || o.has(block.option("file_x")) || load_option(o, block.name) != file) continue;
     const std::vector<std::vector<double>> rows = options::read_columns(o.path(file), 2, 2);
     if (!(rows[0].front() >= 0.0 && rows[0].back() > rows[0].front())) continue;
-    scene.notes.push_back(
-        fmt::format("{}: x grows from row to row, so the last row's force of {:g} kN leads; where these are distances "
-                    "behind the first axle, take -{} backward",
-                    file, 1e-3 * rows[1].back(), block.option("file_x")));
+    scene.notes.push_back(fmt::format(
+        "{}: x grows from row to row, so the force of {:g} kN in the last row is in front; if x are distances "
+        "behind the first axle, use -{} backward",
+        file, 1e-3 * rows[1].back(), block.option("file_x")));
   }
 }
 
-void record_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
+void record_unusual_input(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   if (!vehicles.unused.empty())
     scene.notes.push_back(
         fmt::format("defined, but not in the train (train_vehicles): {}", fmt::join(vehicles.unused, ", ")));
@@ -253,9 +256,9 @@ void record_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene)
 
 }  // namespace
 
-void check_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
+void check_plausibility(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   const std::size_t before = scene.notes.size();
-  record_sense(o, vehicles, scene);
+  record_unusual_input(o, vehicles, scene);
   scene.unusual.assign(scene.notes.begin() + static_cast<std::ptrdiff_t>(before), scene.notes.end());
 }
 

@@ -1,4 +1,4 @@
-// sweep and model_modes of a scene: many runs, and the bridge by its modes.
+// Reads the options of sweeps and of the representation of the bridge by modes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,21 +12,22 @@ namespace {
 using options::Options;
 
 constexpr double most_speeds = 1e5;
-constexpr double meets = 1e-3;  // of a step: speeds in m/s are often rounded ones in km/h
+constexpr double speed_tolerance = 1e-3;  // relative to a step: speeds in m/s are often rounded values in km/h
 
 }  // namespace
 
-/// From, to, step: the last speed is `to` where the step meets it.
+/// The speeds from, from + step, ...; the last one is `to` if it is a multiple of the step within the tolerance.
 std::vector<double> read_speeds(const Options& o) {
   const std::vector<double> range = o.numbers("sweep_speed");
   const double from = range[0], to = range[1], step = range[2];
-  if (to < from) o.refuse("sweep_speed", "from is above to; wanted: from, to, step");
-  const double steps = std::floor((to - from) / step + meets);
+  if (to < from) o.refuse("sweep_speed", "from is above to; allowed: from, to, step");
+  const double steps = std::floor((to - from) / step + speed_tolerance);
   if (to > from && steps < 1.0)
-    o.refuse("sweep_speed", fmt::format("the step of {:g} m/s is longer than all from {:g} to {:g} m/s; wanted: from, "
-                                        "to, step",
+    o.refuse("sweep_speed", fmt::format("the step of {:g} m/s is larger than the range from {:g} to {:g} m/s; allowed: "
+                                        "from, to, step",
                                         step, from, to));
-  if (steps > most_speeds) o.refuse("sweep_speed", fmt::format("{:g} speeds; allowed: {:g}", steps, most_speeds));
+  if (steps > most_speeds)
+    o.refuse("sweep_speed", fmt::format("{:g} speeds; allowed: at most {:g}", steps, most_speeds));
   std::vector<double> speeds;
   for (int i = 0; i <= static_cast<int>(steps); ++i) speeds.push_back(from + i * step);
   return speeds;
@@ -38,9 +39,8 @@ void read_sweep(const Options& o, Scene& scene) {
     return;
   }
   const char* given = o.has("sweep_speed") ? "sweep_speed" : "sweep_hslm_a";
-  if (scene.analysis != Analysis::transient) o.refuse(given, "a sweep is of transient runs (scene_analysis)");
-  if (!o.has("beam_spans") && !o.has("bridge_modes_file"))
-    o.refuse(given, "a sweep is of a bridge's response: there is no beam (beam_spans)");
+  if (scene.analysis != Analysis::transient) o.refuse(given, "a sweep needs scene_analysis transient");
+  if (!o.has("beam_spans") && !o.has("bridge_modes_file")) o.refuse(given, "a sweep needs a bridge (beam_spans)");
   scene.sweep.emplace();
   scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
   scene.sweep->instants = o.number("sweep_instants");
@@ -49,7 +49,7 @@ void read_sweep(const Options& o, Scene& scene) {
     scene.sweep->refine = o.number("sweep_refine");
     if (scene.sweep->refine > 0.0 && scene.sweep->speeds.size() < fewest_to_refine)
       o.refuse("sweep_refine",
-               fmt::format("sweep_speed gives {} speeds; wanted: at least {}, between which it adds others",
+               fmt::format("sweep_speed gives {} speeds; allowed: at least {}, between which others are added",
                            scene.sweep->speeds.size(), fewest_to_refine));
   }
   if (!o.has("sweep_hslm_a")) return;
@@ -57,7 +57,7 @@ void read_sweep(const Options& o, Scene& scene) {
   std::vector<int> sorted = scene.sweep->trains;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-    o.refuse("sweep_hslm_a", "allowed: every train once");
+    o.refuse("sweep_hslm_a", "allowed: each train once");
 }
 
 void read_modal(const Options& o, Scene& scene) {
@@ -66,38 +66,37 @@ void read_modal(const Options& o, Scene& scene) {
   if (value == "auto" || value == "0") {
     scene.modes_open =
         value == "auto" && !(scene.beam && (scene.beam->foundation.nonlinear() || scene.beam->strained()));
-    if (o.has("model_damping_ratios")) o.refuse("model_damping_ratios", "needs model_modes, whose ratios these are");
+    if (o.has("model_damping_ratios")) o.refuse("model_damping_ratios", "needs model_modes");
     return;
   }
   char* end = nullptr;
   const double modes = std::strtod(value.c_str(), &end);
   if (*end != 0 || modes < 1.0 || modes > 1e5 || modes != std::floor(modes))
-    o.refuse("model_modes", "allowed: auto, 0 or a number of modes");
+    o.refuse("model_modes", "allowed: auto, 0 or a number of modes up to 100000");
   if (scene.analysis != Analysis::transient) {
     scene.notes.emplace_back("model_modes has no effect: it is for transient runs");
     return;
   }
-  if (!scene.beam) o.refuse("model_modes", "needs a beam (beam_spans), whose modes these are");
+  if (!scene.beam) o.refuse("model_modes", "needs a beam (beam_spans)");
   if (scene.vehicles.empty() && scene.load.forces.empty())
     o.refuse("model_modes", "needs vehicles (train_vehicles) or moving forces (load_forces, load_hslm_a, ...)");
   if (scene.beam->track)
-    o.refuse("model_modes", "a bridge under a layered track (track_rail_EI) moves by its elements; allowed: auto or 0");
+    o.refuse("model_modes", "a bridge under a layered track (track_rail_EI) needs elements; allowed: auto or 0");
   if (scene.beam->foundation.nonlinear())
     o.refuse("model_modes", "the foundation is one-sided, slides, has a gap or a cubic term; allowed: auto or 0");
-  if (scene.beam->strained())
-    o.refuse("model_modes", "the beam is bent by its temperature or settlements; allowed: auto or 0");
+  if (scene.beam->strained()) o.refuse("model_modes", "temperature or settlements bend the beam; allowed: auto or 0");
   if (const options::Entry* type = o.entries().find("ts_type");
       scene.vehicles.empty() && type != nullptr && type->value != "modal")
-    o.refuse("ts_type", "with model_modes and forces alone the motion is exact in time; allowed: modal, or left out");
+    o.refuse("ts_type", "with model_modes and forces alone the motion is exact in time; allowed: modal, or no ts_type");
   scene.model.modes = static_cast<int>(modes);
-  if (scene.model.rest_tolerance > 0.0)
-    scene.notes.emplace_back("model_window has no effect: a bridge by its modes moves as a whole");
+  if (scene.model.window_tolerance > 0.0)
+    scene.notes.emplace_back("model_window has no effect: with modes the bridge has no parts that could be excluded");
   if (!o.has("model_damping_ratios")) return;
   if (scene.damping.rayleigh || scene.damping.ratios)
     o.refuse("model_damping_ratios", "give either these or Rayleigh damping (beam_damping_ratios, beam_rayleigh)");
   scene.damping_of_modes = o.numbers("model_damping_ratios");
   if (scene.damping_of_modes.size() > 1 && static_cast<int>(scene.damping_of_modes.size()) != scene.model.modes)
-    o.refuse("model_damping_ratios", fmt::format("{} ratios for {} modes; wanted: one, or one a mode",
+    o.refuse("model_damping_ratios", fmt::format("{} ratios for {} modes; allowed: one, or one per mode",
                                                  scene.damping_of_modes.size(), scene.model.modes));
 }
 

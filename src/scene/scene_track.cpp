@@ -1,4 +1,4 @@
-// track of a scene: the running surface's profile.
+// Reads the profile of the running surface: bump, table, roughness and dips.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@ namespace {
 
 using options::Options;
 
+/// The spectrum with this name; none for another profile.
 std::optional<track::Spectrum> spectrum_of(const std::string& profile) {
   const auto grade = [&](std::string_view kind, char first, char last) {
     return profile.size() == kind.size() + 1 && profile.starts_with(kind) && profile.back() >= first &&
@@ -23,18 +24,18 @@ std::optional<track::Spectrum> spectrum_of(const std::string& profile) {
   return {};
 }
 
-Roughness rough(const Options& o, const std::string& prefix, const track::Spectrum& spectrum, double start,
-                bool to_the_left) {
+Roughness read_roughness(const Options& o, const std::string& prefix, const track::Spectrum& spectrum, double start,
+                         bool to_the_left) {
   std::vector<double> wavelengths = {spectrum.shortest, spectrum.longest};
   if (const std::string option = prefix + "_wavelengths"; o.has(option)) {
     wavelengths = o.numbers(option);
-    if (!(wavelengths[0] < wavelengths[1])) o.refuse(option, "allowed: the shortest, then the longest");
+    if (!(wavelengths[0] < wavelengths[1])) o.refuse(option, "allowed: the shortest, then the longest wavelength");
   }
   return {spectrum, wavelengths[0], wavelengths[1], start, to_the_left};
 }
 
-/// Where the track's roughness begins: at the foremost wheel of what runs to the right or, where all runs to the left,
-/// at the foremost one of that, so that the train starts on level track.
+/// x at which the roughness begins: the foremost wheel of trains to the right or, if all run to the left, the foremost
+/// wheel of these, so that the train starts on level track.
 double start_of_roughness(const Scene& scene, bool& to_the_left) {
   std::optional<double> right, left;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
@@ -49,7 +50,7 @@ double start_of_roughness(const Scene& scene, bool& to_the_left) {
   return right ? *right : left.value_or(0.0);
 }
 
-/// Dips and humps on top of the profile.
+/// Adds dips and humps to the profile.
 void read_dips(const Options& o, Scene& scene) {
   if (!o.has("track_dips_x")) {
     if (const options::Entry* entry = o.first_with_prefix("track_dips"))
@@ -57,12 +58,12 @@ void read_dips(const Options& o, Scene& scene) {
     return;
   }
   const std::vector<double> x = o.numbers("track_dips_x");
-  const std::vector<double> length = o.numbers("track_dips_length", x.size(), "one a dip");
-  const std::vector<double> depth = o.numbers("track_dips_depth", x.size(), "one a dip");
-  const std::vector<std::string> shape = o.texts("track_dips_shape", x.size(), "one a dip");
+  const std::vector<double> length = o.numbers("track_dips_length", x.size(), "one per dip");
+  const std::vector<double> depth = o.numbers("track_dips_depth", x.size(), "one per dip");
+  const std::vector<std::string> shape = o.texts("track_dips_shape", x.size(), "one per dip");
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (shape[i] == "joint" && depth[i] < 0.0)
-      o.refuse("track_dips_depth", "a dip of the shape joint is below 0; allowed: from 0 on");
+      o.refuse("track_dips_depth", "a dip of shape joint has a negative depth; allowed: not below 0");
     const track::Dip dip{x[i], length[i], depth[i], shape[i] == "joint"};
     scene.profile = scene.profile.with(dip);
     if (scene.roughness) scene.roughness->dips.push_back(dip);
@@ -88,7 +89,7 @@ ReadProfile read_profile(const Options& o, const std::string& prefix, double sta
     scene.notes.push_back(key("wavelengths") + " has no effect: " + option + " is " + profile);
   if (profile == "none") return {};
   if (spectrum) {
-    const Roughness roughness = rough(o, prefix, *spectrum, start, to_the_left);
+    const Roughness roughness = read_roughness(o, prefix, *spectrum, start, to_the_left);
     return {roughness.profile(static_cast<std::uint64_t>(o.integer(key("seed")))), roughness};
   }
   if (!is_file) {

@@ -1,4 +1,4 @@
-// The trains of a scene: which vehicles, from where, how fast.
+// Reads the trains of a scene: vehicles, positions, couplers and speeds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using options::Options;
 
-/// x of the wheel's centre that is in front towards `direction`, relative to the origin; 0 without wheels.
+/// x of the centre of the front wheel in this direction, relative to the origin; 0 without wheels.
 double front_of(const Vehicle& vehicle, double direction) {
   double front = 0.0;
   bool first = true;
@@ -27,25 +27,26 @@ double front_of(const Vehicle& vehicle, double direction) {
   return front;
 }
 
-/// One train: its options, its types (indices into Scene::vehicles), and where it runs to.
-struct ReadTrain {
+/// The options of one train, its vehicles (indices into Scene::vehicles) and its direction.
+struct TrainBlock {
   const Block& block;
   std::vector<int> order;
   double direction = 1.0;
 };
 
-/// Origins in the middle of vehicles of known length.
+/// The distance of two origins, which are in the middle of vehicles of known length.
 double gap_by_length(const Options& o, const std::string& spacing, const Vehicle& front, const Vehicle& rear) {
   double gap = 0.0;
   for (const Vehicle* vehicle : {&front, &rear}) {
     const std::string length = "vehicle_" + vehicle->name + "_length";
-    if (!o.has(length)) o.refuse(spacing, "missing: distance from origin to origin (or " + length + ")");
+    if (!o.has(length))
+      o.refuse(spacing, "missing: the distance between the origins of neighbouring vehicles (or " + length + ")");
     gap += 0.5 * o.number(length);
   }
   return gap;
 }
 
-std::vector<double> read_positions(const Options& o, const ReadTrain& train, const Scene& scene) {
+std::vector<double> read_positions(const Options& o, const TrainBlock& train, const Scene& scene) {
   const std::vector<int>& order = train.order;
   const std::string positions = train.block.option("positions"), spacing = train.block.option("spacing");
   const auto vehicle = [&](std::size_t i) -> const Vehicle& {
@@ -54,11 +55,11 @@ std::vector<double> read_positions(const Options& o, const ReadTrain& train, con
   std::vector<double> x;
   if (o.has(positions)) x = o.numbers(positions);
   if (x.size() > 1 || (order.size() == 1 && !x.empty())) {
-    if (x.size() > 1 && o.has(spacing)) o.refuse(spacing, "all positions are given: leave the spacing out");
+    if (x.size() > 1 && o.has(spacing)) o.refuse(spacing, "not allowed if all positions are given");
     if (x.size() != order.size()) {
-      o.refuse(positions, order.size() == 1 ? fmt::format("has {} entries; wanted: 1, one a vehicle", x.size())
-                                            : fmt::format("has {} entries; wanted: one, or {}, one a vehicle", x.size(),
-                                                          order.size()));
+      o.refuse(positions, order.size() == 1 ? fmt::format("has {} entries; allowed: 1 (one per vehicle)", x.size())
+                                            : fmt::format("has {} entries; allowed: one, or {} (one per vehicle)",
+                                                          x.size(), order.size()));
     }
     return x;
   }
@@ -74,8 +75,9 @@ std::vector<double> read_positions(const Options& o, const ReadTrain& train, con
   return x;
 }
 
-/// The gaps of a coupler, each between vehicles that have its bodies, counted from the train's first one.
-std::vector<int> read_gaps(const Options& o, const ReadTrain& train, const Scene& scene, const Coupler& coupler,
+/// The gaps between vehicles in which a coupler is, counted from the front of the train. The vehicles must have its
+/// bodies.
+std::vector<int> read_gaps(const Options& o, const TrainBlock& train, const Scene& scene, const Coupler& coupler,
                            const std::string& name) {
   const int last = static_cast<int>(train.order.size()) - 1;
   const std::string after = train.block.option(name + "_after"), bodies = train.block.option(name + "_bodies");
@@ -86,13 +88,12 @@ std::vector<int> read_gaps(const Options& o, const ReadTrain& train, const Scene
     for (int k = 0; k < last; ++k) gaps.push_back(k);
   }
   if (gaps.empty())
-    o.refuse(train.block.option("couplers"),
-             fmt::format("there is nothing for {} to join: give a train of two vehicles or more", name));
+    o.refuse(train.block.option("couplers"), fmt::format("{} needs a train of at least two vehicles", name));
   std::sort(gaps.begin(), gaps.end());
-  if (std::adjacent_find(gaps.begin(), gaps.end()) != gaps.end()) o.refuse(after, "allowed: every vehicle once");
+  if (std::adjacent_find(gaps.begin(), gaps.end()) != gaps.end()) o.refuse(after, "allowed: each vehicle once");
   for (const int gap : gaps) {
     if (gap >= last)
-      o.refuse(after, fmt::format("behind vehicle {} there is none; allowed: from 0 to {}", gap, last - 1));
+      o.refuse(after, fmt::format("there is no vehicle behind vehicle {}; allowed: from 0 to {}", gap, last - 1));
     for (std::size_t end = 0; end < 2; ++end) {
       const Vehicle& vehicle =
           scene.vehicles[static_cast<std::size_t>(train.order[static_cast<std::size_t>(gap) + end])];
@@ -106,10 +107,10 @@ std::vector<int> read_gaps(const Options& o, const ReadTrain& train, const Scene
   return gaps;
 }
 
-/// The types of vehicles that trains are put together from, each read once for either direction.
-class Types {
+/// The types of vehicles of all trains. Each is read once for each direction.
+class VehicleTypes {
  public:
-  Types(const Options& o, Scene& scene) : o_(o), scene_(scene) {}
+  VehicleTypes(const Options& o, Scene& scene) : o_(o), scene_(scene) {}
 
   int index_of(const std::string& name, double direction) {
     const std::pair key(name, direction < 0.0);
@@ -125,7 +126,7 @@ class Types {
   std::map<std::pair<std::string, bool>, int> known_;
 };
 
-void read_couplers(const Options& o, const ReadTrain& train, bool alone, Scene& scene) {
+void read_couplers(const Options& o, const TrainBlock& train, bool alone, Scene& scene) {
   const std::string list = train.block.option("couplers");
   if (!o.has(list)) return;
   const int first = static_cast<int>(scene.train.vehicles.size() - train.order.size());
@@ -139,22 +140,22 @@ void read_couplers(const Options& o, const ReadTrain& train, bool alone, Scene& 
   }
 }
 
-bool rolls(const ReadTrain& train, const Scene& scene) {
+bool rolls(const TrainBlock& train, const Scene& scene) {
   return std::any_of(train.order.begin(), train.order.end(),
                      [&](int type) { return !scene.vehicles[static_cast<std::size_t>(type)].wheels.empty(); });
 }
 
-Drive read_drive(const Options& o, const ReadTrain& train, const Scene& scene) {
+Drive read_drive(const Options& o, const TrainBlock& train, const Scene& scene) {
   const std::string option = train.block.option("drive"), file = train.block.option("speed_file");
   const std::string drive = o.has(option) ? o.choice(option) : rolls(train, scene) ? "constant" : "free";
   if (drive == "free" && o.has(file))
-    o.refuse(file, o.has(option) ? "prescribes the speed; with " + option + " free only forces act"
-                                 : "prescribes the speed of wheels, and the train has none");
+    o.refuse(file, o.has(option) ? "prescribes the speed, which is not possible with " + option + " free"
+                                 : "prescribes the speed of wheels, but the train has none");
   return drive == "free" ? Drive::free : Drive::constant;
 }
 
-/// x of the front wheel of the train that has been added last.
-double front_wheel(const ReadTrain& train, const Scene& scene) {
+/// x of the front wheel of the train that was added last.
+double front_wheel(const TrainBlock& train, const Scene& scene) {
   std::optional<double> front;
   for (std::size_t i = scene.train.vehicles.size() - train.order.size(); i < scene.train.vehicles.size(); ++i)
     for (const double x : wheels_at_start(scene, i))
@@ -162,13 +163,13 @@ double front_wheel(const ReadTrain& train, const Scene& scene) {
   return front.value_or(0.0);
 }
 
-double read_speed(const Options& o, const ReadTrain& train, const Scene& scene) {
+double read_speed(const Options& o, const TrainBlock& train, const Scene& scene) {
   const std::string option = train.block.option("speed");
   const bool needed = rolls(train, scene) && scene.analysis == Analysis::transient;
   return needed || o.has(option) ? o.number(option) : 0.0;
 }
 
-train::Course course_of_train(const Options& o, const ReadTrain& train, Scene& scene) {
+train::Course course_of_train(const Options& o, const TrainBlock& train, Scene& scene) {
   train::Course course;
   course.name = train.block.name;
   course.first = scene.train.vehicles.size() - train.order.size();
@@ -186,10 +187,10 @@ train::Course course_of_train(const Options& o, const ReadTrain& train, Scene& s
 
 void read_trains(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   if (vehicles.train.empty()) return;
-  Types types(o, scene);
+  VehicleTypes types(o, scene);
   const bool courses = needs_courses(o, vehicles.trains);
   for (const Block& block : vehicles.trains) {
-    ReadTrain train{block, {}, direction_of(o, block)};
+    TrainBlock train{block, {}, direction_of(o, block)};
     for (const std::string& name : block.vehicles) train.order.push_back(types.index_of(name, train.direction));
     const std::vector<double> positions = read_positions(o, train, scene);
     scene.train.positions.insert(scene.train.positions.end(), positions.begin(), positions.end());

@@ -1,4 +1,4 @@
-// study of a scene: which of its numbers are varied, and how.
+// Reads the options of a study: the varied options, their values and combination, statistics and refinement.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,11 +22,11 @@ using options::Row;
 
 constexpr std::string_view study_prefix = VaryReader::prefix;
 constexpr double most_runs = VaryReader::most_values, most_study_peaks = 1e8;
-constexpr double quickest_run = 5e-3;  // s: of a train over a bridge, side by side with others
+constexpr double quickest_run = 5e-3;  // s: computing time of a train over a bridge in a SIMD batch
 
-/// What an option of a study belongs to.
+/// The option that an option study_vary_... varies.
 struct Varied {
-  std::string option;    // that is varied
+  std::string option;    // the varied option
   std::string_view how;  // "from", "normal", ...; empty: a list
 };
 
@@ -41,7 +41,7 @@ std::optional<Varied> varied(const Options& o, const std::string& name) {
   return {};
 }
 
-/// Makes the options of the varied quantities known.
+/// Declares the options study_vary_....
 void declare_study(Options& o) {
   for (const options::Entry& entry : o.entries()) {
     const std::string& name = entry.name;
@@ -60,21 +60,21 @@ void declare_study(Options& o) {
   }
 }
 
-/// Whether a study may vary it; why not, in words.
-std::string not_to_vary(const Options& o, const std::string& option) {
+/// The reason why a study cannot vary an option; empty if it can.
+std::string why_not_varied(const Options& o, const std::string& option) {
   const Row& row = *o.find_known(option);
   for (const char* own : {"study_", "sweep_", "output_", "scene_", "options_", "accuracy", "modes_"})
-    if (option.starts_with(own)) return "it is one of the whole study, not of a run";
+    if (option.starts_with(own)) return "it applies to the whole study, not to a single run";
   const bool of_petsc = options::owned_by_petsc(option);
   if (of_petsc && option != "ts_dt" && option != "ts_max_time") return "PETSc reads it once, for all runs";
-  if (of_petsc && o.entries().has(option)) return "it is given for all runs too: leave that out";
+  if (of_petsc && o.entries().has(option)) return "it is given for all runs too; remove that option";
   const bool number = row.kind == Kind::number || row.kind == Kind::integer || row.kind == Kind::number_or_file ||
                       ((row.kind == Kind::numbers || row.kind == Kind::integers) && row.count <= 1);
   if (number) return "";
-  return row.count > 1 ? fmt::format("it takes {}, not one number", options::allowed(row)) : "it is no number";
+  return row.count > 1 ? fmt::format("it needs {}, not one number", options::allowed(row)) : "it is not a number";
 }
 
-/// The options that study_vary_... names, in the order in which they are given.
+/// The options that study_vary_... names, in the given order.
 std::vector<std::string> varied_options(const Options& o) {
   std::vector<std::string> names;
   for (const options::Entry& entry : o.entries()) {
@@ -84,13 +84,13 @@ std::vector<std::string> varied_options(const Options& o) {
   return names;
 }
 
-/// The dimensions of sweep_speed and sweep_hslm_a, which a study takes up.
+/// The dimensions of sweep_speed and sweep_hslm_a, which a study also varies.
 std::vector<StudyDimension> swept_dimensions(const Options& o, const NamedVehicles& vehicles) {
   std::vector<StudyDimension> dimensions;
   for (const char* sweep : {"sweep_hslm_a", "sweep_speed"})
     for (const char* list : {"trains", "loads"})
       if (o.has(sweep) && o.has(list))
-        o.refuse(sweep, fmt::format("is of one train or load; with {} a study varies NAME_speed", list));
+        o.refuse(sweep, fmt::format("is for one train or load; with {} use a study that varies NAME_speed", list));
   if (o.has("sweep_hslm_a")) {
     StudyDimension trains{{"load_hslm_a"}, "1", true, "list", {}, 0};
     for (const int train : o.integers("sweep_hslm_a")) trains.values.push_back(train);
@@ -106,7 +106,7 @@ std::vector<StudyDimension> swept_dimensions(const Options& o, const NamedVehicl
   return dimensions;
 }
 
-/// What study_combine makes of listed and drawn dimensions.
+/// Combines listed and drawn dimensions by study_combine.
 class Axes {
  public:
   Axes(const Options& o, Study& study) : o_(o), study_(study), combine_(o.choice("study_combine")) {
@@ -116,7 +116,8 @@ class Axes {
 
   void add_listed(StudyDimension dimension, double count) {
     if (combine_ != "grid" && count > most_runs)
-      o_.refuse("study_combine", fmt::format("{} has {:g} values; allowed: {:g}", dimension.name(), count, most_runs));
+      o_.refuse("study_combine",
+                fmt::format("{} has {:g} values; allowed: at most {:g}", dimension.name(), count, most_runs));
     if (combine_ == "grid") {
       dimension.axis = study_.axes.size();
       study_.axes.push_back({dimension.name(), static_cast<std::size_t>(std::min(count, 1e15))});
@@ -153,20 +154,24 @@ class Axes {
   std::size_t draws(const std::string& dimension) const {
     if (draws_ == 0)
       throw InputError(
-          fmt::format("study_draws is missing: how many values of {} are drawn; wanted: a whole number "
-                      "from 1 to {:g}",
+          fmt::format("study_draws is missing: the number of values drawn of {}; allowed: a whole number from 1 to "
+                      "{:g}",
                       dimension, most_runs));
     return draws_;
   }
-  /// Puts a dimension on the axis that several share.
+  /// Assigns a dimension to the shared axis.
   void merge(const char* name, std::size_t length, StudyDimension& dimension) {
     if (!joint_) {
       joint_ = study_.axes.size();
       study_.axes.push_back({name, length});
     }
-    if (study_.axes[*joint_].length != length)
-      o_.refuse("study_combine", fmt::format("needs lists of equal length; {} has {} values, those before it have {}",
-                                             dimension.name(), length, study_.axes[*joint_].length));
+    if (const std::size_t other = study_.axes[*joint_].length; other != length) {
+      const auto shares_axis = [this](const StudyDimension& d) { return d.axis == *joint_; };
+      const auto first = std::find_if(study_.dimensions.begin(), study_.dimensions.end(), shares_axis);
+      o_.refuse("study_combine",
+                fmt::format("needs lists of equal length; {} ({}) and {} ({}) differ; use study_combine grid",
+                            first->name(), other, dimension.name(), length));
+    }
     dimension.axis = *joint_;
   }
   void draw_from_list(StudyDimension& dimension) const {
@@ -186,7 +191,7 @@ class Axes {
   std::optional<std::size_t> joint_;  // the axis that several dimensions share
 };
 
-/// A varied option, and those that take the same values, still without these; `taken`: options that are varied.
+/// The dimension of a varied option and of those with the same values, without the values. taken: the varied options.
 StudyDimension dimension_of(const Options& o, const std::string& option, const VaryReader& reader,
                             std::vector<std::string>& taken) {
   const std::string given = o.first_with_prefix(reader.name())->name;
@@ -198,7 +203,7 @@ StudyDimension dimension_of(const Options& o, const std::string& option, const V
       dimension.options.push_back(other);
     }
   for (const std::string& one : dimension.options) {
-    if (const std::string why = not_to_vary(o, one); !why.empty())
+    if (const std::string why = why_not_varied(o, one); !why.empty())
       o.refuse(given, fmt::format("{} cannot be varied: {}", one, why));
     if (std::find(taken.begin(), taken.end(), one) != taken.end())
       o.refuse(given, fmt::format("{} is varied twice", one));
@@ -257,7 +262,8 @@ void read_statistics(const Options& o, Study& study) {
       if (d.law != "list" || d.name() == "track_seed") add(d.axis);
   }
   if (study.over.empty() && o.has("study_statistics_quantiles"))
-    o.refuse("study_statistics_quantiles", "nothing is drawn; study_statistics_over says over which option they go");
+    o.refuse("study_statistics_quantiles",
+             "no option is drawn; name the options of the statistics with study_statistics_over");
   std::sort(study.over.begin(), study.over.end());
 }
 
@@ -270,40 +276,41 @@ void read_refinement(const Options& o, Study& study) {
   if (study.refine == 0.0) return;
   const auto speeds = std::find_if(study.dimensions.begin(), study.dimensions.end(), is_speed);
   if (speeds == study.dimensions.end() || speeds->law != "list")
-    o.refuse(option, "no list of speeds is varied; wanted: train_speed, load_speed or sweep_speed");
+    o.refuse(option, "no list of speeds is varied; allowed with train_speed, load_speed or sweep_speed");
   if (std::count_if(study.dimensions.begin(), study.dimensions.end(),
                     [&](const StudyDimension& d) { return d.axis == speeds->axis; }) > 1)
-    o.refuse(option,
-             fmt::format("{} goes side by side with other options; wanted: study_combine grid", speeds->name()));
+    o.refuse(option, fmt::format("{} varies together with other options; allowed: study_combine grid", speeds->name()));
   if (std::set<double>(speeds->values.begin(), speeds->values.end()).size() != speeds->values.size() ||
       speeds->values.size() < fewest_to_refine)
-    o.refuse(option, fmt::format("{} has {} values; wanted: at least {}, each once, between which others are added",
+    o.refuse(option, fmt::format("{} has {} values; allowed: at least {}, each once, between which others are added",
                                  speeds->name(), speeds->values.size(), fewest_to_refine));
   study.speeds = static_cast<std::size_t>(speeds - study.dimensions.begin());
   if (std::find(study.over.begin(), study.over.end(), speeds->axis) != study.over.end())
-    o.refuse(option, "statistics go over the speed (study_statistics_over)");
+    o.refuse(option, "not allowed with statistics over the speed (study_statistics_over)");
 }
 
-/// The least damping ratio of the bridge that the scene names; 0 where it names none.
-double named_damping(const Scene& scene) {
+/// The least given damping ratio of the bridge; 0 if none is given.
+double least_damping(const Scene& scene) {
   if (scene.damping.ratios) return std::min(scene.damping.ratios->first, scene.damping.ratios->second);
   const std::vector<double>& ratios = scene.by_given_modes() ? scene.beam->given->ratio : scene.damping_of_modes;
   return ratios.empty() ? 0.0 : *std::min_element(ratios.begin(), ratios.end());
 }
 
-/// Limits that are judged at a list of speeds farther apart than a resonance is wide at half its power, 2 zeta v.
+/// Adds a note if limits are checked at speeds with larger steps than the half-power width of a resonance, 2 zeta v.
 void record_coarse_speeds(Scene& scene) {
   const Study& study = *scene.study;
   const auto speeds = std::find_if(study.dimensions.begin(), study.dimensions.end(), is_speed);
-  if (speeds == study.dimensions.end() || speeds->law != "list" || study.refine > 0.0 || !scene.judges_runs()) return;
+  if (speeds == study.dimensions.end() || speeds->law != "list" || study.refine > 0.0 || !scene.has_run_limits())
+    return;
   std::vector<double> v = speeds->values;
   std::sort(v.begin(), v.end());
-  const double width = 2.0 * named_damping(scene);
+  const double width = 2.0 * least_damping(scene);
   for (std::size_t i = v.size(); i-- > 1;) {
     if (!(width > 0.0) || v[i] - v[i - 1] <= width * v[i - 1]) continue;
     scene.unusual.push_back(fmt::format(
-        "{}: {:g} to {:g} km/h is farther than a resonance there is wide at half its power, 2 zeta v = {:.3g} km/h: a "
-        "limit that is kept may be broken between the speeds; steps of {:.2g} km/h would do, or study_refine 1e-2",
+        "{}: the step from {:g} to {:g} km/h is larger than the half-power width of a resonance there, 2 zeta v = "
+        "{:.3g} "
+        "km/h, so a limit may be exceeded between these speeds; use steps of {:.2g} km/h, or study_refine 1e-2",
         speeds->name(), 3.6 * v[i - 1], 3.6 * v[i], 3.6 * width * v[i - 1], 3.6 * 0.25 * width * v[i - 1]));
     scene.notes.push_back(scene.unusual.back());
     return;
@@ -313,21 +320,21 @@ void record_coarse_speeds(Scene& scene) {
 void check_study(const Options& o, Scene& scene) {
   const Study& study = *scene.study;
   const std::string first = o.first_with_prefix(study_prefix)->name;
-  if (scene.analysis != Analysis::transient) o.refuse(first, "a study is of transient runs (scene_analysis)");
-  if (!scene.beam) o.refuse(first, "a study is of a bridge's response: there is no beam (beam_spans)");
+  if (scene.analysis != Analysis::transient) o.refuse(first, "a study needs scene_analysis transient");
+  if (!scene.beam) o.refuse(first, "a study needs a bridge (beam_spans)");
   for (const StudyDimension& d : study.dimensions)
     if (d.name() == "track_seed" && !scene.roughness)
       o.refuse(first, fmt::format("track_seed has no effect: track_profile is {}", o.text("track_profile")));
   record_coarse_speeds(scene);
   const double peaks = static_cast<double>(study.runs()) * static_cast<double>(scene.output.probes.size());
   if (peaks > most_study_peaks)
-    o.refuse(first, fmt::format("{} runs with {} probes each; allowed: at most {:g} of both multiplied", study.runs(),
+    o.refuse(first, fmt::format("{} runs with {} probes each; allowed: at most {:g} runs times probes", study.runs(),
                                 scene.output.probes.size(), most_study_peaks));
 }
 
 }  // namespace
 
-bool asks_for_study(const Options& o) { return o.first_with_prefix(study_prefix) != nullptr; }
+bool describes_study(const Options& o) { return o.first_with_prefix(study_prefix) != nullptr; }
 
 Scene read_study(const Options& given) {
   Options o = given;
@@ -350,7 +357,8 @@ Scene read_study(const Options& given) {
     scene.notes.emplace_back("output_lowpass_series has no effect: studies store no series");
   if (scene.norm) {
     scene.norm.reset();
-    scene.notes.emplace_back("studies have no static effects and no verdict of EN 1991-2: sweeps and single runs do");
+    scene.notes.emplace_back(
+        "studies have no static effects and no verdict of EN 1991-2; sweeps and single runs have them");
   }
   scene.options = o.all();
   check_study(o, scene);
@@ -374,7 +382,7 @@ Scene read_scene_of_study(const options::Options& given,
   for (const auto& [name, value] : values) entries.set({name, value, "a value of the study", 0});
   Options o(std::move(entries));
   Scene scene = read_scene(o);
-  promise_what_many_runs_find(scene);
+  drop_peaks_without_estimate(scene);
   scene.sweep.emplace();
   scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
   scene.sweep->instants = o.number("sweep_instants");

@@ -1,4 +1,4 @@
-// Vehicles: which ones a scene has, their files, and the names of their parts.
+// Finds the vehicles of a scene, reads their files and declares the options of their parts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,16 +21,16 @@ bool is_word(const std::string& name) {
                                       [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
 }
 
-/// Puts the options of a vehicle's file below those given already.
+/// Adds the options of a vehicle's file, unless they are given already.
 void add_file(Options& o, const std::string& prefix) {
   const std::string path = o.path(prefix + "file");
   std::vector<Entry> entries = options::read_options_file(path);
   for (Entry& entry : entries) {
     if (entry.name.starts_with("vehicle_")) {
-      throw InputError(
-          fmt::format("{} ({}): a vehicle's own file has the keys of one vehicle, without vehicle: {{NAME: "
-                      "...}} around them",
-                      entry.name, entry.where()));
+      throw InputError(fmt::format(
+          "{} ({}): the file of a vehicle must have the keys of this vehicle without vehicle: {{NAME: ...}} "
+          "around them",
+          entry.name, entry.where()));
     }
     if (entry.name == "file") o.refuse(prefix + "file", "a vehicle's file cannot name another file");
     entry.name = prefix + entry.name;
@@ -38,7 +38,7 @@ void add_file(Options& o, const std::string& prefix) {
   o.add_defaults(entries);
 }
 
-/// Makes the options of every listed part known; a part's name must be unique in its vehicle.
+/// Declares the options of each listed part. The name of a part must be unique in its vehicle.
 void declare_parts(Options& o, const std::string& prefix) {
   std::unordered_map<std::string, Part> seen;
   for (int kind = 0; kind < options::part_kinds; ++kind) {
@@ -51,7 +51,7 @@ void declare_parts(Options& o, const std::string& prefix) {
       }
       const auto [other, is_new] = seen.try_emplace(name, part);
       if (!is_new) {
-        o.refuse(list, fmt::format("'{}' is the name of a {} already; a name stands for one part", name,
+        o.refuse(list, fmt::format("'{}' is already the name of a {}; allowed: different names for all parts", name,
                                    options::part_word(other->second)));
       }
       for (const options::Row& row : options::part_rows(part)) {
@@ -69,7 +69,7 @@ void declare_vehicle(Options& o, const std::string& name) {
   declare_parts(o, prefix);
 }
 
-/// NAME of every vehicle_NAME_file and vehicle_NAME_bodies that is not yet known, shortest first.
+/// NAME of each vehicle_NAME_file and vehicle_NAME_bodies that is not yet known, shortest first.
 std::vector<std::string> vehicles_in(const Options& o) {
   std::vector<std::string> names;
   for (const Entry& entry : o.entries()) {
@@ -86,8 +86,8 @@ std::vector<std::string> vehicles_in(const Options& o) {
   return names;
 }
 
-/// Options of a part that stands in no list of its vehicle look like those of a further vehicle, VEHICLE_PART.
-void check_no_forgotten_part(const Options& o, const std::string& name, const std::vector<std::string>& vehicles) {
+/// Refuses a part that is in no list of its vehicle: its options look like those of another vehicle, VEHICLE_PART.
+void check_unlisted_part(const Options& o, const std::string& name, const std::vector<std::string>& vehicles) {
   const std::string prefix = "vehicle_" + name + "_";
   if (o.entries().has(prefix + "file")) return;
   for (const std::string& body : o.texts(prefix + "bodies")) {
@@ -95,7 +95,7 @@ void check_no_forgotten_part(const Options& o, const std::string& name, const st
   }
   for (const std::string& vehicle : vehicles) {
     if (!name.starts_with(vehicle + "_")) continue;
-    o.refuse(prefix + "bodies", fmt::format("'{}' stands in no list of vehicle {} (joints, springs, ...): add it there",
+    o.refuse(prefix + "bodies", fmt::format("'{}' is in no list of vehicle {} (joints, springs, ...); add it to one",
                                             name.substr(vehicle.size() + 1), vehicle));
   }
 }
@@ -130,10 +130,10 @@ NamedVehicles declare_vehicles(Options& o) {
   for (const std::string& name : types) declare_vehicle(o, name);
   std::vector<std::string> others;
   for (const std::string& name : vehicles_in(o)) {
-    // a part's option of the vehicles found so far may end like a vehicle's
+    // an option of a part of a vehicle found so far may end like that of a vehicle
     if (o.knows("vehicle_" + name + "_file") || (o.knows("vehicle_" + name + "_bodies"))) continue;
     declare_vehicle(o, name);
-    check_no_forgotten_part(o, name, types);
+    check_unlisted_part(o, name, types);
     others.push_back(name);
     types.push_back(name);
   }
@@ -154,8 +154,8 @@ void declare_couplers_of(Options& o, const Block& train) {
     const auto full = [&](std::string_view word) { return fmt::format("{}_{}_{}", train.name, name, word); };
     for (const options::Row& row : options::coupler_rows())
       if (!o.declare(full(row.name), row))
-        o.refuse(list, fmt::format("there would be two options {}; rename one", full(row.name)));
-    for (const Part part : {Part::spring, Part::joint})  // what a coupler has not of its own
+        o.refuse(list, fmt::format("two options would have the name {}; rename one", full(row.name)));
+    for (const Part part : {Part::spring, Part::joint})  // the options without a row for couplers
       for (const options::Row& row : options::part_rows(part)) o.declare(full(row.name), row);
   }
 }

@@ -11,7 +11,7 @@
 
 namespace traverse::app {
 namespace {
-constexpr double step_meets = 1e-3;  // of a step: ends are often rounded ones in km/h
+constexpr double range_tolerance = 1e-3;  // relative to a step: ends are often rounded values in km/h
 }
 
 std::string VaryReader::name(std::string_view how) const {
@@ -22,25 +22,26 @@ double VaryReader::number(const std::string& given, const std::string& word) con
   double value = 0.0;
   const bool parsed = row_.unit == "m/s" ? options::parse_speed(word, value) : options::parse_number(word, value);
   if (!parsed || !options::is_quantity(value))
-    o_.refuse(given,
-              fmt::format("'{}' is no finite number; wanted: values of {}, {}", word, option_, options::allowed(row_)));
+    o_.refuse(given, fmt::format("'{}' is not a finite number; allowed: values of {}, {}", word, option_,
+                                 options::allowed(row_)));
   return value;
 }
 
 void VaryReader::check(const std::string& given, double value, const std::string& what, const char* advice) const {
-  if (row_.unit == "m/s" && value == 0.0) o_.refuse(given, "0 m/s: nothing would ever leave; allowed: above 0");
-  const bool fits = row_.range.holds(value) && (!whole() || (value == std::floor(value) && std::abs(value) < 2e9));
+  if (row_.unit == "m/s" && value == 0.0)
+    o_.refuse(given, "0 m/s: no wheel or force would leave the bridge; allowed: above 0");
+  const bool fits = row_.range.contains(value) && (!whole() || (value == std::floor(value) && std::abs(value) < 2e9));
   if (!fits)
-    o_.refuse(given, fmt::format("{}{:g} is no value of {}; allowed: {}{}", what, value, option_,
+    o_.refuse(given, fmt::format("{}{:g} is not a value of {}; allowed: {}{}", what, value, option_,
                                  options::allowed(row_), advice));
 }
 
-/// from, from + step, ... up to `to`.
+/// The values from, from + step, ... up to `to`.
 std::vector<double> VaryReader::range(const std::string& given, double from, double to, double step,
                                       double& count) const {
   if (!(step > 0.0)) o_.refuse(given, fmt::format("the step is {:g}; allowed: above 0", step));
   if (to < from) o_.refuse(given, fmt::format("an empty range: from {:g} is above to {:g}", from, to));
-  count = std::floor((to - from) / step + step_meets) + 1.0;
+  count = std::floor((to - from) / step + range_tolerance) + 1.0;
   std::vector<double> values;
   for (int i = 0; count <= most_values && i < static_cast<int>(count); ++i) values.push_back(from + i * step);
   return values;
@@ -75,15 +76,16 @@ std::vector<double> VaryReader::block(double& count) const {
                      : has("to")   ? "to"
                      : has("step") ? "step"
                                    : "count"),
-                fmt::format("wanted: from, to, and step or count ({} is missing)", name(end)));
+                fmt::format("needs from, to, and step or count; {} is missing", name(end)));
   const double from = number("from"), to = number("to");
-  if (has("step") == has("count")) o_.refuse(name("from"), "wanted: from, to, and either step or count");
+  if (has("step") == has("count")) o_.refuse(name("from"), "needs from, to, and either step or count");
   if (has("step")) return range(name("step"), from, to, number("step"), count);
-  const int wanted = o_.integer(name("count"));
+  const int requested = o_.integer(name("count"));
   if (to < from) o_.refuse(name("from"), fmt::format("an empty range: from {:g} is above to {:g}", from, to));
-  count = wanted;
+  count = requested;
   std::vector<double> values;
-  for (int i = 0; i < wanted; ++i) values.push_back(wanted == 1 ? from : from + (to - from) * i / (wanted - 1));
+  for (int i = 0; i < requested; ++i)
+    values.push_back(requested == 1 ? from : from + (to - from) * i / (requested - 1));
   return values;
 }
 
@@ -99,9 +101,9 @@ std::vector<double> VaryReader::draws(std::uint64_t seed, std::size_t count) con
   const double a = number(given, words[0]), b = number(given, words[1]);
   const bool uniform = of == "uniform";
   if (uniform ? !(b > a) : !(b > 0.0))
-    o_.refuse(given, uniform ? "wanted: the least, then the greatest value" : "allowed: a deviation above 0");
+    o_.refuse(given, uniform ? "allowed: the least, then the greatest value" : "allowed: a deviation above 0");
   if (of == "lognormal" && !(a > 0.0)) o_.refuse(given, "allowed: a mean above 0");
-  if (whole() && !uniform) o_.refuse(given, "takes whole numbers; allowed: uniform, or a list");
+  if (whole() && !uniform) o_.refuse(given, "the option has whole numbers; allowed: uniform, or a list");
   const double wide = std::sqrt(std::log1p(b * b / (a * a)));
   const base::RandomStream stream(seed, option_);
   std::vector<double> values;
@@ -114,7 +116,7 @@ std::vector<double> VaryReader::draws(std::uint64_t seed, std::size_t count) con
     else
       value = a * std::exp(wide * stream.normal(i) - 0.5 * wide * wide);
     check(given, value, fmt::format("draw {}: ", i + 1),
-          of == "normal" ? "; take lognormal, or a smaller deviation" : "");
+          of == "normal" ? "; use lognormal, or a smaller deviation" : "");
     values.push_back(value);
   }
   return values;

@@ -1,4 +1,4 @@
-// The numbers that a study gives to one of the options that it varies.
+// Reads the values of one option that a study varies.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace traverse::app {
 
-/// Reads study_vary_OPTION, study_vary_OPTION_from and so on. InputError with one line that names what is wrong.
+/// Reads study_vary_OPTION, study_vary_OPTION_from and so on. Throws InputError with one line.
 class VaryReader {
  public:
   static constexpr std::string_view prefix = "study_vary_";
@@ -19,23 +19,24 @@ class VaryReader {
   VaryReader(const options::Options& o, std::string option)
       : o_(o), option_(std::move(option)), row_(*o.find_known(option_)) {}
 
+  /// The name of the option study_vary_OPTION or study_vary_OPTION_how.
   std::string name(std::string_view how = "") const;
   bool has(std::string_view how = "") const { return o_.entries().has(name(how)); }
   bool whole() const { return row_.kind == options::Kind::integer || row_.kind == options::Kind::integers; }
   std::string_view unit() const { return row_.unit; }
 
-  /// Refuses what is no value of the option.
+  /// Refuses a number that is not a value of the option.
   void check(const std::string& given, double value, const std::string& what = "", const char* advice = "") const;
-  /// A list, whose words may be from:to or from:to:step. Where there are more than most_values, `count` says how many,
-  /// and not all of them come.
+  /// The values of a list, whose words may be from:to or from:to:step. `count` is their number; if it is above
+  /// most_values, not all values are returned.
   std::vector<double> list(double& count) const;
-  /// from, to and step or count; the same.
+  /// The values of from, to and step or count, with `count` as for a list.
   std::vector<double> block(double& count) const;
-  /// "uniform", "normal" or "lognormal"; empty: listed.
+  /// "uniform", "normal" or "lognormal"; empty for listed values.
   std::string law() const;
-  /// So many values by that law.
+  /// This number of values drawn by the law.
   std::vector<double> draws(std::uint64_t seed, std::size_t count) const;
-  /// Values may be given in one way only.
+  /// Checks that the values are given in one way only.
   void check_one_way() const;
 
  private:

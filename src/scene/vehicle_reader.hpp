@@ -1,4 +1,4 @@
-// Reads one vehicle's parts, or a train's couplers, out of the options.
+// Reads the parts of one vehicle, or the couplers of one train, from the options.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 
 namespace traverse::app {
 
+/// Reads a vehicle or a coupler. Throws InputError with the name of the option.
 class VehicleReader {
  public:
   VehicleReader(const options::Options& options, const std::string& name)
@@ -21,7 +22,7 @@ class VehicleReader {
     vehicle_.mechanism.name = name;
   }
 
-  /// Reads the parts of a train instead.
+  /// A reader of the couplers of a train.
   VehicleReader(const options::Options& options, const Block& train) : o_(options), prefix_(train.name + "_") {}
   Coupler read_coupler(const std::string& name);
 
@@ -84,7 +85,7 @@ class VehicleReader {
   }
 
   void check_apart(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
-    if (coupler_ || (to - from).norm() > 0.0) return;  // a coupler's points count from two origins
+    if (coupler_ || (to - from).norm() > 0.0) return;  // a coupler's points are relative to two origins
     o_.refuse(key("to"), "from and to are the same point: the direction between them is not defined");
   }
 

@@ -39,7 +39,7 @@ void BandLu::set_zero(int size, int half_bandwidth) {
 
 void BandLu::factor() {
   above_ = band_;
-  int right = 0;  // the last column that the rows so far reach
+  int right = 0;  // last column with entries in the rows so far
   for (int j = 0; j < size_; ++j) {
     const int below = std::min(band_, size_ - 1 - j);
     double* diagonal = &entry(j, j);

@@ -1,5 +1,5 @@
-// LU with partial pivoting of a banded matrix: the Newton matrix of a long train whose vehicles are joined, where each
-// meets its neighbours only. Storage and elimination as in LAPACK's band routines.
+// LU with partial pivoting of a banded matrix: the Newton matrix of a long train of coupled vehicles, in which each
+// vehicle is coupled to its neighbours only. Storage and elimination are those of LAPACK's band routines.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace traverse::solve {
 
-/// The greatest distance of a non-zero entry from the diagonal.
+/// The largest distance of a non-zero entry from the diagonal.
 int half_bandwidth(const Eigen::MatrixXd& A);
 
 class BandLu {
@@ -25,7 +25,7 @@ class BandLu {
 
  private:
   int size_ = 0, band_ = 0;
-  int above_ = 0;  // non-zero entries of the upper factor above the diagonal, at most; more where rows were swapped
+  int above_ = 0;       // largest number of entries of the upper factor above the diagonal; larger after row exchanges
   Eigen::MatrixXd lu_;  // entry (i, j) at (2 band + i - j, j)
   std::vector<double> inverse_pivot_;
   std::vector<int> pivot_row_;

@@ -1,4 +1,4 @@
-// A PCSHELL that factors the matrix by SubstructuredCholesky in its set-up and solves with it when applied.
+// A PCSHELL that factorises the matrix by SubstructuredCholesky in its set-up and solves with it when applied.
 #include "solve/beam_preconditioner.hpp"
 
 #include <exception>
@@ -15,7 +15,7 @@ namespace {
 using base::check;
 using base::guard;
 
-/// This rank's rows; where one rank's cannot be read, all ranks throw.
+/// Reads this rank's rows; if this fails on one rank, all ranks throw.
 BlockTridiagonal read_everywhere(MPI_Comm comm, Mat matrix, int block) {
   BlockTridiagonal blocks;
   std::exception_ptr failure;

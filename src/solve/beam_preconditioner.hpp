@@ -5,11 +5,11 @@
 
 namespace traverse::solve {
 
-/// Makes `pc` a shell around SubstructuredCholesky: it factors the KSP's second matrix (AIJ, symmetric positive
-/// definite, rows in node-wise blocks of the matrix's block size, coupled to the neighbouring nodes only) each time it
-/// has changed, as with a new shift of a TS, and solves with it exactly, so that KSPPREONLY is enough. The pc owns all
-/// it needs. Errors come out of KSPSetUp or KSPSolve: traverse::SolverError when the matrix is not positive definite,
-/// std::logic_error when it is not block tridiagonal.
+/// Makes `pc` a shell around SubstructuredCholesky. It factorises the KSP's second matrix (AIJ, symmetric positive
+/// definite, rows in node-wise blocks of the matrix's block size, coupled to neighbouring nodes only) each time it has
+/// changed, as with a new shift of a TS, and solves with it exactly, so that KSPPREONLY is sufficient. The pc owns all
+/// its data. KSPSetUp and KSPSolve report errors: traverse::SolverError if the matrix is not positive definite,
+/// std::logic_error if it is not block tridiagonal.
 void use_beam_factorisation(PC pc);
 
 }  // namespace traverse::solve

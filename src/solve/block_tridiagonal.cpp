@@ -1,4 +1,4 @@
-// Copies the diagonal and upper blocks of a symmetric PETSc matrix, and forms linear combinations of three block
+// Copies the diagonal and upper blocks of a symmetric PETSc matrix, and computes linear combinations of three block
 // tridiagonal matrices.
 #include "solve/block_tridiagonal.hpp"
 
@@ -10,7 +10,7 @@
 namespace traverse::solve {
 namespace {
 
-/// Sorts the rows of a PETSc matrix into the blocks on and above the diagonal.
+/// Copies the rows of a PETSc matrix into the blocks on and above the diagonal.
 class RowReader {
  public:
   RowReader(Mat matrix, BlockTridiagonal& out) : matrix_(matrix), out_(out) {

@@ -1,4 +1,5 @@
-// Loops over a size that only the run knows stay loops: as straight code they would be a third of the whole program.
+// Explicit instantiation for any block size. Loops over this size are not unrolled: straight code would be a third of
+// the whole program.
 #define TRAVERSE_KEEP_LOOPS
 #include "blocks.hpp"
 

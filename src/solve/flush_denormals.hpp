@@ -1,5 +1,5 @@
-// A response that dies out along the bridge ends in subnormal numbers, which round to themselves instead of going on
-// to zero, over the whole rest of the bridge, and which many processors compute slowly.
+// Setting of subnormal numbers to zero. A response that decays along the bridge ends in subnormal numbers, which
+// rounding prevents from decaying to zero on the remaining bridge, and with which many processors compute slowly.
 #pragma once
 
 #if defined(__SSE2__)
@@ -8,7 +8,7 @@
 
 namespace traverse::solve {
 
-/// While it lives, subnormal numbers (below 2.2e-308) count as zero on this thread, where the processor can do that.
+/// During its lifetime, subnormal numbers (below 2.2e-308) are set to zero on this thread, if the processor can do so.
 class FlushDenormals {
  public:
 #if defined(__SSE2__)

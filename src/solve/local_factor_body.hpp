@@ -1,4 +1,4 @@
-// The bodies of LocalFactor<B> that blocks.hpp compiles.
+// Function bodies of LocalFactor<B> that blocks.hpp compiles.
 #pragma once
 
 #include <algorithm>
@@ -7,15 +7,16 @@
 
 namespace traverse::solve {
 
-// Fewer nodes are one part, two chains: separators would cost more than further chains would gain.
-inline constexpr std::ptrdiff_t nodes_worth_cutting = 512;
+// Fewer nodes are one part with two chains: separators would cost more than further chains would save.
+inline constexpr std::ptrdiff_t min_nodes_to_divide = 512;
 
-// The way back through a bundle follows soon upon the way there, while its factors are in a cache.
-inline constexpr std::ptrdiff_t nodes_a_bundle = 16384;
+// Nodes per batch: the back substitution of a batch follows soon after its elimination, while its factors are in a
+// cache.
+inline constexpr std::ptrdiff_t nodes_per_batch = 16384;
 
 inline std::ptrdiff_t count_parts(std::ptrdiff_t nodes) {
-  if (nodes < nodes_worth_cutting) return 1;
-  return static_cast<std::ptrdiff_t>(parts_a_bundle) * std::max<std::ptrdiff_t>(1, nodes / nodes_a_bundle);
+  if (nodes < min_nodes_to_divide) return 1;
+  return static_cast<std::ptrdiff_t>(parts_per_batch) * std::max<std::ptrdiff_t>(1, nodes / nodes_per_batch);
 }
 
 template <int B>
@@ -33,13 +34,13 @@ LocalFactor<B>::LocalFactor(Extent<B> block, std::ptrdiff_t nodes, bool follows,
       followed_(followed),
       border_stride_((parts_ + 1) * block.size()) {
   for (std::ptrdiff_t p = 0; p <= parts_; ++p) begins_.push_back(p * nodes / parts_);
-  for (std::ptrdiff_t bundle = 0; parts_of({bundle, bundle + 1}).first < parts_; ++bundle) {
-    std::array<Part, parts_a_bundle> parts;
-    const Range own = parts_of({bundle, bundle + 1});
+  for (std::ptrdiff_t batch = 0; parts_of({batch, batch + 1}).first < parts_; ++batch) {
+    std::array<Part, parts_per_batch> parts;
+    const Range own = parts_of({batch, batch + 1});
     for (std::ptrdiff_t p = own.first; p < own.past; ++p) {
       parts[static_cast<std::size_t>(p - own.first)] = Part({begin(p), begin(p + 1)}, bordered(p), bordered(p + 1));
     }
-    bundles_.emplace_back(block, parts);
+    batches_.emplace_back(block, parts);
   }
   if (parts_ == 1) return;
   const std::ptrdiff_t separators = parts_ - first_separator();
@@ -51,8 +52,8 @@ LocalFactor<B>::LocalFactor(Extent<B> block, std::ptrdiff_t nodes, bool follows,
 
 template <int B>
 bool LocalFactor<B>::factor(const Slice<B>& slice, PivotRecord& record) {
-  for (Bundle<B>& bundle : bundles_) {
-    if (!bundle.factor(slice, record)) return false;
+  for (SubdomainBatch<B>& batch : batches_) {
+    if (!batch.factor(slice, record)) return false;
   }
   schur_ = part_schur(0);
   coupled_ = false;
@@ -105,18 +106,18 @@ void LocalFactor<B>::reserve(int columns) {
 }
 
 template <int B>
-typename LocalFactor<B>::Work LocalFactor<B>::meet(const Columns& x, int column, Range window) {
+typename LocalFactor<B>::Work LocalFactor<B>::make_work(const Columns& x, int column, Range window) {
   Work result = {x,
                  {borders_.data() + column * border_stride_, 0, border_stride_},
                  window,
-                 {0, static_cast<std::ptrdiff_t>(bundles_.size())},
+                 {0, static_cast<std::ptrdiff_t>(batches_.size())},
                  {first_separator(), parts_}};
   if (window.first > 0 || window.past < nodes_) {
     const auto first_from = [&](std::ptrdiff_t node) {
       return std::lower_bound(begins_.begin(), begins_.end() - 1, node) - begins_.begin();
     };
-    constexpr auto most = static_cast<std::ptrdiff_t>(parts_a_bundle);
-    result.bundles = {(first_from(window.first + 1) - 1) / most, (first_from(window.past) - 1) / most + 1};
+    constexpr auto most = static_cast<std::ptrdiff_t>(parts_per_batch);
+    result.batches = {(first_from(window.first + 1) - 1) / most, (first_from(window.past) - 1) / most + 1};
     result.separators = {std::max(first_separator(), first_from(window.first)), first_from(window.past)};
   }
   return result;
@@ -138,19 +139,19 @@ void LocalFactor<B>::store(const Panel<B, C>& panel, const Columns& x, std::ptrd
 
 template <int B>
 template <int C>
-void LocalFactor<B>::eliminate(const Columns& x, int column, Range window, NodeFiller* filler,
+void LocalFactor<B>::eliminate(const Columns& x, int column, Range window, RhsCallback* rhs_callback,
                                SeparatorPanels<B, C>& separators) {
   separators = {};
   if (window.empty()) return;
-  const Work work = meet(x, column, window);
-  load_borders<C>(work, filler);
-  for (std::ptrdiff_t bundle = work.bundles.first; bundle < work.bundles.past; ++bundle) {
-    forward<C>(work, filler, bundle);
+  const Work work = make_work(x, column, window);
+  load_borders<C>(work, rhs_callback);
+  for (std::ptrdiff_t batch = work.batches.first; batch < work.batches.past; ++batch) {
+    forward<C>(work, rhs_callback, batch);
     if (coupled_) continue;
-    finish_separators<C>(work, bundle);
-    if (bundle > work.bundles.first && !waits(bundle - 1)) backward<C>(work, bundle - 1);
+    finish_separators<C>(work, batch);
+    if (batch > work.batches.first && !needs_separators(batch - 1)) backward<C>(work, batch - 1);
   }
-  if (!waits(work.bundles.past - 1)) backward<C>(work, work.bundles.past - 1);
+  if (!needs_separators(work.batches.past - 1)) backward<C>(work, work.batches.past - 1);
   if (coupled_) {
     coarse_->template eliminate<C>(coarse_columns(work), column, coarse_window(work), nullptr, separators);
   } else if (follows_) {
@@ -163,25 +164,25 @@ template <int B>
 template <int C>
 void LocalFactor<B>::substitute(const Columns& x, int column, Range window, const SeparatorPanels<B, C>& separators) {
   if (window.empty()) return;
-  const Work work = meet(x, column, window);
+  const Work work = make_work(x, column, window);
   if (follows_) store<C>(separators.own, work.borders, 0);
   if (followed_) store<C>(separators.next, work.borders, parts_);
   if (coupled_) coarse_->template substitute<C>(coarse_columns(work), column, coarse_window(work), separators);
-  const Range late = work.separators.common({0, coupled_ ? parts_ : 1});
-  for (std::ptrdiff_t p = late.first; p < late.past; ++p) store<C>(load<C>(work.borders, p), x, begin(p));
-  for (std::ptrdiff_t bundle = work.bundles.first; bundle < work.bundles.past; ++bundle) {
-    if (waits(bundle)) backward<C>(work, bundle);
+  const Range pending = work.separators.common({0, coupled_ ? parts_ : 1});
+  for (std::ptrdiff_t p = pending.first; p < pending.past; ++p) store<C>(load<C>(work.borders, p), x, begin(p));
+  for (std::ptrdiff_t batch = work.batches.first; batch < work.batches.past; ++batch) {
+    if (needs_separators(batch)) backward<C>(work, batch);
   }
 }
 
-/// The right-hand sides of the separators in the window, zero at the others beside its parts.
+/// Loads the right-hand sides of the separators in the window, and zero for other separators next to its parts.
 template <int B>
 template <int C>
-void LocalFactor<B>::load_borders(const Work& work, NodeFiller* filler) const {
-  const Range parts = parts_of(work.bundles);
+void LocalFactor<B>::load_borders(const Work& work, RhsCallback* rhs_callback) const {
+  const Range parts = parts_of(work.batches);
   for (std::ptrdiff_t p = parts.first; p <= parts.past; ++p) {
     const bool inside = work.separators.contains(p);
-    if (inside && filler != nullptr) filler->fill(begin(p), begin(p) + 1);
+    if (inside && rhs_callback != nullptr) rhs_callback->fill(begin(p), begin(p) + 1);
     store<C>(inside ? load<C>(work.x, begin(p)) : Panel<B, C>{}, work.borders, p);
   }
   if (parts.past < parts_) store<C>({}, work.borders, parts_);
@@ -189,10 +190,10 @@ void LocalFactor<B>::load_borders(const Work& work, NodeFiller* filler) const {
 
 template <int B>
 template <int C>
-void LocalFactor<B>::forward(const Work& work, NodeFiller* filler, std::ptrdiff_t bundle) const {
+void LocalFactor<B>::forward(const Work& work, RhsCallback* rhs_callback, std::ptrdiff_t batch) const {
   ChainBorders<B, C> added = {};
-  bundles_[static_cast<std::size_t>(bundle)].template forward<C>(work.x, work.window, filler, added);
-  for_borders(bundle, [&](std::size_t lane, std::ptrdiff_t p) {
+  batches_[static_cast<std::size_t>(batch)].template forward<C>(work.x, work.window, rhs_callback, added);
+  for_borders(batch, [&](std::size_t lane, std::ptrdiff_t p) {
     if (p == parts_ ? work.window.past < nodes_ : !work.separators.contains(p)) return;
     added[lane].add(block_, load<C>(work.borders, p));
     store<C>(added[lane], work.borders, p);
@@ -201,17 +202,17 @@ void LocalFactor<B>::forward(const Work& work, NodeFiller* filler, std::ptrdiff_
 
 template <int B>
 template <int C>
-void LocalFactor<B>::backward(const Work& work, std::ptrdiff_t bundle) const {
+void LocalFactor<B>::backward(const Work& work, std::ptrdiff_t batch) const {
   ChainBorders<B, C> borders = {};
-  for_borders(bundle, [&](std::size_t lane, std::ptrdiff_t p) { borders[lane] = load<C>(work.borders, p); });
-  bundles_[static_cast<std::size_t>(bundle)].template backward<C>(work.x, work.window, borders);
+  for_borders(batch, [&](std::size_t lane, std::ptrdiff_t p) { borders[lane] = load<C>(work.borders, p); });
+  batches_[static_cast<std::size_t>(batch)].template backward<C>(work.x, work.window, borders);
 }
 
-/// The solution at the separators before a bundle's parts, where they do not see each other; not this rank's own.
+/// Solves for the uncoupled separators before the parts of a batch, without this rank's first separator.
 template <int B>
 template <int C>
-void LocalFactor<B>::finish_separators(const Work& work, std::ptrdiff_t bundle) const {
-  const Range parts = parts_of({bundle, bundle + 1}).common(work.separators);
+void LocalFactor<B>::finish_separators(const Work& work, std::ptrdiff_t batch) const {
+  const Range parts = parts_of({batch, batch + 1}).common(work.separators);
   for (std::ptrdiff_t p = std::max<std::ptrdiff_t>(1, parts.first); p < parts.past; ++p) {
     Panel<B, C> solution;
     const Block<B>& inverse = separator_inverse_[static_cast<std::size_t>(p - first_separator())];

@@ -1,12 +1,13 @@
-// The small dense pieces of one node that the sweeps keep in registers: a block of unknowns times a few columns.
+// Small dense matrices of one node that the sweeps keep in registers: a block of unknowns times a few columns.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <type_traits>
 
-// A sweep's pieces have to become one function, its short loops straight code, for its numbers to stay in registers:
-// four times faster. Not so where nothing is optimised, nor under sanitizers, whose checks would make it huge.
+// The parts of a sweep must be inlined into one function and its short loops unrolled, so that its values remain in
+// registers: this is four times faster. It is disabled without optimisation and under sanitizers, whose checks would
+// make the function very large.
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define TRAVERSE_FLATTEN [[gnu::flatten]]
 #else
@@ -21,14 +22,14 @@
 
 namespace traverse::solve {
 
-/// Sizes 2 to 7 are compiled for their size, all others up to the largest run through `any_block`.
+/// Sizes 2 to 7 are compiled for their size, all others up to the largest use `any_block`.
 inline constexpr int largest_block = 16;
 inline constexpr int any_block = -1;
 
 template <int B>
 inline constexpr int storage_block = B == any_block ? largest_block : B;
 
-/// The number of unknowns a node: known when compiling, or at run time for any_block.
+/// The number of unknowns per node: a compile-time constant, or a run-time value for any_block.
 template <int B>
 struct Extent {
   int run_time = B;
@@ -48,7 +49,7 @@ struct LaneOf<1> {
   using Stored = double;
 };
 
-/// One unknown of C = 1, 2, 4 or 8 columns, or of as many chains; arithmetic is entry by entry.
+/// One unknown of C = 1, 2, 4 or 8 columns, or of C chains; arithmetic is entry by entry.
 template <int C>
 using Lane = typename LaneOf<C>::Type;
 
@@ -83,7 +84,7 @@ void load_pair(Address at, Lane<C>& low, Lane<C>& high) {
   }
 }
 
-/// The way back.
+/// The inverse of load_pair.
 template <int C, class Address>
 void store_pair(Address at, const Lane<C>& low, const Lane<C>& high) {
   if constexpr (C == 2) {
@@ -103,18 +104,18 @@ void store_pair(Address at, const Lane<C>& low, const Lane<C>& high) {
   }
 }
 
-/// Where a symmetric block's entry is among those of its lower triangle, row after row.
+/// The index of a symmetric block's entry in its lower triangle, which is stored row after row.
 constexpr int packed(int row, int column) {
   return row >= column ? row * (row + 1) / 2 + column : column * (column + 1) / 2 + row;
 }
 
-/// The unknowns of one node in C columns, or of one node of each of C chains. The matrices below may be anything whose
-/// operator[] gives an entry: one number, or one for each column.
+/// The unknowns of one node in C columns, or of one node of each of C chains. The matrices below may be any type whose
+/// operator[] returns an entry: one number, or one for each column.
 template <int B, int C>
 struct Panel {
   std::array<Lane<C>, storage_block<B>> lane;
 
-  /// Column c's entries are at at(c).
+  /// The entries of column c are at at(c).
   template <class Address>
   void gather(Extent<B> block, Address at) {
     const int n = block.size();
@@ -147,7 +148,7 @@ struct Panel {
     }
   }
 
-  /// A column's entries lie `stride` behind those of the column before.
+  /// The entries of a column are `stride` behind those of the column before.
   void load(Extent<B> block, const double* x, std::ptrdiff_t stride) {
     gather(block, [=](int c) { return x + c * stride; });
   }
@@ -155,7 +156,7 @@ struct Panel {
     scatter(block, [=](int c) { return x + c * stride; });
   }
 
-  /// An unknown's columns stand together.
+  /// The columns of an unknown are contiguous.
   void load_packed(Extent<B> block, const double* x) {
     const int n = block.size();
     TRAVERSE_UNROLL
@@ -179,7 +180,7 @@ struct Panel {
     for (int r = 0; r < n; ++r) lane[r] += other.lane[r];
   }
 
-  /// this = matrix * other, of the symmetric block x block matrix the lower triangle, packed.
+  /// this = matrix * other, for the packed lower triangle of a symmetric block x block matrix.
   template <class Matrix>
   void multiply_symmetric(Extent<B> block, const Matrix& matrix, const Panel& other) {
     const int n = block.size();
@@ -192,7 +193,7 @@ struct Panel {
     }
   }
 
-  /// this = matrix * other, the matrix block x block and column-major.
+  /// this = matrix * other, for a column-major block x block matrix.
   template <class Matrix>
   void multiply(Extent<B> block, const Matrix& matrix, const Panel& other) {
     const int n = block.size();
@@ -205,7 +206,7 @@ struct Panel {
     }
   }
 
-  /// this -= matrix * other, the matrix block x block and column-major.
+  /// this -= matrix * other, for a column-major block x block matrix.
   template <class Matrix>
   void subtract(Extent<B> block, const Matrix& matrix, const Panel& other) {
     const int n = block.size();

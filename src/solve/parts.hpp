@@ -1,6 +1,6 @@
-// How the nodes of a rank are cut for the elimination. The rank's first node, unless it begins the matrix, and the next
-// rank's first node are separators and stay; long ranks are cut further, by separators of their own, into parts. The
-// nodes of a part are eliminated from both ends towards the middle one, in two chains that do not depend on each other:
+// The division of a rank's nodes for the elimination. The rank's first node, unless it is the first of the matrix, and
+// the next rank's first node are separators, which are not eliminated. Further separators divide long ranks into parts.
+// The nodes of a part are eliminated from both ends towards the middle one, in two independent chains:
 //
 //   separator | chain: 0 1 2 ... -> | middle | <- ... 2 1 0 :chain | the next part's separator
 #pragma once
@@ -20,15 +20,15 @@ struct Range {
   Range common(Range other) const { return {std::max(first, other.first), std::min(past, other.past)}; }
 };
 
-/// Where the columns of a solve are: node i, component r of column c at x[(i - origin)*block + r + c*stride].
+/// The memory of the columns of a solve: node i, component r of column c is at x[(i - origin)*block + r + c*stride].
 struct Columns {
   double* x;
   std::ptrdiff_t origin;
   std::ptrdiff_t stride;
 };
 
-/// Steps k in [from, to) of a chain, each from node k to node k + 1, the middle behind the last. An open run ends
-/// before the middle: node `to` is its last.
+/// Steps k in [from, to) of a chain, each from node k to node k + 1; the middle follows the last node. An open run ends
+/// before the middle: node `to` is its last node.
 struct Run {
   std::ptrdiff_t from = 0;
   std::ptrdiff_t to = 0;
@@ -37,10 +37,10 @@ struct Run {
 };
 
 struct Chain {
-  std::ptrdiff_t first = 0;  // the rank's node where it starts
-  std::ptrdiff_t count = 0;  // nodes, the middle not among them
-  int direction = 1;         // to the right, or -1: to the left
-  bool bordered = false;     // by a separator, before its first node
+  std::ptrdiff_t first = 0;  // node of the rank at which it starts
+  std::ptrdiff_t count = 0;  // number of nodes, without the middle
+  int direction = 1;         // 1: to the right, -1: to the left
+  bool bordered = false;     // a separator is before its first node
 
   /// Nodes [from, past) of the chain as nodes of the rank.
   Range nodes(std::ptrdiff_t from, std::ptrdiff_t past) const {
@@ -59,7 +59,7 @@ struct Chain {
 struct Part {
   Part() = default;
 
-  /// own_nodes: at least one. `follows`: the first is a separator; `is_followed`: there is a separator behind the last.
+  /// own_nodes: at least one. `follows`: the first is a separator; `is_followed`: a separator follows the last one.
   Part(Range own_nodes, bool follows, bool is_followed) : nodes(own_nodes), followed(is_followed) {
     const Range inner = {nodes.first + (follows ? 1 : 0), nodes.past};
     if (inner.empty()) return;
@@ -70,8 +70,8 @@ struct Part {
 
   Range nodes;
   bool followed = false;
-  std::ptrdiff_t middle = -1;   // -1: none, nor chains
-  std::array<Chain, 2> chains;  // the first is longer by one node or none
+  std::ptrdiff_t middle = -1;   // -1: neither a middle nor chains
+  std::array<Chain, 2> chains;  // the first one has one node more, or as many
 };
 
 }  // namespace traverse::solve

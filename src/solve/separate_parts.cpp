@@ -1,4 +1,4 @@
-// Finds parts with equal matrices, factors each kind once, and solves up to eight neighbouring equal parts as
+// Finds parts with equal matrices, factorises each kind once, and solves up to eight neighbouring equal parts as
 // right-hand sides of one factor.
 #include "solve/separate_parts.hpp"
 
@@ -7,7 +7,7 @@
 namespace traverse::solve {
 namespace {
 
-constexpr std::ptrdiff_t side_by_side = 8;  // parts in one sweep
+constexpr std::ptrdiff_t max_parts_per_solve = 8;  // parts in one solve
 
 bool same(const std::vector<double>& values, std::ptrdiff_t a, std::ptrdiff_t b, std::ptrdiff_t count) {
   return std::equal(values.begin() + a, values.begin() + a + count, values.begin() + b);
@@ -20,10 +20,10 @@ const Parts::Part& Parts::at(std::ptrdiff_t node) const {
   return *(std::upper_bound(parts.begin(), parts.end(), node, behind) - 1);
 }
 
-const Parts::Part* Parts::together(const Part* part, std::ptrdiff_t past) const {
+const Parts::Part* Parts::group_end(const Part* part, std::ptrdiff_t past) const {
   const Part* const end = parts.data() + parts.size();
   const Part* next = part + 1;
-  while (next != end && next->first < past && next->kind == part->kind && next - part < side_by_side) ++next;
+  while (next != end && next->first < past && next->kind == part->kind && next - part < max_parts_per_solve) ++next;
   return next;
 }
 
@@ -45,7 +45,7 @@ Parts Parts::find(const std::vector<std::ptrdiff_t>& begins, const std::vector<c
   for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
     Part part{begins[i], begins[i + 1], 0};
     const int kinds = static_cast<int>(result.of_kind.size());
-    // most often it is like the one before
+    // Most parts equal the part before.
     if (i > 0) part.kind = result.parts.back().kind;
     if (i == 0 || !equal(part, result.parts.back())) {
       part.kind = 0;
@@ -81,25 +81,26 @@ void SeparateParts::factor(int kind, const BlockTridiagonal& A, const std::vecto
 }
 
 void SeparateParts::solve(double* x, int columns) const {
-  struct Done final : NodeFiller {
+  struct NoCallback final : RhsCallback {
     void fill(std::ptrdiff_t, std::ptrdiff_t) override {}
-  } done;
+  } no_callback;
   if (layout_.parts.empty()) return;
   const std::ptrdiff_t nodes = layout_.parts.back().past;
-  for (int c = 0; c < columns; ++c) solve_window(x + c * nodes * block_, 0, nodes, done);
+  for (int c = 0; c < columns; ++c) solve_window(x + c * nodes * block_, 0, nodes, no_callback);
 }
 
-void SeparateParts::solve(double* x, NodeFiller& filler) const {
-  if (!layout_.parts.empty()) solve_window(x, 0, layout_.parts.back().past, filler);
+void SeparateParts::solve(double* x, RhsCallback& rhs_callback) const {
+  if (!layout_.parts.empty()) solve_window(x, 0, layout_.parts.back().past, rhs_callback);
 }
 
-void SeparateParts::solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past, NodeFiller& filler) const {
+void SeparateParts::solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past,
+                                 RhsCallback& rhs_callback) const {
   if (first >= past) return;
   const Parts::Part* part = &layout_.at(first);
   const Parts::Part* end = layout_.parts.data() + layout_.parts.size();
   while (part != end && part->first < past) {
-    const Parts::Part* next = layout_.together(part, past);
-    filler.fill(part->first, next[-1].past);
+    const Parts::Part* next = layout_.group_end(part, past);
+    rhs_callback.fill(part->first, next[-1].past);
     factor_of(*part).solve(x + part->first * block_, static_cast<int>(next - part));
     part = next;
   }

@@ -1,4 +1,4 @@
-// A rank's rows of the matrix as the elimination sees them, and what its pivots tell.
+// A rank's rows of the matrix in the elimination, and a record of its pivots.
 #pragma once
 
 #include <algorithm>
@@ -20,14 +20,14 @@ struct PivotRecord {
   bool failed() const { return bad_unknown >= 0; }
 };
 
-/// A rank's slice with the fixed unknowns as identity rows and columns. Bit c of `next_fixed`: unknown c of the next
-/// rank's first node is fixed. `original`, where given, replaces the diagonal entries in the pivot ratio.
+/// A rank's slice with identity rows and columns for fixed unknowns. Bit c of `next_fixed`: unknown c of the next
+/// rank's first node is fixed. `original`, unless null, replaces the diagonal entries in the pivot ratio.
 template <int B>
 struct Slice {
   const BlockTridiagonal& matrix;
   const char* fixed;  // null: none
   std::uint64_t next_fixed;
-  const double* original;  // null: the matrix's own
+  const double* original;  // null: those of the matrix
 
   Extent<B> block() const { return {matrix.block}; }
 
@@ -42,7 +42,7 @@ struct Slice {
     return result;
   }
 
-  /// Couples `node` (rows) to the node behind it (columns).
+  /// The coupling of `node` (rows) to the next node (columns).
   Block<B> upper(std::ptrdiff_t node) const {
     Block<B> result(block(), matrix.upper.data() + node * block().area());
     if (fixed == nullptr && next_fixed == 0) return result;
@@ -54,8 +54,7 @@ struct Slice {
     return result;
   }
 
-  /// Whether the diagonal blocks of two nodes, or their couplings to the nodes behind them, are the same to the last
-  /// bit.
+  /// Whether the diagonal blocks of two nodes, or their couplings to the next nodes, are equal to the last bit.
   bool same_diagonal(std::ptrdiff_t a, std::ptrdiff_t b) const {
     return same_entries(matrix.diagonal, a, b) && same_fixed(a, b);
   }
@@ -63,7 +62,7 @@ struct Slice {
     return same_entries(matrix.upper, a, b) && same_fixed(a, b) && same_fixed(a + 1, b + 1);
   }
 
-  /// The entry that the pivot of this unknown is compared with.
+  /// The diagonal entry with which the pivot of this unknown is compared.
   double reference(std::ptrdiff_t node, int i) const {
     if (original != nullptr) return original[node * block().size() + i];
     if (is_fixed(node, i)) return 1.0;
@@ -88,8 +87,8 @@ struct Slice {
   }
 };
 
-/// Replaces a node's pivot block (symmetric: its lower triangle is read) by its inverse, through LDL^T, so that rows of
-/// different units do no harm. False, and noted in the record, when a pivot is not positive.
+/// Replaces a node's pivot block (symmetric; only its lower triangle is read) by its inverse, by LDL^T, which is
+/// insensitive to different units of the rows. Returns false, with an entry in the record, if a pivot is not positive.
 template <int B>
 bool invert(Block<B>& block, const Slice<B>& slice, std::ptrdiff_t node, PivotRecord& record) {
   const int n = block.size();

@@ -1,4 +1,4 @@
-// Blocks of one node while factoring.
+// Blocks of one node in the factorisation.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace traverse::solve {
 
-/// A square matrix of one node's unknowns, column-major; zero at first.
+/// A square matrix of one node's unknowns, column-major; initially zero.
 template <int B>
 class Block {
  public:

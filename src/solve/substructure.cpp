@@ -1,5 +1,5 @@
-// Each rank eliminates its inner nodes; the Schur complements of the separators are gathered and solved on every rank,
-// and inner nodes follow by back substitution.
+// Each rank eliminates its inner nodes. The Schur complements of the separators are gathered and solved on every rank,
+// and back substitution computes the inner nodes.
 #include "substructure.hpp"
 
 #include <fmt/format.h>
@@ -13,15 +13,15 @@
 namespace traverse::solve {
 namespace {
 
-// What a rank tells the others after factoring: four numbers on its pivots, its separator's diagonal entries in the
-// matrix given, and the three blocks of SchurPart.
+// The message of a rank to the others after factorisation: four numbers on its pivots, the diagonal entries of its
+// separator in the original matrix, and the three blocks of SchurPart.
 enum HeaderEntry { bad_unknown, bad_pivot, bad_diagonal, smallest_ratio, header_size };
 
 std::ptrdiff_t factor_message_size(int block) { return header_size + block + std::ptrdiff_t{3} * block * block; }
 
-/// body(number of columns as a constant, first column), for batches of 8, 4, 2 and 1.
+/// Calls body(number of columns as a constant, first column) for groups of 8, 4, 2 and 1 columns.
 template <class Body>
-void in_batches(int columns, Body&& body) {
+void for_column_groups(int columns, Body&& body) {
   int column = 0;
   for (; column + 8 <= columns; column += 8) body(std::integral_constant<int, 8>{}, column);
   if (column + 4 <= columns) {
@@ -53,7 +53,7 @@ Partition::Partition(MPI_Comm communicator, int local_nodes) : comm(communicator
   for (int r = 0; r < size; ++r) {
     const int count = counts[static_cast<std::size_t>(r)];
     if (count > 0) {
-      if (r == rank) mine = static_cast<int>(active.size());
+      if (r == rank) own_index = static_cast<int>(active.size());
       active.push_back(r);
     }
     begins.push_back(begin);
@@ -64,7 +64,7 @@ Partition::Partition(MPI_Comm communicator, int local_nodes) : comm(communicator
 template <int B>
 Substructure<B>::Substructure(MPI_Comm comm, int block_size, int local_nodes)
     : block_{block_size}, partition_(comm, local_nodes), reduced_matrix_(block_size, partition_.separators()) {
-  if (partition_.mine >= 0) local_.emplace(block_, local_nodes, partition_.follows(), partition_.followed());
+  if (partition_.own_index >= 0) local_.emplace(block_, local_nodes, partition_.follows(), partition_.followed());
   if (partition_.separators() > 0) separators_.emplace(block_, partition_.separators(), false, false);
   reduced_diagonal_.resize(static_cast<std::size_t>(partition_.separators()) * static_cast<std::size_t>(block_size));
 }
@@ -89,7 +89,7 @@ void Substructure<B>::factor(const BlockTridiagonal& A, const std::vector<char>&
   factored_ = true;
 }
 
-/// The next rank's first node's fixed unknowns, a bit each.
+/// The fixed unknowns of the next rank's first node, one bit each.
 template <int B>
 std::uint64_t Substructure<B>::next_fixed(const std::vector<char>& fixed) const {
   if (partition_.separators() == 0) return 0;
@@ -100,7 +100,7 @@ std::uint64_t Substructure<B>::next_fixed(const std::vector<char>& fixed) const 
   std::vector<std::uint64_t> all(static_cast<std::size_t>(partition_.ranks()));
   MPI_Allgather(&own, 1, MPI_UINT64_T, all.data(), 1, MPI_UINT64_T, partition_.comm);
   if (!partition_.followed()) return 0;
-  return all[static_cast<std::size_t>(partition_.active[static_cast<std::size_t>(partition_.mine) + 1])];
+  return all[static_cast<std::size_t>(partition_.active[static_cast<std::size_t>(partition_.own_index) + 1])];
 }
 
 template <int B>
@@ -152,7 +152,7 @@ void Substructure<B>::fail(std::ptrdiff_t unknown, double pivot, double diagonal
       unknown, unknown / block_.size(), unknown % block_.size(), pivot, diagonal));
 }
 
-/// The blocks of the rank at `place` among the ranks with nodes.
+/// The blocks of the rank with the index `place` among the ranks with nodes.
 template <int B>
 const double* Substructure<B>::factor_message(int place) const {
   const int rank = partition_.active[static_cast<std::size_t>(place)];
@@ -193,39 +193,42 @@ void Substructure<B>::solve(const Request& request) {
   }
   const FlushDenormals flush;
   const bool whole = request.window.past - request.window.first == partition_.nodes;
-  if (const Bundle<B>* alone = local_ && whole ? local_->alone() : nullptr; alone != nullptr) {
-    if (request.filler != nullptr) request.filler->fill(0, partition_.nodes);  // few enough to stay in the cache
-    in_batches(request.columns, [&](auto C, int column) { alone->template solve_alone<C>(from(request.x, column)); });
+  if (const SubdomainBatch<B>* single_batch = local_ && whole ? local_->single_batch() : nullptr;
+      single_batch != nullptr) {
+    if (request.rhs_callback != nullptr)
+      request.rhs_callback->fill(0, partition_.nodes);  // few enough to remain in the cache
+    for_column_groups(request.columns,
+                      [&](auto C, int column) { single_batch->template solve_single<C>(from(request.x, column)); });
     return;
   }
   if (local_) local_->reserve(request.columns);
   if (!separators_) {
-    if (local_) in_batches(request.columns, [&](auto C, int column) { solve_alone<C>(request, column); });
+    if (local_) for_column_groups(request.columns, [&](auto C, int column) { solve_single<C>(request, column); });
     return;
   }
   grow(outgoing_, std::ptrdiff_t{2} * block_.size() * request.columns);
-  if (local_) in_batches(request.columns, [&](auto C, int column) { reduce<C>(request, column); });
+  if (local_) for_column_groups(request.columns, [&](auto C, int column) { reduce<C>(request, column); });
   solve_separators(request.columns);
-  if (local_) in_batches(request.columns, [&](auto C, int column) { expand<C>(request, column); });
+  if (local_) for_column_groups(request.columns, [&](auto C, int column) { expand<C>(request, column); });
 }
 
 template <int B>
 template <int C>
-void Substructure<B>::solve_alone(const Request& request, int column) {
+void Substructure<B>::solve_single(const Request& request, int column) {
   const Columns x = from(request.x, column);
   SeparatorPanels<B, C> none;
-  local_->template eliminate<C>(x, column, request.window, request.filler, none);
+  local_->template eliminate<C>(x, column, request.window, request.rhs_callback, none);
   local_->template substitute<C>(x, column, request.window, none);
 }
 
-/// Eliminates the inner nodes and writes this rank's message: for each column its separator's reduced right-hand side
-/// and what it adds to the next one's.
+/// Eliminates the inner nodes and writes this rank's message: for each column the reduced right-hand side of its
+/// separator, and its contribution to that of the next separator.
 template <int B>
 template <int C>
 void Substructure<B>::reduce(const Request& request, int column) {
   const std::ptrdiff_t length = std::ptrdiff_t{2} * block_.size();
   SeparatorPanels<B, C> separators;
-  local_->template eliminate<C>(from(request.x, column), column, request.window, request.filler, separators);
+  local_->template eliminate<C>(from(request.x, column), column, request.window, request.rhs_callback, separators);
   separators.own.store(block_, outgoing_.data() + column * length, length);
   separators.next.store(block_, outgoing_.data() + column * length + block_.size(), length);
 }
@@ -250,7 +253,7 @@ void Substructure<B>::solve_separators(int columns) {
   }
   const Range all = {0, partition_.separators()};
   separators_->reserve(columns);
-  in_batches(columns, [&](auto C, int column) {
+  for_column_groups(columns, [&](auto C, int column) {
     const Columns x = {reduced_.data() + column * stride, 0, stride};
     SeparatorPanels<B, C> none;
     separators_->template eliminate<C>(x, column, all, nullptr, none);
@@ -262,7 +265,7 @@ template <int B>
 template <int C>
 void Substructure<B>::expand(const Request& request, int column) {
   const std::ptrdiff_t reduced_stride = std::ptrdiff_t{block_.size()} * partition_.separators();
-  const double* own = reduced_.data() + column * reduced_stride + (partition_.mine - 1) * block_.size();
+  const double* own = reduced_.data() + column * reduced_stride + (partition_.own_index - 1) * block_.size();
   SeparatorPanels<B, C> separators = {};
   if (partition_.follows()) separators.own.load(block_, own, reduced_stride);
   if (partition_.followed()) separators.next.load(block_, own + block_.size(), reduced_stride);

@@ -1,4 +1,4 @@
-// The exact solution over ranks: every rank's LocalFactor, and the small system of the separators between them.
+// The exact solution over ranks: the LocalFactor of every rank, and the small system of the separators between them.
 #pragma once
 
 #include <mpi.h>
@@ -12,14 +12,14 @@
 
 namespace traverse::solve {
 
-/// The cut of the nodes over the ranks. Ranks without nodes take part in the messages only.
+/// The distribution of the nodes over the ranks. Ranks without nodes only exchange messages.
 struct Partition {
   Partition(MPI_Comm communicator, int local_nodes);
 
-  /// A separator for each rank with nodes but the first.
+  /// One separator for each rank with nodes except the first one.
   int separators() const { return std::max(0, static_cast<int>(active.size()) - 1); }
-  bool follows() const { return mine > 0; }
-  bool followed() const { return mine >= 0 && mine + 1 < static_cast<int>(active.size()); }
+  bool follows() const { return own_index > 0; }
+  bool followed() const { return own_index >= 0 && own_index + 1 < static_cast<int>(active.size()); }
   int ranks() const { return static_cast<int>(begins.size()); }
 
   MPI_Comm comm;
@@ -27,15 +27,15 @@ struct Partition {
   int nodes = 0;
   std::vector<std::ptrdiff_t> begins;  // each rank's first global node
   std::vector<int> active;             // the ranks with nodes
-  int mine = -1;                       // this rank's place among them; -1: no nodes
+  int own_index = -1;                  // this rank's index in `active`; -1: no nodes
 };
 
-/// What is asked of a solve.
+/// The arguments of a solve.
 struct Request {
   Columns x;
   int columns;
-  Range window;        // this rank's nodes
-  NodeFiller* filler;  // null: the right-hand side is there
+  Range window;               // this rank's nodes
+  RhsCallback* rhs_callback;  // null: x contains the right-hand side
 };
 
 /// SubstructuredCholesky for one block size.
@@ -72,7 +72,7 @@ class Substructure final : public AnySubstructure {
   template <int C>
   void expand(const Request& request, int column);
   template <int C>
-  void solve_alone(const Request& request, int column);
+  void solve_single(const Request& request, int column);
 
   Extent<B> block_;
   Partition partition_;
@@ -82,7 +82,7 @@ class Substructure final : public AnySubstructure {
   bool factored_ = false;
 
   BlockTridiagonal reduced_matrix_;       // of the separators, in the order of the ranks
-  std::vector<double> reduced_diagonal_;  // their diagonal entries in the matrix given
+  std::vector<double> reduced_diagonal_;  // their diagonal entries in the original matrix
   std::vector<double> outgoing_;          // messages: this rank's and all ranks'
   std::vector<double> incoming_;
   std::vector<double> reduced_;  // the separators' unknowns, column after column

@@ -55,14 +55,14 @@ void SubstructuredCholesky::solve(double* x, int columns) const {
   impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, columns, all, nullptr});
 }
 
-void SubstructuredCholesky::solve(double* x, NodeFiller& filler) const {
+void SubstructuredCholesky::solve(double* x, RhsCallback& rhs_callback) const {
   const Range all = {0, impl_->nodes};
-  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, 1, all, &filler});
+  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, 1, all, &rhs_callback});
 }
 
 void SubstructuredCholesky::solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past,
-                                         NodeFiller& filler) const {
-  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, 1, {first, past}, &filler});
+                                         RhsCallback& rhs_callback) const {
+  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, 1, {first, past}, &rhs_callback});
 }
 
 void SubstructuredCholesky::solve_local(double* x, int columns, std::ptrdiff_t first, std::ptrdiff_t past) const {

@@ -1,25 +1,25 @@
-// The two sweeps of a solve along several chains at once. A chain's next node waits for the one before, and that
-// latency is the limit of one chain; independent chains fill the wait. The factors of `lanes` chains stand side by
-// side, entry by entry: a single column runs along all of them in the lanes of the processor's vectors (LaneSweep),
-// several columns take the lanes for themselves and run along one or two chains (ColumnSweep).
+// The two sweeps of a solve along several chains at once. Each node of a chain needs the result of the node before;
+// this latency limits one chain, and the work on other chains fills the waiting time. The factors of `lanes` chains are
+// stored together, entry by entry. A single column is processed along all chains, one in each SIMD lane (LaneSweep);
+// several columns use the SIMD lanes themselves and are processed along one or two chains (ColumnSweep).
 #pragma once
 
 #include "panel.hpp"
 
 namespace traverse::solve {
 
-/// The chains that share a store of factors: even ones run to the right, odd ones to the left.
+/// The chains with a common storage of factors: even ones run to the right, odd ones to the left.
 inline constexpr int lanes = 4;
 
-/// The factors from a lane on. Node k, entry e of that lane's chain: [(k*entries + e)*lanes], the entries block*block
-/// or, of the symmetric inverse, those of the lower triangle.
+/// The factors from a lane on. Entry e of node k of that lane's chain is at [(k*entries + e)*lanes], with block*block
+/// entries, or for the symmetric inverse those of the lower triangle.
 struct Factors {
   const double* lower;
   const double* inverse;
   const double* fill;
 };
 
-/// Node k of one chain: at + k*step.
+/// Node k of one chain is at `at` + k*step.
 struct ChainUnknowns {
   double* at;
   std::ptrdiff_t step;
@@ -42,7 +42,7 @@ struct LaneSweep {
   static constexpr std::size_t panels = 1;
   Extent<B> block;
   Factors factors;
-  std::array<double*, lanes> x;  // of the chains' nodes 0
+  std::array<double*, lanes> x;  // unknowns of the chains' nodes 0
 
   LaneEntries entries(const double* of, std::size_t /*panel*/, std::ptrdiff_t at) const { return {of + at * lanes}; }
   double* address(int lane, std::ptrdiff_t k) const {
@@ -57,8 +57,8 @@ struct LaneSweep {
   }
 };
 
-/// C columns along N neighbouring chains. A column's entries lie `stride` behind those of the column before; packed,
-/// each unknown's columns stand together, and its node's unknowns side by side.
+/// C columns along N neighbouring chains. The entries of a column are `stride` behind those of the column before; if
+/// they are packed, the columns of each unknown are contiguous, and so are the unknowns of a node.
 template <int B, int C, std::size_t N, bool Packed = false>
 struct ColumnSweep {
   using Unknowns = Panel<B, C>;
@@ -81,7 +81,7 @@ struct ColumnSweep {
   }
 };
 
-/// The separator's unknowns, for each panel: gathered in the forward sweep, known in the backward sweep.
+/// The separator's unknowns for each panel: accumulated in the forward sweep, given in the backward sweep.
 template <class Sweep>
 using Borders = std::array<typename Sweep::Unknowns, Sweep::panels>;
 

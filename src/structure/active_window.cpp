@@ -9,44 +9,45 @@
 
 namespace traverse::structure {
 namespace {
-constexpr int steps_between_looks = 16;  // at all that moves, for the largest deflection and velocity, and for rest
-constexpr int worth_parting = 4;         // times how far a load is felt, of a stretch that rests between two loads
+constexpr int steps_between_checks =
+    16;                          // between updates of the largest displacement and velocity, and divisions of ranges
+constexpr int split_factor = 4;  // least length of a range at rest between two loads, over the reach of a load
 }  // namespace
 
-ActiveWindow::ActiveWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> watched,
+ActiveWindow::ActiveWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> probes,
                            const double* rest)
     : beam_(beam),
       parts_(op.parts() != nullptr),
       shared_(op.shared()),
       tolerance_(tolerance),
-      watched_(std::move(watched)),
-      rest_(rest),
+      probe_columns_(std::move(probes)),
+      at_rest_(rest),
       moving_{{0, beam.columns()}} {
-  std::sort(watched_.begin(), watched_.end());
+  std::sort(probe_columns_.begin(), probe_columns_.end());
 }
 
 int ActiveWindow::local(int column) const {
   return std::clamp(column - beam_.first_column(), 0, beam_.local_columns());
 }
 
-// Of the nodes [first, past).
+// For the nodes [first, past).
 void ActiveWindow::record_largest(const double* v, const double* w, int first, int past) {
   const int block = beam_.block();
   for (int i = block * first; i < block * past; ++i) {
     Largest& largest = largest_[static_cast<std::size_t>(i % block)];
-    largest.displacement = std::max(largest.displacement, std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)));
+    largest.displacement = std::max(largest.displacement, std::abs(v[i] - (at_rest_ != nullptr ? at_rest_[i] : 0.0)));
     largest.rate = std::max(largest.rate, std::abs(w[i]));
   }
 }
 
-bool ActiveWindow::rests(int first, int past, const double* v, const double* w) const {
+bool ActiveWindow::is_quiet(int first, int past, const double* v, const double* w) const {
   const int from = first + beam_.first_column(), to = past + beam_.first_column();
-  const auto watched = std::lower_bound(watched_.begin(), watched_.end(), from);
-  const double limit = watched != watched_.end() && *watched < to ? std::min(quiet, tolerance_) : tolerance_;
+  const auto probes = std::lower_bound(probe_columns_.begin(), probe_columns_.end(), from);
+  const double limit = probes != probe_columns_.end() && *probes < to ? std::min(quiet, tolerance_) : tolerance_;
   const int block = beam_.block();
   for (int i = block * first; i < block * past; ++i) {
     const Largest& largest = largest_[static_cast<std::size_t>(i % block)];
-    if (std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)) > limit * largest.displacement ||
+    if (std::abs(v[i] - (at_rest_ != nullptr ? at_rest_[i] : 0.0)) > limit * largest.displacement ||
         std::abs(w[i]) > limit * largest.rate)
       return false;
   }
@@ -68,7 +69,7 @@ void ActiveWindow::open(const std::vector<Range>& loaded, int reach) {
   merge(moving_);
 }
 
-// The node behind, or where the part of this one ends.
+// The next node, or the end of the part of this one.
 int ActiveWindow::next(int node) const {
   if (!parts_) return node + 1;
   const auto& begins = beam_.parts();
@@ -81,7 +82,7 @@ int ActiveWindow::previous(int node) const {
   return std::lower_bound(begins.begin(), begins.end(), node + beam_.first_column())[-1] - beam_.first_column();
 }
 
-// Nodes of this rank, each end by the rank that has it, a part or a node at a time.
+// Trims a range of this rank's nodes, each end on the rank that has it, by whole parts or by nodes.
 Range ActiveWindow::trimmed(const Range& range, const double* v, const double* w) const {
   Range r{local(range.first), local(range.past)};
   int low = r.past, high = r.first;
@@ -90,17 +91,17 @@ Range ActiveWindow::trimmed(const Range& range, const double* v, const double* w
     low = std::min(low, local(load.first));
     high = std::max(high, local(load.past));
   }
-  const bool mine_left = range.first >= beam_.first_column(),
-             mine_right = range.past <= beam_.first_column() + beam_.local_columns();
-  while (mine_left && r.first < std::min(low, r.past) && rests(r.first, std::min(next(r.first), r.past), v, w))
+  const bool own_left = range.first >= beam_.first_column(),
+             own_right = range.past <= beam_.first_column() + beam_.local_columns();
+  while (own_left && r.first < std::min(low, r.past) && is_quiet(r.first, std::min(next(r.first), r.past), v, w))
     r.first = next(r.first);
-  while (mine_right && r.past > std::max(high, r.first) && rests(std::max(previous(r.past), r.first), r.past, v, w))
+  while (own_right && r.past > std::max(high, r.first) && is_quiet(std::max(previous(r.past), r.first), r.past, v, w))
     r.past = previous(r.past);
   return r;
 }
 
-// Of ranges of this rank's nodes: the columns that those of all ranks reach over.
-void ActiveWindow::agree_on_ends() {
+// From ranges of this rank's nodes to the ranges of columns on all ranks.
+void ActiveWindow::share_ends() {
   const int begin = beam_.first_column();
   ends_.clear();
   for (const Range& r : moving_) {
@@ -114,55 +115,55 @@ void ActiveWindow::agree_on_ends() {
 }
 
 void ActiveWindow::close(BeamMotion& motion, double* v, double* w) {
-  const bool sampling_interval = steps_ % steps_between_looks == 0;
-  if (steps_ < steps_between_looks || sampling_interval) {
+  const bool check_due = steps_ % steps_between_checks == 0;
+  if (steps_ < steps_between_checks || check_due) {
     for (const Range& r : moving_) record_largest(v, w, local(r.first), local(r.past));
-    if (shared_) agree();
+    if (shared_) share_largest();
   }
   ++steps_;
   for (Range& range : moving_) {
     const Range r = trimmed(range, v, w);
     const int first = local(range.first), past = local(range.past);
-    if (r.first > first) energy_left_ += motion.put_to_rest(first, r.first, rest_, v, w);
-    if (r.past < past) energy_left_ += motion.put_to_rest(r.past, past, rest_, v, w);
+    if (r.first > first) energy_left_ += motion.set_to_rest(first, r.first, at_rest_, v, w);
+    if (r.past < past) energy_left_ += motion.set_to_rest(r.past, past, at_rest_, v, w);
     range = r;
   }
-  agree_on_ends();
-  if (sampling_interval && !shared_) part(motion, v, w);
+  share_ends();
+  if (check_due && !shared_) split(motion, v, w);
 }
 
-// Where it rests between two loads.
-void ActiveWindow::part(BeamMotion& motion, double* v, double* w) {
-  parted_.clear();
+// Divides ranges that are at rest between two loads.
+void ActiveWindow::split(BeamMotion& motion, double* v, double* w) {
+  split_.clear();
   for (Range range : moving_) {
     const Range* before = nullptr;
     for (const Range& load : loaded_) {
       if (!is_loaded_in(range, load)) continue;
-      const Range rest = before == nullptr ? Range{} : longest_rest({before->past, load.first}, v, w);
+      const Range quiet_range = before == nullptr ? Range{} : longest_quiet_range({before->past, load.first}, v, w);
       before = &load;
-      if (rest.past - rest.first <= (parts_ ? 0 : worth_parting * std::max(reach_, 1))) continue;
-      energy_left_ += motion.put_to_rest(rest.first, rest.past, rest_, v, w);
-      parted_.push_back({range.first, rest.first});
-      range.first = rest.past;
+      if (quiet_range.past - quiet_range.first <= (parts_ ? 0 : split_factor * std::max(reach_, 1))) continue;
+      energy_left_ += motion.set_to_rest(quiet_range.first, quiet_range.past, at_rest_, v, w);
+      split_.push_back({range.first, quiet_range.first});
+      range.first = quiet_range.past;
     }
-    parted_.push_back(range);
+    split_.push_back(range);
   }
-  merge(parted_);
-  std::swap(moving_, parted_);
+  merge(split_);
+  std::swap(moving_, split_);
 }
 
-Range ActiveWindow::longest_rest(Range gap, const double* v, const double* w) const {
-  Range longest, now{gap.first, gap.first};
+Range ActiveWindow::longest_quiet_range(Range gap, const double* v, const double* w) const {
+  Range longest, current{gap.first, gap.first};
   for (int node = gap.first; node < gap.past;) {
-    const int behind = std::min(next(node), gap.past);
-    now = rests(node, behind, v, w) ? Range{now.first, behind} : Range{behind, behind};
-    if (now.past - now.first > longest.past - longest.first) longest = now;
-    node = behind;
+    const int end = std::min(next(node), gap.past);
+    current = is_quiet(node, end, v, w) ? Range{current.first, end} : Range{end, end};
+    if (current.past - current.first > longest.past - longest.first) longest = current;
+    node = end;
   }
   return longest;
 }
 
-void ActiveWindow::agree() {
+void ActiveWindow::share_largest() {
   MPI_Allreduce(MPI_IN_PLACE, largest_.data(), 2 * static_cast<int>(largest_.size()), MPI_DOUBLE, MPI_MAX,
                 beam_.comm());
 }

@@ -1,4 +1,4 @@
-// A factorisation of one of the beam's matrices, cut over the ranks: as one chain, or part by part where its spans do
+// A factorisation of one of the beam's matrices, split over the ranks: as one chain, or part by part if its spans do
 // not touch.
 #pragma once
 
@@ -20,11 +20,11 @@ class BeamFactor {
 
   /// Collective; see SubstructuredCholesky.
   void solve(double* x, int columns = 1) const { parts_ ? parts_->solve(x, columns) : whole_->solve(x, columns); }
-  void solve(double* x, solve::NodeFiller& filler) const {
-    parts_ ? parts_->solve(x, filler) : whole_->solve(x, filler);
+  void solve(double* x, solve::RhsCallback& right_side) const {
+    parts_ ? parts_->solve(x, right_side) : whole_->solve(x, right_side);
   }
-  void solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past, solve::NodeFiller& filler) const {
-    parts_ ? parts_->solve_window(x, first, past, filler) : whole_->solve_window(x, first, past, filler);
+  void solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past, solve::RhsCallback& right_side) const {
+    parts_ ? parts_->solve_window(x, first, past, right_side) : whole_->solve_window(x, first, past, right_side);
   }
   void solve_local(double* x, int columns, std::ptrdiff_t first, std::ptrdiff_t past) const {
     parts_ ? parts_->solve_local(x, columns, first, past) : whole_->solve_local(x, columns, first, past);

@@ -12,7 +12,7 @@ namespace traverse::structure {
 void BeamMotion::Sum::add(double by, const Sum& other) {
   v += by * other.v;
   w += by * other.w;
-  for (std::size_t j = 0; j < kept.size(); ++j) kept[j] += by * other.kept[j];
+  for (std::size_t j = 0; j < stored.size(); ++j) stored[j] += by * other.stored[j];
 }
 
 BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load)
@@ -32,7 +32,7 @@ BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* d
 void BeamMotion::begin(const Method& method) {
   const auto [a, b] = fused() && proportional_ ? beam_.rayleigh() : beam::Rayleigh{};
   std::array<Sum, most_accelerations> accelerations{};  // A_j
-  accelerations[0].kept[0] = 1.0;
+  accelerations[0].stored[0] = 1.0;
   const auto v_and_w = [&](double w_in_v, const Weights& a_in_v, const Weights& a_in_w, Sum& v, Sum& w) {
     v = {1.0, w_in_v, {}};
     w = {0.0, 1.0, {}};
@@ -48,7 +48,7 @@ void BeamMotion::begin(const Method& method) {
     stage.displacement = rule.displacement;
     v_and_w(rule.w_in_v, rule.a_in_v, rule.a_in_w, stage.v_predicted, stage.w_predicted);
     const double c = a / (1.0 + a * rule.rate);
-    stage.a.kept[stages_.size() + 1] = 1.0;
+    stage.a.stored[stages_.size() + 1] = 1.0;
     stage.a.add(-c, stage.w_predicted);
     stage.v = stage.v_predicted;
     stage.v.add(rule.displacement, stage.a);
@@ -66,19 +66,19 @@ void BeamMotion::begin(const Method& method) {
     v_error_.add(method.step.error_in_v[j], accelerations[j]);
     w_error_.add(method.step.error_in_w[j], accelerations[j]);
   }
-  for (std::size_t j = 0; j <= stages_.size(); ++j) kept_[j].resize(static_cast<std::size_t>(n_), 0.0);
+  for (std::size_t j = 0; j <= stages_.size(); ++j) stored_[j].resize(static_cast<std::size_t>(n_), 0.0);
 }
 
 double BeamMotion::at(const Sum& sum, const View& view, int i) const {
   double x = sum.v * view.v[i] + sum.w * view.w[i];
   for (std::size_t j = 0; j <= stages_.size(); ++j)
-    if (sum.kept[j] != 0.0) x += sum.kept[j] * view.kept[j][i];
+    if (sum.stored[j] != 0.0) x += sum.stored[j] * view.stored[j][i];
   return x;
 }
 
 BeamMotion::View BeamMotion::view_of(const double* v, const double* w) const {
   View view{v, w, {}, 0, nodes_};
-  for (std::size_t j = 0; j <= stages_.size(); ++j) view.kept[j] = kept_[j].data();
+  for (std::size_t j = 0; j <= stages_.size(); ++j) view.stored[j] = stored_[j].data();
   return view;
 }
 
@@ -90,11 +90,11 @@ void BeamMotion::solve(std::size_t stage, const double* v, const double* w, cons
   if (stage == 0) dissipation_ = {};
   const Sum rate{0.0, 1.0, {}};
   exchange_borders({&stage_->e, &rate, &stage_->w_predicted});
-  target_ = kept(stage);
+  target_ = stored(stage);
   const BeamFactor& factor = operator_.factored(stage_->rate / stage_->displacement, 1.0 / stage_->displacement);
-  if (!ranged_) factor.solve(target_, *this);
+  if (!has_ranges_) factor.solve(target_, *this);
   for (const Range& r : ranges_)
-    if (ranged_) factor.solve_window(target_, r.first, r.past, *this);
+    if (has_ranges_) factor.solve_window(target_, r.first, r.past, *this);
   ++operator_.solves;
 }
 
@@ -110,18 +110,18 @@ void BeamMotion::step_free(int first, int past, double* v, double* w, Dissipatio
   const solve::Parts::Part* part = &layout.at(first);
   const solve::Parts::Part* const end = layout.parts.data() + layout.parts.size();
   while (part != end && part->first < past) {
-    const solve::Parts::Part* const next = layout.together(part, past);
+    const solve::Parts::Part* const next = layout.group_end(part, past);
     const int from = static_cast<int>(part->first), to = static_cast<int>(next[-1].past), size = block_ * (to - from);
     const std::ptrdiff_t offset = block_ * static_cast<std::ptrdiff_t>(from);
     view_ = {v + offset, w + offset, {start_acceleration() + offset}, from, to};
     for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
       std::vector<double>& z = scratch_[stage];
       if (z.size() < static_cast<std::size_t>(size)) z.resize(static_cast<std::size_t>(size));
-      view_.kept[stage + 1] = target_ = z.data();
+      view_.stored[stage + 1] = target_ = z.data();
       stage_ = &stages_[stage];
       measuring_ = stage == 0 && measure_;
       fill(from, to);
-      factor.parts().solve_together(*part, target_, static_cast<int>(next - part));
+      factor.parts().solve_group(*part, target_, static_cast<int>(next - part));
     }
     end_step(view_, 0, size, v + offset, w + offset, start_acceleration() + offset);
     part = next;
@@ -130,7 +130,7 @@ void BeamMotion::step_free(int first, int past, double* v, double* w, Dissipatio
   dissipation.rate += dissipation_.rate;
 }
 
-// Sums at the columns next to this rank's.
+// Exchanges the sums at the columns next to this rank's.
 void BeamMotion::exchange_borders(std::initializer_list<const Sum*> sums) {
   if (nodes_ == 0 || !operator_.shared()) return;
   constexpr std::size_t most = 3 * static_cast<std::size_t>(beam::kinds);
@@ -150,7 +150,7 @@ void BeamMotion::exchange_borders(std::initializer_list<const Sum*> sums) {
   }
 }
 
-// K_aa (v + b w), null: of v alone. Changes v.
+// Adds K_aa (v + b w), or with w null K_aa v. Changes v.
 void BeamMotion::add_elastic(int first, int past, Tile& v, const Tile* w, Tile& force) const {
   for (int c = 0; c < block_ && w != nullptr; ++c) {
     const double b = operator_.stiffness_damping()[c];
@@ -168,7 +168,7 @@ void BeamMotion::add_mass_damping(int first, int past, const Tile& w, Tile& forc
   operator_.mass().products.add(first, past, scaled.planes(), force.planes());
 }
 
-// K* v + C* w, null: without C*. Changes v.
+// Adds K* v + C* w, or with w null K* v. Changes v.
 void BeamMotion::add_forces(int first, int past, Tile& v, Tile* w, Tile& force) const {
   const BeamOperator::Matrix *const springs = operator_.springs(), *const drag = operator_.drag();
   if (springs != nullptr) springs->products.add(first, past, v.planes(), force.planes());
@@ -217,8 +217,8 @@ std::pair<double, double> BeamMotion::state(std::size_t stage, const double* v, 
   const Stage& s = stages_[stage];
   double of_v = s.v.v * v[i] + s.v.w * w[i], of_w = s.w.v * v[i] + s.w.w * w[i];
   for (std::size_t j = 0; j < stage + 2; ++j) {
-    of_v += s.v.kept[j] * kept_[j][i];
-    of_w += s.w.kept[j] * kept_[j][i];
+    of_v += s.v.stored[j] * stored_[j][i];
+    of_w += s.w.stored[j] * stored_[j][i];
   }
   return {of_v, of_w};
 }
@@ -238,7 +238,7 @@ void BeamMotion::error(const double* v, const double* w, double* error_of_v, dou
   terms_of<2>({&v_error_, &w_error_}, view_of(v, w)).evaluate(0, n_, {error_of_v, error_of_w});
 }
 
-// In place, a stretch in the cache at a time.
+// In place, by short ranges that fit into the cache.
 void BeamMotion::end_step(const View& view, int begin, int end, double* v, double* w, double* a) const {
   const Terms<3> terms = terms_of<3>({&v_end_, &w_end_, &a_end_}, view);
   std::array<double, 4 * tile> new_v, new_w, new_a;
@@ -256,7 +256,7 @@ void BeamMotion::finish(double* v, double* w) {
 }
 
 void BeamMotion::set_ranges(const std::vector<Range>& ranges) {
-  ranged_ = true;
+  has_ranges_ = true;
   ranges_ = ranges;
 }
 

@@ -1,15 +1,15 @@
-// The beam's part of a stage in second-order form: the right-hand side made tile by tile while the solver's sweep comes
-// by, so that a stage reads each vector once. A tile's numbers stay in the cache from the combination of the vectors
-// until the elimination.
+// The beam's part of a stage in second-order form. The right-hand side is computed tile by tile as the solver's sweep
+// reaches it, so that a stage reads each vector once: the numbers of a tile remain in the cache from the combination of
+// the vectors to the elimination.
 //
-// With Rayleigh's damping C = a M + b K the equation M A + C (w~ + k1 A) + K (v~ + k2 A) = P of a stage is, for
+// With Rayleigh damping C = a M + b K the equation M A + C (w~ + k1 A) + K (v~ + k2 A) = P of a stage is, for
 // Z = A + c w~ and c = a/(1 + a k1),
 //
 //   ((1 + a k1) M + (b k1 + k2) K) Z = P - K e,   e = v~ + (b - c (b k1 + k2)) w~
 //
-// without a product with M. So Z is kept of each stage in place of A; what is combined of accelerations is rewritten in
-// terms of w_n and these. With springs or dampers beside the beams, or a track that is damped in another way, A itself
-// is kept, of
+// without a product with M. Therefore Z of each stage is stored in place of A, and combinations of accelerations are
+// expressed in w_n and these Z. If there are springs or dampers in addition to the beams, or a track with other
+// damping, A itself is stored, the solution of
 //
 //   (M + k1 C + k2 K) A = P - K v~ - C w~
 #pragma once
@@ -34,41 +34,41 @@ struct NodalLoad {
   double force = 0.0;  // N or N m
 };
 
-class BeamMotion final : private solve::NodeFiller {
+class BeamMotion final : private solve::RhsCallback {
  public:
-  /// dead_load: of this rank's unknowns; null: none. It and both references are kept.
+  /// dead_load: of this rank's unknowns; null: none. The pointer and both references are stored.
   BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load);
 
-  /// The method of the steps to come, for their length; the acceleration at the start stays.
+  /// Sets the method of the next steps, for their length; the acceleration at the start is unchanged.
   void begin(const Method& method);
 
   /// Nodal accelerations at the start of the step, this rank's unknowns.
-  double* start_acceleration() { return kept_[0].data(); }
-  const double* start_acceleration() const { return kept_[0].data(); }
-  std::span<double> start() { return kept_[0]; }
-  /// What is kept of stage i, counted from 0: Z or A.
-  double* kept(std::size_t stage) { return kept_[stage + 1].data(); }
+  double* start_acceleration() { return stored_[0].data(); }
+  const double* start_acceleration() const { return stored_[0].data(); }
+  std::span<double> start() { return stored_[0]; }
+  /// The stored vector of stage i, counted from 0: Z or A.
+  double* stored(std::size_t stage) { return stored_[stage + 1].data(); }
 
-  /// Whether stages are solved by solve(); where not, the beam has hinges or a foundation that is not linear, and
-  /// still() serves.
+  /// Whether stages are solved by solve(); if not, the beam has hinges or a nonlinear foundation, and predicted() is
+  /// used.
   bool fused() const { return elements_.has_value(); }
-  /// Fused, with Rayleigh's damping alone: step_free() is for these.
+  /// Fused, with Rayleigh damping only, as step_free() requires.
   bool proportional() const { return fused() && proportional_; }
 
   /// Collective. Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
   void solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads);
-  /// Whether the first stages of steps look at what is lost in damping.
+  /// Whether the first stages of steps compute the dissipation.
   void measure(bool on) { measure_ = on; }
-  /// That, w^T C w, and its rate of change, 2 A_0^T C w: this rank's share at the start of the step whose first stage
-  /// was solved last.
+  /// The dissipated power w^T C w and its rate of change 2 A_0^T C w: this rank's share at the start of the step whose
+  /// first stage was solved last.
   struct Dissipation {
     double power = 0.0;  // W
-    double rate = 0.0;   // W/s, with Rayleigh's damping alone
+    double rate = 0.0;   // W/s, with Rayleigh damping only
   };
   Dissipation dissipation() const { return dissipation_; }
-  /// Collective. The same of some nodes between steps, with the acceleration at the start of the next one.
+  /// Collective. The same for some nodes between steps, with the acceleration at the start of the next step.
   Dissipation dissipation(const std::vector<Range>& nodes, const double* v, const double* w);
-  /// Collective. w^T C w of a solved stage, this rank's share; where fused.
+  /// Collective. w^T C w of a solved stage, this rank's share. Only if fused.
   double power(std::size_t stage, const double* v, const double* w);
 
   /// v~ and w~ of this rank's unknowns.
@@ -78,46 +78,46 @@ class BeamMotion final : private solve::NodeFiller {
               double* w_stage) const;
   std::pair<double, double> state(std::size_t stage, const double* v, const double* w, int unknown) const;
 
-  /// Collective. Strain energy of the springs and beams and kinetic energy of some nodes, J: this rank's share;
-  /// where fused.
+  /// Collective. Strain energy of the springs and beams and kinetic energy of some nodes, J: this rank's share. Only if
+  /// fused.
   struct Energy {
     double strain = 0.0, kinetic = 0.0;
   };
   Energy energy(const std::vector<Range>& nodes, const double* v, const double* w);
-  /// Energy of the step's error as StepRule's embedded method estimates it, J: this rank's share. Once all stages are
-  /// solved. Only where fused; elsewhere error() serves, of v and w of this rank's unknowns.
+  /// Energy of the step's error as StepRule's embedded method estimates it, J: this rank's share. After all stages are
+  /// solved, only if fused; otherwise error() computes the errors of v and w of this rank's unknowns.
   double error_energy();
   void error(const double* v, const double* w, double* error_of_v, double* error_of_w) const;
-  /// v, w and the acceleration at the end of the step, which is the next one's start.
+  /// v, w and the acceleration at the end of the step, which is the start of the next one.
   void finish(double* v, double* w);
 
-  /// Where parts of the beam do not touch: a whole step of those among the nodes [first, past) on which nothing but the
-  /// dead load acts, a few parts at a time through all stages while their numbers are in the cache. Adds to
-  /// `dissipation`, of the start of the step.
+  /// If parts of the beam do not touch: a whole step of the parts among the nodes [first, past) that only the dead load
+  /// acts on. A few parts at a time pass through all stages while their numbers are in the cache. Adds to
+  /// `dissipation`, at the start of the step.
   void step_free(int first, int past, double* v, double* w, Dissipation& dissipation);
 
-  /// Stages and the ends of steps are for these nodes of this rank alone, beyond which nothing of them is felt; as many
-  /// ranges on all ranks. Only where fused.
+  /// Restricts stages and ends of steps to these nodes of this rank, outside which the motion is negligible. All ranks
+  /// have the same number of ranges. Only if fused.
   void set_ranges(const std::vector<Range>& ranges);
   const std::vector<Range>& ranges() const { return ranges_; }
-  /// Puts the nodes [first, past) to rest: v as in `rest` (null: 0), w and all accelerations 0. Returns the energy that
-  /// they had beyond rest, J, this rank's share.
-  double put_to_rest(int first, int past, const double* rest, double* v, double* w);
+  /// Sets the nodes [first, past) to rest: v as in `rest` (null: 0), w and all accelerations 0. Returns the energy of
+  /// their motion about rest, J, this rank's share.
+  double set_to_rest(int first, int past, const double* rest, double* v, double* w);
 
  private:
-  struct Sum {  // of v_n, w_n and what is kept
+  struct Sum {  // of v_n, w_n and the stored vectors
     double v = 0.0, w = 0.0;
-    Weights kept{};
+    Weights stored{};
     void add(double by, const Sum& other);
   };
   struct Stage {
     Sum v_predicted, w_predicted, a, e;
-    Sum v, w;                               // once it is solved
+    Sum v, w;                               // of the solved stage
     double rate = 0.0, displacement = 0.0;  // k1, k2
   };
   struct View {  // the vectors of the nodes [first, past)
     const double *v = nullptr, *w = nullptr;
-    std::array<const double*, most_accelerations> kept{};
+    std::array<const double*, most_accelerations> stored{};
     int first = 0, past = 0;
   };
   template <int outputs>
@@ -151,24 +151,24 @@ class BeamMotion final : private solve::NodeFiller {
   BeamOperator& operator_;
   const double* dead_load_;
   int block_;
-  std::optional<beam::ElementRows> elements_;                 // where fused
-  bool proportional_ = false;                                 // C = a M + b K
-  std::vector<int> held_;                                     // local unknowns that stay zero
-  std::array<std::vector<double>, most_accelerations> kept_;  // A_0, then one a stage
+  std::optional<beam::ElementRows> elements_;                   // only if fused
+  bool proportional_ = false;                                   // C = a M + b K
+  std::vector<int> held_;                                       // local unknowns that supports hold at zero
+  std::array<std::vector<double>, most_accelerations> stored_;  // A_0, then one per stage
   int n_ = 0, nodes_ = 0;
   std::vector<Range> ranges_;
-  bool ranged_ = false;
+  bool has_ranges_ = false;
   std::vector<Stage> stages_;
   Sum v_end_, w_end_, a_end_, v_error_, w_error_;
 
-  // Of the stage under way
+  // Of the present stage
   View view_;
   const Stage* stage_ = nullptr;
-  bool measure_ = false;    // the dissipation at the start of the step
-  bool measuring_ = false;  // in this stage
+  bool measure_ = false;    // compute the dissipation at the start of steps
+  bool measuring_ = false;  // compute it in this stage
   const std::vector<NodalLoad>* loads_ = nullptr;
   std::array<Ghosts, 3> ghosts_{};  // of e, w and w~, or of the errors of v and w
-  double* target_ = nullptr;        // where the view begins
+  double* target_ = nullptr;        // the solution at the first unknown of the view
   Dissipation dissipation_;
   std::array<std::vector<double>, most_accelerations> scratch_;  // of step_free
 };

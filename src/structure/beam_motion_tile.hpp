@@ -1,4 +1,4 @@
-// What the parts of BeamMotion share: sums of vectors on a tile.
+// The sums of vectors on a tile, for the source files of BeamMotion.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ void with_count(int count, Call call) {
   }
 }
 
-// `outputs` sums of N vectors' entries [from, from + size) at once.
+// Computes `outputs` sums of N vectors' entries [from, from + size) together.
 template <int N, int outputs>
 void add_up(const std::array<const double*, most_terms>& vectors,
             const std::array<std::array<double, outputs>, most_terms>& weight, std::ptrdiff_t from, int size,
@@ -51,7 +51,7 @@ void add_up(const std::array<const double*, most_terms>& vectors,
   }
 }
 
-/// Vectors and their weights in so many sums.
+/// The vectors and their weights in `outputs` sums.
 template <int outputs>
 struct BeamMotion::Terms {
   std::array<const double*, most_terms> x{};
@@ -78,11 +78,11 @@ BeamMotion::Terms<outputs> BeamMotion::terms_of(const std::array<const Sum*, out
   };
   add(view.v, [](const Sum& s) { return s.v; });
   add(view.w, [](const Sum& s) { return s.w; });
-  for (std::size_t j = 0; j <= stages_.size(); ++j) add(view.kept[j], [j](const Sum& s) { return s.kept[j]; });
+  for (std::size_t j = 0; j <= stages_.size(); ++j) add(view.stored[j], [j](const Sum& s) { return s.stored[j]; });
   return terms;
 }
 
-// Sums on a tile and its neighbours, with their values beyond the view's nodes.
+// Sums on a tile and its two neighbouring columns, with the ghost values outside the view's nodes.
 template <std::size_t outputs>
 void BeamMotion::combine(const std::array<Summand, outputs>& sums, int first, int past) const {
   constexpr int count_of = static_cast<int>(outputs);

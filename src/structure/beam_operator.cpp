@@ -1,5 +1,5 @@
-// Products with M, C* and K* (equation 51 of the paper), factorisations of s^2 M + s C* + K* kept for the latest
-// shifts, and static solutions with iterative refinement in extended precision.
+// Products with M, C* and K* (equation 51 of the paper), factorisations of s^2 M + s C* + K* for the latest shifts, and
+// static solutions with iterative refinement in extended precision.
 #include "structure/beam_operator.hpp"
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 namespace traverse::structure {
 namespace {
 
-constexpr std::size_t kept_factors = 12;
-constexpr int most_refinements = 30;       // of a static solution
-constexpr double refined = 4e-16;          // relative correction that is rounding
-constexpr double stagnant = 0.5;           // corrections that do not halve do not converge
-constexpr double most_static_error = 0.1;  // relative
+constexpr std::size_t stored_factors = 12;
+constexpr int most_refinements = 30;            // of a static solution
+constexpr double converged_correction = 4e-16;  // relative correction due to rounding
+constexpr double stagnant = 0.5;                // corrections that decrease by less do not converge
+constexpr double most_static_error = 0.1;       // relative
 
 }  // namespace
 
@@ -50,7 +50,7 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
     drag_ = with_neighbour(std::move(drag));
   }
   for (int i = 0; i < beam.block(); ++i) {
-    damped_part_.push_back(beam::Layout::of_bridge(beam.layout().kind[i]) ? stiffness_damping_ : 0.0);
+    damping_factors_.push_back(beam::Layout::of_bridge(beam.layout().kind[i]) ? stiffness_damping_ : 0.0);
   }
   damped_ = drag_ || mass_damping_.value_or(0.0) != 0.0 || stiffness_damping_ != 0.0;
   relative_.resize(unknowns());
@@ -60,10 +60,10 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
     shifted_.push_back(std::move(all));
   } else {
     for (int part : parts_->of_kind) {
-      const solve::Parts::Part& its = parts_->parts[static_cast<std::size_t>(part)];
-      shifted_.push_back({solve::rows_of(mass_.rows, its),
-                          proportional ? solve::BlockTridiagonal() : solve::rows_of(all.damping, its),
-                          solve::rows_of(all.stiffness, its)});
+      const solve::Parts::Part& range = parts_->parts[static_cast<std::size_t>(part)];
+      shifted_.push_back({solve::rows_of(mass_.rows, range),
+                          proportional ? solve::BlockTridiagonal() : solve::rows_of(all.damping, range),
+                          solve::rows_of(all.stiffness, range)});
     }
   }
   mass_factor_.emplace(new_factor());
@@ -75,7 +75,7 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
   }
 }
 
-// Parts of this rank alone, whatever springs come later.
+// Finds parts of this rank without coupling, also by springs that are added later.
 void BeamOperator::find_parts(const beam::Beam& beam, const Shifted& all) {
   const std::vector<int>& parts = beam.parts();
   if (static_cast<int>(parts.size()) - 1 < std::max(2, ranks_) || beam.model().nonlinear()) return;
@@ -104,7 +104,7 @@ solve::BlockTridiagonal BeamOperator::shifted(std::size_t kind, double shift, do
   return sum;
 }
 
-// The block that couples to the left neighbour's last column is that rank's.
+// The left neighbour stores the block that couples this rank's first column to its last column.
 BeamOperator::Matrix BeamOperator::with_neighbour(solve::BlockTridiagonal rows) const {
   const int bb = rows.block * rows.block;
   std::vector<double> send(bb, 0.0), left(bb, 0.0);
@@ -150,7 +150,7 @@ void BeamOperator::multiply(double sign, const double* m, const double* c, const
   if (c != nullptr && drag_) product(*drag_, sign, c, r);
   if (c != nullptr && mass_damping_.value_or(0.0) != 0.0) product(mass_, sign * *mass_damping_, c, r);
   if (k != nullptr && springs_) product(*springs_, sign, k, r);
-  // The beams' elastic forces and their damping by b K_aa together.
+  // The beams' elastic forces together with their damping b K_aa.
   const bool damps = c != nullptr && stiffness_damping_ != 0.0;
   if (k == nullptr && !damps) return;
   if (damps) add_damped_part(c, k);
@@ -159,13 +159,13 @@ void BeamOperator::multiply(double sign, const double* m, const double* c, const
   internal_.add(sign, x, halo_.data(), halo_.data() + block_, r);
 }
 
-// k + b c; a rail's unknowns have no b.
+// k + b c; the unknowns of a rail have no b.
 void BeamOperator::add_damped_part(const double* c, const double* k) const {
   const int n = unknowns(), block = block_;
   const double b = stiffness_damping_;
   for (int i = 0; i < n; ++i) relative_[i] = b * c[i];
   for (int j = 0; j < block; ++j) {
-    if (damped_part_[j] != 0.0) continue;
+    if (damping_factors_[j] != 0.0) continue;
     for (int i = j; i < n; i += block) relative_[i] = 0.0;
   }
   if (k == nullptr) return;
@@ -177,28 +177,28 @@ void BeamOperator::solve_mass(double* x) const {
   mass_factor_->solve(x);
 }
 
-void BeamOperator::yield_by(const std::vector<std::vector<double>>& shapes, const std::vector<double>& omega,
-                            int first_unknown) {
-  flexible_.clear();
+void BeamOperator::set_modal_flexibility(const std::vector<std::vector<double>>& shapes,
+                                         const std::vector<double>& omega, int first_unknown) {
+  flexibility_modes_.clear();
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const auto begin = shapes[i].begin() + first_unknown;
-    flexible_.emplace_back(begin, begin + unknowns());
-    for (double& value : flexible_.back()) value /= omega[i];
+    flexibility_modes_.emplace_back(begin, begin + unknowns());
+    for (double& value : flexibility_modes_.back()) value /= omega[i];
   }
 }
 
 void BeamOperator::solve_by_modes(double* x) const {
   std::vector<double> share;
-  for (const std::vector<double>& shape : flexible_)
+  for (const std::vector<double>& shape : flexibility_modes_)
     share.push_back(std::inner_product(shape.begin(), shape.end(), x, 0.0));
   MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(share.size()), MPI_DOUBLE, MPI_SUM, comm_);
   std::fill_n(x, unknowns(), 0.0);
-  for (std::size_t i = 0; i < flexible_.size(); ++i)
-    for (int k = 0; k < unknowns(); ++k) x[k] += share[i] * flexible_[i][static_cast<std::size_t>(k)];
+  for (std::size_t i = 0; i < flexibility_modes_.size(); ++i)
+    for (int k = 0; k < unknowns(); ++k) x[k] += share[i] * flexibility_modes_[i][static_cast<std::size_t>(k)];
 }
 
 void BeamOperator::solve_static(double* x, const AddedSprings* added) {
-  if (!flexible_.empty()) return solve_by_modes(x);
+  if (!flexibility_modes_.empty()) return solve_by_modes(x);
   const BeamFactor& factor = factored(0.0, 0.0, added);
   load_.assign(x, x + unknowns());
   residual_.resize(unknowns());
@@ -219,7 +219,7 @@ void BeamOperator::solve_static(double* x, const AddedSprings* added) {
       if (fixed_[j] != 0) residual_[j] = 0.0;
     factor.solve(residual_.data());
     ++solves;
-    double sizes[2] = {0.0, 0.0};  // of the correction, of the solution
+    double sizes[2] = {0.0, 0.0};  // correction, solution
     for (int j = 0; j < unknowns(); ++j) {
       sizes[0] = std::max(sizes[0], std::abs(residual_[j]));
       sizes[1] = std::max(sizes[1], std::abs(x[j]));
@@ -227,10 +227,10 @@ void BeamOperator::solve_static(double* x, const AddedSprings* added) {
     }
     MPI_Allreduce(MPI_IN_PLACE, sizes, 2, MPI_DOUBLE, MPI_MAX, comm_);
     const double change = sizes[1] > 0.0 ? sizes[0] / sizes[1] : 0.0;
-    // What the next correction would be, by the ratio of the last two.
+    // Predicts the next correction by the ratio of the last two.
     const double ratio = std::min(change / before, 1.0);
     error = change * std::max(ratio, std::numeric_limits<double>::epsilon());
-    if (change <= refined || ratio > stagnant) break;
+    if (change <= converged_correction || ratio > stagnant) break;
     before = change;
   }
   static_error_ = std::max(static_error_, error);
@@ -251,7 +251,7 @@ const BeamFactor& BeamOperator::factored(double shift, double shift2, const Adde
   if (found != factors_.end()) {
     factors_.splice(factors_.begin(), factors_, found);
   } else {
-    if (factors_.size() < kept_factors)
+    if (factors_.size() < stored_factors)
       factors_.push_front({shift, shift2, version, 0, new_factor()});
     else
       factors_.splice(factors_.begin(), factors_, std::prev(factors_.end()));
@@ -284,8 +284,8 @@ void BeamOperator::keep(base::Archive& archive, const std::function<const AddedS
   for (auto f = factors_.rbegin(); f != factors_.rend(); ++f) keys.push_back({f->shift, f->shift2, f->added, f->stamp});
   long stamp = stamp_, factorisations = factorisations_, solved = solves;
   archive.cache(keys, stamp, factorisations, solved, static_error_);
-  if (!archive.reads() || !archive.alike()) return;
-  forget_steps();
+  if (!archive.reads() || !archive.same_ranks()) return;
+  delete_step_factors();
   for (const Key& key : keys) {
     const AddedSprings* added = key.added != 0 ? springs(key.added) : nullptr;
     if (key.added != 0 && added == nullptr) continue;

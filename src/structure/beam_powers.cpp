@@ -1,4 +1,4 @@
-// Powers and energies of the beam in motion, tile by tile.
+// Powers and energies of the moving beam, tile by tile.
 #include <algorithm>
 
 #include "beam_motion_tile.hpp"
@@ -21,7 +21,7 @@ double BeamMotion::product_of(int block, int nodes, const Tile& x, const Tile& f
   return sum;
 }
 
-// w^T C w and, with Rayleigh's damping alone, 2 A_0^T C w. ghosts: w beside this rank's columns.
+// w^T C w and, with Rayleigh damping only, 2 A_0^T C w. ghosts: w in the columns next to this rank's.
 void BeamMotion::measure_dissipation(int first, int past, const Ghosts& ghosts, Tile& rate, Tile& force) {
   Tile none;
   none.clear(block_, past - first + 2);
@@ -34,7 +34,7 @@ void BeamMotion::measure_dissipation(int first, int past, const Ghosts& ghosts, 
     return;
   }
   const std::ptrdiff_t offset = block_ * static_cast<std::ptrdiff_t>(first - view_.first);
-  const double* const a0 = view_.kept[0] + offset;
+  const double* const a0 = view_.stored[0] + offset;
   constexpr int lanes = 8;
   std::array<double, lanes> by_w{}, by_a{};
   with_block(block_, [&](auto B) {
@@ -86,7 +86,7 @@ BeamMotion::Dissipation BeamMotion::dissipation(const std::vector<Range>& nodes,
   return dissipation_;
 }
 
-// Of displacements and rates on a tile, by the forces K* v and M w.
+// Energy of displacements and rates on a tile, from the forces K* v and M w.
 BeamMotion::Energy BeamMotion::energy_of(int first, int past, Tile& v, Tile& w) const {
   Energy energy;
   Tile force;
@@ -124,7 +124,7 @@ double BeamMotion::error_energy() {
   return energy.strain + energy.kinetic;
 }
 
-double BeamMotion::put_to_rest(int first, int past, const double* rest, double* v, double* w) {
+double BeamMotion::set_to_rest(int first, int past, const double* rest, double* v, double* w) {
   double energy = 0.0;
   for (int from = first; from < past; from += tile) {
     const int to = std::min(past, from + tile), begin = std::max(from - 1, 0), end = std::min(to + 1, nodes_);
@@ -144,7 +144,7 @@ double BeamMotion::put_to_rest(int first, int past, const double* rest, double* 
   for (int k = block_ * first; k < block_ * past; ++k) {
     v[k] = rest != nullptr ? rest[k] : 0.0;
     w[k] = 0.0;
-    for (std::vector<double>& a : kept_)
+    for (std::vector<double>& a : stored_)
       if (!a.empty()) a[k] = 0.0;
   }
   return energy;

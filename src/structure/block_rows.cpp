@@ -7,7 +7,7 @@
 namespace traverse::structure {
 namespace {
 
-/// Entry (row, column) of node i's block towards the node before, its own or the next.
+/// Entry (row, column) of node i's block with the previous node, itself or the next one.
 struct RowReader {
   const solve::BlockTridiagonal& A;
   const std::vector<double>& left;
@@ -40,7 +40,7 @@ BlockRows::BlockRows(const solve::BlockTridiagonal& rows, const std::vector<doub
   row_begins_.push_back(static_cast<int>(entries_.size()));
   const auto mark = [&](std::ptrdiff_t i) {
     std::uint64_t result = 0;
-    for (const Entry& e : entries_) result = solve::mark_of(result, std::array{entry(i, e.row, e.column, e.shift)});
+    for (const Entry& e : entries_) result = solve::hash_of(result, std::array{entry(i, e.row, e.column, e.shift)});
     return result;
   };
   const auto same = [&](std::ptrdiff_t i, std::ptrdiff_t j) {
@@ -48,32 +48,32 @@ BlockRows::BlockRows(const solve::BlockTridiagonal& rows, const std::vector<doub
       return entry(i, e.row, e.column, e.shift) == entry(j, e.row, e.column, e.shift);
     });
   };
-  for (std::ptrdiff_t i : stored_.keep(rows.nodes, mark, same))
+  for (std::ptrdiff_t i : stored_.assign(rows.nodes, mark, same))
     for (Entry& e : entries_) e.along.push_back(entry(i, e.row, e.column, e.shift));
   for (Entry& e : entries_) {
     const auto nonzero = [](double number) { return number != 0.0; };
     e.from = std::find_if(e.along.begin(), e.along.end(), nonzero) - e.along.begin();
     e.to = e.along.rend() - std::find_if(e.along.rbegin(), e.along.rend(), nonzero);
-    e.along.resize(e.along.size() + beam::abreast, 0.0);
+    e.along.resize(e.along.size() + beam::nodes_per_step, 0.0);
   }
 }
 
-// A few nodes at a time, whose sums stay in registers while the entries of a row go by.
+// A few nodes at a time, whose sums remain in registers for all entries of a row.
 void BlockRows::add(int first, int past, const beam::Planes& x, const beam::Planes& r) const {
   for (std::ptrdiff_t begin = first; begin < past;) {
     const solve::Stored& stored = stored_.at(begin);
     const std::ptrdiff_t end = std::min<std::ptrdiff_t>(past, stored.row_end(begin)), place = stored.place(begin);
-    for (std::ptrdiff_t from = begin; from < end; from += beam::abreast) {
-      const auto count = static_cast<int>(std::min<std::ptrdiff_t>(beam::abreast, end - from));
+    for (std::ptrdiff_t from = begin; from < end; from += beam::nodes_per_step) {
+      const auto count = static_cast<int>(std::min<std::ptrdiff_t>(beam::nodes_per_step, end - from));
       const std::ptrdiff_t at = place + (from - begin);
       for (std::size_t row = 0; row + 1 < row_begins_.size(); ++row) {
-        std::array<double, beam::abreast> sums{};
+        std::array<double, beam::nodes_per_step> sums{};
         for (int k = row_begins_[row]; k < row_begins_[row + 1]; ++k) {
           const Entry& e = entries_[k];
           if (e.to <= at || at + count <= e.from) continue;
           const double* const a = e.along.data() + at;
           const double* const of = x[e.column] + (from - first) + e.shift;
-          for (int i = 0; i < beam::abreast; ++i) sums[i] += a[i] * of[i];
+          for (int i = 0; i < beam::nodes_per_step; ++i) sums[i] += a[i] * of[i];
         }
         double* const to = r[row] + (from - first);
         for (int i = 0; i < count; ++i) to[i] += sums[i];

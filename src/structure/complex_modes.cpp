@@ -9,8 +9,8 @@
 namespace traverse::structure {
 namespace {
 
-constexpr double accurate = 1e-9;       // residual of the complex modes, over the matrix
-constexpr double least_change = 1e-10;  // of C, where they are none
+constexpr double residual_tolerance = 1e-9;  // residual of the complex modes over the norm of the matrix
+constexpr double least_change = 1e-10;       // relative change of C if there are none
 constexpr double most_change = 1e-6;
 
 }  // namespace
@@ -26,7 +26,7 @@ ComplexModes::ComplexModes(const std::vector<double>& omega, const std::vector<d
   rates.bottomRightCorner(m, m).diagonal() -= 2.0 * decay;
   solve(rates);
   Eigen::MatrixXd changed = rates;
-  for (double change = least_change; !(residual(rates) <= accurate + 2.0 * change); change *= 10.0) {
+  for (double change = least_change; !(residual(rates) <= residual_tolerance + 2.0 * change); change *= 10.0) {
     if (change > most_change)
       throw SolverError("the complex modes of the damped bridge were not found; take other model_modes, or 0");
     changed.bottomRightCorner(m, m) = (1.0 + change) * rates.bottomRightCorner(m, m);
@@ -37,32 +37,32 @@ ComplexModes::ComplexModes(const std::vector<double>& omega, const std::vector<d
 void ComplexModes::solve(const Eigen::MatrixXd& rates) {
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(rates);
   const Eigen::MatrixXcd shapes = solver.eigenvectors(), inverse = shapes.inverse();
-  std::vector<Eigen::Index> kept;
+  std::vector<Eigen::Index> selected;
   for (Eigen::Index j = 0; j < rates.cols(); ++j)
-    if (solver.eigenvalues()[j].imag() >= 0.0) kept.push_back(j);
-  const auto count = static_cast<Eigen::Index>(kept.size());
+    if (solver.eigenvalues()[j].imag() >= 0.0) selected.push_back(j);
+  const auto count = static_cast<Eigen::Index>(selected.size());
   lambda.resize(count);
   state.resize(rates.cols(), 2 * count);
   coordinates.resize(2 * count, rates.cols());
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index j = kept[static_cast<std::size_t>(k)];
+    const Eigen::Index j = selected[static_cast<std::size_t>(k)];
     lambda[k] = solver.eigenvalues()[j];
-    const double both = lambda[k].imag() > 0.0 ? 2.0 : 1.0;
-    state.col(k) = both * shapes.col(j).real();
-    state.col(count + k) = -both * shapes.col(j).imag();
+    const double pair_factor = lambda[k].imag() > 0.0 ? 2.0 : 1.0;
+    state.col(k) = pair_factor * shapes.col(j).real();
+    state.col(count + k) = -pair_factor * shapes.col(j).imag();
     coordinates.row(k) = inverse.row(j).real();
     coordinates.row(count + k) = inverse.row(j).imag();
   }
 }
 
-/// How far these modes are from those of `rates`, over its norm.
+/// The difference between the matrix of these modes and `rates`, over its norm.
 double ComplexModes::residual(const Eigen::MatrixXd& rates) const {
   const Eigen::Index count = lambda.size();
   const auto re = coordinates.topRows(count), im = coordinates.bottomRows(count);
-  Eigen::MatrixXd turned(2 * count, rates.cols());
-  turned.topRows(count) = lambda.real().asDiagonal() * re - lambda.imag().asDiagonal() * im;
-  turned.bottomRows(count) = lambda.imag().asDiagonal() * re + lambda.real().asDiagonal() * im;
-  return (state * turned - rates).norm() / rates.norm();
+  Eigen::MatrixXd rotated(2 * count, rates.cols());
+  rotated.topRows(count) = lambda.real().asDiagonal() * re - lambda.imag().asDiagonal() * im;
+  rotated.bottomRows(count) = lambda.imag().asDiagonal() * re + lambda.real().asDiagonal() * im;
+  return (state * rotated - rates).norm() / rates.norm();
 }
 
 }  // namespace traverse::structure

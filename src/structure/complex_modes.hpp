@@ -2,12 +2,12 @@
 //
 //   u'' + C u' + Omega^2 u = 0,   Omega diagonal, C symmetric,
 //
-// by the complex modes of that small system, each of which decays and turns by itself:
+// by the complex modes of this small system, each of which decays and oscillates independently:
 //
 //   (Omega u, u') = Re sum_j s_j y_j e^(lambda_j t)
 //
-// Of a conjugate pair one member stands for both; those of overdamped motion are real. Where two of them are one, which
-// critical damping makes them, there is no basis of complex modes: those of a C that is larger by 1e-10 are taken.
+// One member of each conjugate pair represents both; overdamped modes are real. With critical damping two modes
+// coincide, and there is no basis of complex modes: then C is increased by a factor from 1 + 1e-10 on.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,8 @@
 namespace traverse::structure {
 
 struct ComplexModes {
-  /// SolverError where none are found. omega in rad/s, all positive; sigma: half of C's diagonal, 1/s; cross_damping: C
-  /// off its diagonal, 1/s.
+  /// SolverError if no modes are found. omega in rad/s, all positive; sigma: half of C's diagonal, 1/s; cross_damping:
+  /// C without its diagonal, 1/s.
   ComplexModes(const std::vector<double>& omega, const std::vector<double>& sigma,
                const Eigen::MatrixXd& cross_damping);
 

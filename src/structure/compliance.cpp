@@ -11,12 +11,12 @@
 namespace traverse::structure {
 
 namespace {
-constexpr std::size_t kept_values = std::size_t{8} << 20;  // doubles in columns that are not in use
-constexpr double died_out = 1e-18;                         // of a column's peak
-constexpr std::ptrdiff_t least_margin = 32;                // nodes
-constexpr int short_part = 100;                            // columns: statics lose 0.02 eps n^4
+constexpr std::size_t most_stored_values = std::size_t{8} << 20;  // numbers in columns that are not in use
+constexpr double negligible = 1e-18;         // of a column's peak: a smaller response is negligible
+constexpr std::ptrdiff_t least_margin = 32;  // nodes
+constexpr int short_part = 100;              // columns: statics lose 0.02 eps n^4 of their digits
 
-/// Elements with m unknowns.
+/// For elements with m unknowns.
 template <int m>
 void respond_by(const ElementCompliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
   using Vector = Eigen::Matrix<double, m, 1>;
@@ -54,16 +54,16 @@ Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
     short_parts_ = true;
     for (std::size_t i = 1; i < begins.size(); ++i)
       short_parts_ = short_parts_ && begins[i] - begins[i - 1] <= short_part;
-    ++slots;  // the last one stands for the elements of other ranks
+    ++slots;  // the last slot is for the elements of other ranks
   }
   of_slot_.assign(slots, columns_.end());
 }
 
 void Compliance::prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements) {
   const BeamFactor& factor = operator_.factored(shift, shift2, added);
-  if (!alone_ && operator_.factor_stamp() == stamp_ && elements == elements_) return;
-  const bool same_factor = find_columns() && !alone_;
-  alone_ = false;
+  if (!individual_ && operator_.factor_stamp() == stamp_ && elements == elements_) return;
+  const bool same_factor = find_columns() && !individual_;
+  individual_ = false;
   std::swap(before_.elements, elements_);
   elements_ = elements;
   active_.clear();
@@ -76,15 +76,15 @@ void Compliance::prepare(double shift, double shift2, const AddedSprings* added,
   std::swap(before_.blocks, blocks_);
   find_responses();
   fill_blocks(same_factor);
-  forget_columns();
+  delete_columns();
 }
 
-void Compliance::prepare_alone(double shift, double shift2, const AddedSprings* added,
-                               const std::vector<int>& elements) {
+void Compliance::prepare_individual(double shift, double shift2, const AddedSprings* added,
+                                    const std::vector<int>& elements) {
   const BeamFactor& factor = operator_.factored(shift, shift2, added);
-  if (alone_ && operator_.factor_stamp() == stamp_ && elements == elements_) return;
-  const bool same_factor = find_columns() && alone_;
-  alone_ = true;
+  if (individual_ && operator_.factor_stamp() == stamp_ && elements == elements_) return;
+  const bool same_factor = find_columns() && individual_;
+  individual_ = true;
   std::swap(before_.elements, elements_);
   std::swap(before_.blocks, blocks_);
   elements_ = elements;
@@ -105,10 +105,10 @@ void Compliance::prepare_alone(double shift, double shift2, const AddedSprings* 
     active_[static_cast<std::size_t>(b)] = {&column(factor, shift, added, element), place_of(element).unknown, 0, 0};
     fill_block(b, b, to);
   }
-  forget_columns();
+  delete_columns();
 }
 
-// Of the factorisation that is in force; false: it is another one than before.
+// Finds the columns of the present factorisation. False if it is another one than before.
 bool Compliance::find_columns() {
   const long stamp = operator_.factor_stamp();
   if (stamp == stamp_) return true;
@@ -116,21 +116,21 @@ bool Compliance::find_columns() {
   of_slot_.assign(of_slot_.size(), columns_.end());
   for (auto c = columns_.begin(); c != columns_.end();) {
     if (c->stamp == stamp) of_slot_[c->slot] = c;
-    if (operator_.keeps(c->stamp)) {
+    if (operator_.is_stored(c->stamp)) {
       ++c;
     } else {
-      kept_ -= c->values.size();
+      stored_values_ -= c->values.size();
       c = columns_.erase(c);
     }
   }
   return false;
 }
 
-// The oldest columns beyond what is worth keeping.
-void Compliance::forget_columns() {
-  while (kept_ > kept_values && columns_.size() > elements_.size()) {
+// Deletes the oldest columns if more than most_stored_values numbers are stored.
+void Compliance::delete_columns() {
+  while (stored_values_ > most_stored_values && columns_.size() > elements_.size()) {
     const Column& oldest = columns_.back();
-    kept_ -= oldest.values.size();
+    stored_values_ -= oldest.values.size();
     if (oldest.stamp == stamp_) of_slot_[oldest.slot] = columns_.end();
     columns_.pop_back();
   }
@@ -151,12 +151,12 @@ void Compliance::keep(base::Bytes& bytes) {
   bytes(columns, margin_, reach_stamp_);
   if (!bytes.reads()) return;
   columns_.assign(columns.begin(), columns.end());
-  kept_ = 0;
-  for (const Column& column : columns_) kept_ += column.values.size();
+  stored_values_ = 0;
+  for (const Column& column : columns_) stored_values_ += column.values.size();
   active_.clear();
   elements_.clear();
   before_.elements.clear();
-  alone_ = false;
+  individual_ = false;
   stamp_ = -1;  // the next prepare finds the columns
 }
 
@@ -170,7 +170,7 @@ Compliance::Place Compliance::place_of(int element) const {
           static_cast<int>(part.first) * beam_.block()};
 }
 
-// The same on all ranks: of a part the whole of it.
+// The same on all ranks; for a beam with parts the whole part.
 std::pair<int, int> Compliance::reach(int element, const Column& c) const {
   if (operator_.parts() == nullptr) return {c.first, c.last};
   const auto end = std::upper_bound(beam_.parts().begin(), beam_.parts().end(),
@@ -194,14 +194,14 @@ const Compliance::Column& Compliance::column(const BeamFactor& factor, double sh
   Column& c = columns_.front();
   c.slot = place.slot;
   c.stamp = stamp_;
-  keep(c, first, place.unknown);
-  // Statics that all ranks compute together are not known as another element's.
+  store(c, first, place.unknown);
+  // Static columns that all ranks compute together are not shared with equal elements.
   if (by_parts || !parts) of_slot_[place.slot] = columns_.begin();
-  kept_ += c.values.size();
+  stored_values_ += c.values.size();
   return c;
 }
 
-// Unit loads on the element's unknowns, in columns of the nodes [first, past).
+// Sets unit loads on the element's unknowns, in columns of the nodes [first, past).
 void Compliance::load_element(int element, std::ptrdiff_t first, std::ptrdiff_t past) {
   const std::ptrdiff_t size = (past - first) * beam_.block();
   work_.assign(static_cast<std::size_t>(size * m_), 0.0);
@@ -214,7 +214,7 @@ void Compliance::load_element(int element, std::ptrdiff_t first, std::ptrdiff_t 
   }
 }
 
-// The solutions go into work_; returns the local node where they begin.
+// Stores the solutions in work_; returns their first local node.
 std::ptrdiff_t Compliance::solve_part(const BeamFactor& factor, int element) {
   const int node = line_.first_column + line_.mesh.element(element).left - beam_.first_column();
   if (node < 0 || node >= beam_.local_columns()) {
@@ -228,7 +228,7 @@ std::ptrdiff_t Compliance::solve_part(const BeamFactor& factor, int element) {
   return part.first;
 }
 
-// Within a window around the element, at whose ends nothing is left of the response.
+// Uses a window around the element, at whose ends the response is negligible.
 std::ptrdiff_t Compliance::solve_window(const BeamFactor& factor, int element) {
   const std::ptrdiff_t nodes = beam_.local_columns();
   const std::ptrdiff_t left = line_.first_column + line_.mesh.element(element).left - beam_.first_column();
@@ -239,7 +239,7 @@ std::ptrdiff_t Compliance::solve_window(const BeamFactor& factor, int element) {
     load_element(element, first, past);
     factor.solve_local(work_.data(), m_, first, past);
     operator_.solves += m_;
-    // What is left at the ends that are not the bridge's, and the peak: for each column over all ranks.
+    // The response at the window's ends inside the bridge, and its peak: for each column over all ranks.
     std::array<double, 2 * 2 * beam::kinds> sizes{};
     for (int j = 0; j < m_; ++j) {
       const double* x = work_.data() + j * size;
@@ -253,9 +253,9 @@ std::ptrdiff_t Compliance::solve_window(const BeamFactor& factor, int element) {
       }
     }
     if (operator_.shared()) MPI_Allreduce(MPI_IN_PLACE, sizes.data(), 2 * m_, MPI_DOUBLE, MPI_MAX, beam_.comm());
-    bool died = true;
-    for (int j = 0; j < m_; ++j) died = died && sizes[2 * j + 1] <= died_out * sizes[2 * j];
-    if (died || margin_ > beam_.columns()) return first;
+    bool decayed = true;
+    for (int j = 0; j < m_; ++j) decayed = decayed && sizes[2 * j + 1] <= negligible * sizes[2 * j];
+    if (decayed || margin_ > beam_.columns()) return first;
   }
 }
 
@@ -266,8 +266,8 @@ std::ptrdiff_t Compliance::solve_statics(int element, const AddedSprings* added)
   return 0;
 }
 
-// Takes the solution in work_, from local node `first` on, where it is above rounding.
-void Compliance::keep(Column& c, std::ptrdiff_t first, int base_unknown) const {
+// Stores the solution in work_, which begins at local node `first`, where it exceeds rounding.
+void Compliance::store(Column& c, std::ptrdiff_t first, int base_unknown) const {
   const int n = static_cast<int>(work_.size()) / m_, block = beam_.block();
   int lowest = n, highest = 0;
   for (int j = 0; j < m_; ++j) {
@@ -275,8 +275,8 @@ void Compliance::keep(Column& c, std::ptrdiff_t first, int base_unknown) const {
     double peak = 0.0;
     for (int i = 0; i < n; ++i) peak = std::max(peak, std::abs(x[i]));
     int low = 0, high = n;
-    while (low < high && std::abs(x[low]) <= died_out * peak) ++low;
-    while (high > low && std::abs(x[high - 1]) <= died_out * peak) --high;
+    while (low < high && std::abs(x[low]) <= negligible * peak) ++low;
+    while (high > low && std::abs(x[high - 1]) <= negligible * peak) --high;
     if (low < high) {
       lowest = std::min(lowest, low);
       highest = std::max(highest, high);
@@ -316,22 +316,24 @@ void Compliance::find_responses() {
   blocks_.resize(begin);
 }
 
-// What was known before is taken over: a wheel that enters an element changes few blocks.
+// Copies the blocks of the previous list: a wheel that enters an element changes few blocks.
 void Compliance::fill_blocks(bool same_factor) {
   const std::size_t size = static_cast<std::size_t>(m_) * m_;
-  known_as_.assign(elements_.size(), -1);
+  previous_index_.assign(elements_.size(), -1);
   for (std::size_t e = 0, old = 0; same_factor && e < elements_.size(); ++e) {
     while (old < before_.elements.size() && before_.elements[old] < elements_[e]) ++old;
-    if (old < before_.elements.size() && before_.elements[old] == elements_[e]) known_as_[e] = static_cast<int>(old);
+    if (old < before_.elements.size() && before_.elements[old] == elements_[e])
+      previous_index_[e] = static_cast<int>(old);
   }
   new_blocks_.clear();
   new_begin_.clear();
   for (int b = 0; b < static_cast<int>(elements_.size()); ++b) {
     std::size_t to = responses_[b].begin;
     for (int a = responses_[b].first; a < responses_[b].last; ++a, to += size) {
-      if (known_as_[a] >= 0 && known_as_[b] >= 0) {
-        const Response& old = before_.responses[known_as_[b]];
-        const double* from = &before_.blocks[old.begin + static_cast<std::size_t>(known_as_[a] - old.first) * size];
+      if (previous_index_[a] >= 0 && previous_index_[b] >= 0) {
+        const Response& old = before_.responses[previous_index_[b]];
+        const double* from =
+            &before_.blocks[old.begin + static_cast<std::size_t>(previous_index_[a] - old.first) * size];
         std::copy_n(from, size, &blocks_[to]);
         continue;
       }
@@ -347,7 +349,7 @@ void Compliance::fill_blocks(bool same_factor) {
     std::copy_n(&new_blocks_[i * size], size, &blocks_[new_begin_[i]]);
 }
 
-// This rank's rows of it; the others stay.
+// Fills this rank's rows of the block; the other entries are unchanged.
 void Compliance::fill_block(int a, int b, double* to) const {
   const Column& c = *active_[b].column;
   const auto unknowns = line_.unknowns(elements_[a]);

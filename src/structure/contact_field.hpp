@@ -1,4 +1,4 @@
-// Where contacts and the structure meet in a stage that is solved by passes (engine/linear_train.hpp).
+// The exchange between contacts and structure in a stage that is solved by passes (engine/linear_train.hpp).
 #pragma once
 
 #include <array>
@@ -6,12 +6,12 @@
 
 namespace traverse::structure {
 
-/// Values at the unknowns of the elements under contacts. Unknown k of an element, in the order of
-/// beam::Line::unknowns, stands at its slot and offset[k].
+/// Values at the unknowns of the elements under contacts. The index of unknown k of an element, in the order of
+/// beam::Line::unknowns, is its slot plus offset[k].
 struct ContactField {
   std::array<int, 6> offset{};
-  std::vector<int> slot;                    // of every element
-  int ground = 0;                           // a slot where all is 0, for rigid ground
+  std::vector<int> slot;                    // of each element
+  int ground = 0;                           // a slot with zeros, for rigid ground
   const double *v = nullptr, *w = nullptr;  // m and rad; their rates
   double* load = nullptr;                   // N, N m
 };

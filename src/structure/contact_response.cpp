@@ -1,4 +1,4 @@
-// The solve for the forces of all contacts on the nodes near them (eq. of a stage: element_structure.hpp).
+// The response to the forces of all contacts, on the nodes near them (equation of a stage: element_structure.hpp).
 #include "structure/contact_response.hpp"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 namespace traverse::structure {
 namespace {
 
-constexpr std::size_t many_elements = 4;  // from here on a solve costs less than a column for each of their unknowns
+constexpr std::size_t many_elements = 4;  // from here on one solution costs less than a column for each unknown
 
 }  // namespace
 
@@ -23,7 +23,7 @@ ContactResponse::ContactResponse(const beam::Beam& beam, const BeamOperator& op)
   }
 }
 
-// Under a track a force is felt nearby, and columns are short.
+// If the beam has a track, responses are short, and so are the columns.
 bool ContactResponse::worthwhile(std::size_t elements) const {
   return uniform_ && !operator_.shared() && beam_.block() == line_.per_node && elements >= many_elements;
 }
@@ -34,8 +34,8 @@ void ContactResponse::place(const std::vector<int>& elements, const std::vector<
   stepped_ = stepped;
   if (z_.empty()) {
     const auto unknowns = static_cast<std::size_t>(beam_.local_unknowns()),
-               beyond = static_cast<std::size_t>(2 * line_.per_node);
-    for (std::vector<double>* x : {&z_, &v_free_, &w_free_, &v_, &w_}) x->assign(unknowns + beyond, 0.0);
+               extra = static_cast<std::size_t>(2 * line_.per_node);
+    for (std::vector<double>* x : {&z_, &v_free_, &w_free_, &v_, &w_}) x->assign(unknowns + extra, 0.0);
     field_.ground = static_cast<int>(unknowns);
     field_.v = v_.data();
     field_.w = w_.data();
@@ -68,7 +68,7 @@ void ContactResponse::find_runs() {
     if (!runs_.empty() && node < runs_.back().past) continue;
     Run* last = runs_.empty() ? nullptr : &runs_.back();
     const bool joins = last != nullptr && last->past == part->first && part == last->part + last->count &&
-                       parts->together(last->part, part->past) > part;
+                       parts->group_end(last->part, part->past) > part;
     if (joins) {
       ++last->count;
       last->past = part->past;
@@ -87,7 +87,7 @@ void ContactResponse::solve(const BeamFactor& factor) {
   for (const Run& run : runs_) {
     double* const z = z_.data() + run.first * beam_.block();
     if (run.part != nullptr)
-      factor.parts().solve_together(*run.part, z, run.count);
+      factor.parts().solve_group(*run.part, z, run.count);
     else
       factor.solve_local(z, 1, run.first, run.past);
   }

@@ -1,4 +1,4 @@
-// Steps of the structure by its elements, in second-order form (one_step_methods.hpp).
+// Steps of the structure by elements, in second-order form (one_step_methods.hpp).
 #include <algorithm>
 
 #include "structure/element_structure.hpp"
@@ -6,25 +6,26 @@
 namespace traverse::structure {
 namespace {
 
-constexpr double measured_steps = 2.0;  // of one stage, from one look at what is lost in damping to the next
+constexpr double measured_steps = 2.0;  // of one stage, between computations of the dissipation
 
 }  // namespace
 
 void ElementStructure::limit_to_active_window(double tolerance, const std::vector<double>& probes) {
-  rest_tolerance_ = tolerance;
-  watched_.clear();
+  window_tolerance_ = tolerance;
+  probe_columns_.clear();
   for (double x : probes)
-    watched_.push_back(beam_.bridge().first_column + beam_.mesh().element(beam_.mesh().locate(x).element).left);
+    probe_columns_.push_back(beam_.bridge().first_column + beam_.mesh().element(beam_.mesh().locate(x).element).left);
 }
 
 void ElementStructure::begin_motion(const Method& method) {
   method_ = method;
-  const bool heavy = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
-  motion_.emplace(beam_, *statics_, heavy ? dead_load_.data() : nullptr);
+  const bool has_dead_load = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
+  motion_.emplace(beam_, *statics_, has_dead_load ? dead_load_.data() : nullptr);
   motion_->begin(method);
-  if (rest_tolerance_ == 0.0 || !motion_->fused()) return;
-  if (bent_at_rest()) rest_ = rest();
-  window_.emplace(beam_, *statics_, rest_tolerance_, watched_, rest_.empty() ? nullptr : rest_.data());
+  if (window_tolerance_ == 0.0 || !motion_->fused()) return;
+  if (deformed_without_traffic()) static_displacements_ = displacements_without_traffic();
+  window_.emplace(beam_, *statics_, window_tolerance_, probe_columns_,
+                  static_displacements_.empty() ? nullptr : static_displacements_.data());
 }
 
 void ElementStructure::set_method(const Method& method, double h) {
@@ -33,7 +34,7 @@ void ElementStructure::set_method(const Method& method, double h) {
   motion_->begin(method);
 }
 
-// The columns of the elements under wheels and forces. Those that are less than a span apart are in one range.
+// The columns of the elements under wheels and forces. Loads less than a span apart share one range.
 const std::vector<Range>& ElementStructure::find_loaded(const std::vector<Reach>& loaded) {
   const beam::Mesh& mesh = line_.mesh;
   reaches_.clear();
@@ -63,23 +64,23 @@ int ElementStructure::local_node(int column) const {
   return std::clamp(column - beam_.first_column(), 0, beam_.local_columns());
 }
 
-/// Columns as nodes of this rank.
+/// Converts columns to nodes of this rank.
 void ElementStructure::make_local(std::vector<Range>& columns) const {
   for (Range& r : columns) r = {local_node(r.first), local_node(r.past)};
 }
 
-// Of this rank.
-const std::vector<Range>& ElementStructure::moving_nodes() {
+// The active nodes of this rank.
+const std::vector<Range>& ElementStructure::active_nodes() {
   if (window_) {
-    moving_ = window_->moving();
-    make_local(moving_);
+    active_ = window_->moving();
+    make_local(active_);
   } else {
-    moving_.assign(1, {0, beam_.local_columns()});
+    active_.assign(1, {0, beam_.local_columns()});
   }
-  return moving_;
+  return active_;
 }
 
-// What the stages of the coming step are solved for, and what moves freely during it.
+// Sets the ranges of the next step's stages, and the ranges that move freely during the step.
 void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
   const bool by_parts = statics_->parts() != nullptr && motion_->proportional();
   if (!window_ && !by_parts) return;
@@ -89,31 +90,31 @@ void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
     window_->open(loaded_, compliance_.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
   }
   free_.clear();
-  if (!by_parts || measures_errors_) {  // a step is judged by all that moves
-    motion_->set_ranges(moving_nodes());
+  if (!by_parts || measures_errors_) {  // the error of a step includes all moving nodes
+    motion_->set_ranges(active_nodes());
     return;
   }
   if (window_)
-    moving_ = window_->moving();
+    active_ = window_->moving();
   else
-    moving_.assign(1, {0, beam_.columns()});
-  subtract(moving_, loaded_, free_);
+    active_.assign(1, {0, beam_.columns()});
+  subtract(active_, loaded_, free_);
   make_local(free_);
   make_local(loaded_);
   motion_->set_ranges(loaded_);
 }
 
-void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) {
+void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) {
   if (fused()) {
     set_ranges(loaded);
     const double interval = method_.stages.size() == 1 && motion_->proportional() ? measured_steps * length_ : 0.0;
     measuring_ = measured_between_steps() && statics_->damped() && (to_measure_ || unmeasured_ > 0.999 * interval);
     motion_->measure(measuring_);
   }
-  if (nonlinear_) stand(loaded);
+  if (nonlinear_) update_loaded_range(loaded);
   before_.dissipated = dissipated_;
   before_.worked = worked_;
-  if (keep) {
+  if (store) {
     before_.v.clear();
     before_.w.clear();
     const auto block = static_cast<std::ptrdiff_t>(statics_->block());
@@ -130,7 +131,7 @@ void ElementStructure::end_stage(std::size_t i, const double* v, const double* w
   Powers& powers = powers_[i + 1];
   powers = {};
   if (!fused()) {
-    double* a = motion_->kept(i);
+    double* a = motion_->stored(i);
     for (int k = 0; k < n_; ++k) a[k] = stage_.shift2 * z_[k];
     for (int k = 0; k < n_; ++k) w_predicted_[k] += method_.stages[i].rate * a[k];
     powers.beam = dissipation(w_predicted_.data());
@@ -195,8 +196,8 @@ void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, doub
   window_->begin(*motion_, v, w, find_loaded(loaded));
 }
 
-// What is lost until now: the trapezoidal rule, with Rayleigh's damping alone corrected by the rates to order 4. Strong
-// dampers make rates that long steps do not resolve.
+// Adds the dissipation until now: the trapezoidal rule, with Rayleigh damping only corrected by the rates to order 4.
+// Strong dampers have rates that long steps do not resolve.
 void ElementStructure::add_dissipation(const BeamMotion::Dissipation& now) {
   dissipated_ += 0.5 * unmeasured_ * (measured_.power + now.power);
   if (motion_->proportional()) dissipated_ += unmeasured_ * unmeasured_ / 12.0 * (measured_.rate - now.rate);
@@ -204,16 +205,16 @@ void ElementStructure::add_dissipation(const BeamMotion::Dissipation& now) {
   unmeasured_ = 0.0;
 }
 
-// Whether what is lost is measured between steps. Else the method's stages add it up: where dampers are strong and
-// steps of several stages long, that is far closer.
+// Whether the dissipation is measured between steps. Otherwise it is integrated by the method's stages, which is much
+// more accurate for strong dampers and long steps of several stages.
 bool ElementStructure::measured_between_steps() const {
   return fused() && (motion_->proportional() || method_.stages.size() == 1);
 }
 
-// Between steps, of all that moves.
+// Between steps, of all moving nodes.
 void ElementStructure::measure_dissipation(const double* v, const double* w) {
   if (!measured_between_steps() || !statics_->damped()) return;
-  add_dissipation(motion_->dissipation(moving_nodes(), v, w));
+  add_dissipation(motion_->dissipation(active_nodes(), v, w));
 }
 
 void ElementStructure::keep(base::Archive& archive) {
@@ -228,14 +229,14 @@ void ElementStructure::keep(base::Archive& archive) {
 
 double ElementStructure::error_energy(const double* v, const double* w) {
   if (fused()) return motion_->error_energy();
-  double* const v_off = v_predicted_.data();
-  double* const w_off = w_predicted_.data();
-  motion_->error(v, w, v_off, w_off);
+  double* const error_of_v = v_predicted_.data();
+  double* const error_of_w = w_predicted_.data();
+  motion_->error(v, w, error_of_v, error_of_w);
   double energy = 0.0;
-  statics_->multiply(1.0, nullptr, nullptr, v_off, work_.data());
-  for (int i = 0; i < n_; ++i) energy += 0.5 * v_off[i] * work_[i];
-  statics_->multiply(1.0, w_off, nullptr, nullptr, work_.data());
-  for (int i = 0; i < n_; ++i) energy += 0.5 * w_off[i] * work_[i];
+  statics_->multiply(1.0, nullptr, nullptr, error_of_v, work_.data());
+  for (int i = 0; i < n_; ++i) energy += 0.5 * error_of_v[i] * work_[i];
+  statics_->multiply(1.0, error_of_w, nullptr, nullptr, work_.data());
+  for (int i = 0; i < n_; ++i) energy += 0.5 * error_of_w[i] * work_[i];
   return energy;
 }
 

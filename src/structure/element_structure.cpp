@@ -20,7 +20,7 @@ ElementStructure::ElementStructure(const beam::Beam& beam, double gravity, std::
   for (std::vector<double>* x : {&z_, &v_predicted_, &w_predicted_, &work_}) x->resize(static_cast<std::size_t>(n_));
 }
 
-void ElementStructure::expect_weights(double sum, double greatest) {
+void ElementStructure::set_reference_loads(double sum, double greatest) {
   if (!beam_.model().nonlinear()) return;
   nonlinear_.emplace(beam_, *statics_, sum, greatest);
   stage_load_.resize(static_cast<std::size_t>(n_));
@@ -42,7 +42,7 @@ void ElementStructure::load(const std::vector<beam::ElementLoad>& forces) {
             [](const NodalLoad& a, const NodalLoad& b) { return a.unknown < b.unknown; });
 }
 
-// All but the contacts: its own weight and the moving forces.
+// All loads but the contact forces: dead load and moving forces.
 void ElementStructure::external_load(double* nodal) const {
   std::copy(dead_load_.begin(), dead_load_.end(), nodal);
   for (const NodalLoad& force : nodal_forces_) nodal[force.unknown] += force.force;
@@ -74,7 +74,7 @@ std::array<double, 2> ElementStructure::powers(const double* w) {
   return {dissipation(w), work};
 }
 
-// Power lost in the beam's damping and its foundation's, this rank's share.
+// Power lost in the damping of the beam and its foundation, this rank's share.
 double ElementStructure::dissipation(const double* w) {
   double sum = 0.0;
   if (statics_->damped()) {
@@ -108,10 +108,10 @@ void ElementStructure::begin_statics(bool loaded) {
   stage_.loaded = loaded;
   for (std::vector<double>* predicted : {&v_predicted_, &w_predicted_})
     std::fill(predicted->begin(), predicted->end(), 0.0);
-  const bool settled = !beam_.imposed().empty();
-  if (settled) v_predicted_ = beam_.imposed();
-  if (nonlinear_) nonlinear_->begin(0.0, settled ? v_predicted_.data() : nullptr, nullptr, nullptr);
-  if (settled) return load_of_stills();
+  const bool has_settlements = !beam_.imposed().empty();
+  if (has_settlements) v_predicted_ = beam_.imposed();
+  if (nonlinear_) nonlinear_->begin(0.0, has_settlements ? v_predicted_.data() : nullptr, nullptr, nullptr);
+  if (has_settlements) return load_at_zero_acceleration();
   external_load(z_.data());
   release_held(z_.data());
   if (nonlinear_) stage_load_ = z_;
@@ -129,7 +129,7 @@ void ElementStructure::begin_stage(double shift, const double* c_v, const double
     for (int i = 0; i < n_; ++i) v_predicted_[i] = (w_predicted_[i] - c_v[i]) / shift;
   }
   if (nonlinear_) nonlinear_->begin(shift, v_predicted_.data(), w_predicted_.data(), w_guess);
-  load_of_stills();
+  load_at_zero_acceleration();
 }
 
 void ElementStructure::begin_stage(std::size_t i, const double* v, const double* w) {
@@ -144,11 +144,11 @@ void ElementStructure::begin_stage(std::size_t i, const double* v, const double*
   if (fused()) return;
   motion_->predicted(i, v, w, v_predicted_.data(), w_predicted_.data());
   if (nonlinear_) nonlinear_->begin(stage_.shift, v_predicted_.data(), w_predicted_.data(), w);
-  load_of_stills();
+  load_at_zero_acceleration();
 }
 
-// The load at zero acceleration, into z_.
-void ElementStructure::load_of_stills() {
+// Stores the load at zero acceleration in z_.
+void ElementStructure::load_at_zero_acceleration() {
   stage_.loaded = true;
   statics_->multiply(-1.0, nullptr, w_predicted_.data(), v_predicted_.data(), z_.data());
   external_load(work_.data());
@@ -176,19 +176,19 @@ const ElementCompliance& ElementStructure::compliance(const std::vector<int>& el
   return compliance_;
 }
 
-void ElementStructure::take(const std::vector<double>& loads) {
+void ElementStructure::apply_contact_loads(const std::vector<double>& loads) {
   if (stage_.kind != Kind::fused) return compliance_.add_response(loads, z_.data());
   element_work_ = loads;
   for (double& load : element_work_) load *= stage_.shift2;
-  compliance_.add_response(element_work_, motion_->kept(stage_.number));
+  compliance_.add_response(element_work_, motion_->stored(stage_.number));
 }
 
 const ContactField& ElementStructure::begin_passes(const std::vector<int>& elements) {
-  solves_ = response_.worthwhile(elements.size());
-  if (!solves_) return Structure::begin_passes(elements);
+  uses_response_ = response_.worthwhile(elements.size());
+  if (!uses_response_) return Structure::begin_passes(elements);
   const bool fused = stage_.kind == Kind::fused;
   response_.place(elements, fused ? motion_->ranges() : all_);
-  compliance_.prepare_alone(stage_.shift, stage_.shift2, stage_.added, elements);
+  compliance_.prepare_individual(stage_.shift, stage_.shift2, stage_.added, elements);
   if (fused) {
     response_.set_free([&](std::ptrdiff_t from, int size, double* v, double* w) {
       motion_->states(stage_.number, stage_.v, stage_.w, from, size, v, w);
@@ -205,31 +205,31 @@ const ContactField& ElementStructure::begin_passes(const std::vector<int>& eleme
 }
 
 const ElementCompliance& ElementStructure::own_compliance() const {
-  return solves_ ? compliance_ : Structure::own_compliance();
+  return uses_response_ ? compliance_ : Structure::own_compliance();
 }
 
-void ElementStructure::clear_loads() { solves_ ? response_.clear() : Structure::clear_loads(); }
+void ElementStructure::clear_loads() { uses_response_ ? response_.clear() : Structure::clear_loads(); }
 
 void ElementStructure::respond() {
-  if (!solves_) return Structure::respond();
+  if (!uses_response_) return Structure::respond();
   response_.solve(statics_->factored(stage_.shift, stage_.shift2, stage_.added));
 }
 
 void ElementStructure::find_rates(double shift) {
-  solves_ ? response_.find_rates(shift) : Structure::find_rates(shift);
+  uses_response_ ? response_.find_rates(shift) : Structure::find_rates(shift);
 }
 
-void ElementStructure::take_loads() {
-  if (!solves_) return Structure::take_loads();
+void ElementStructure::apply_pass_loads() {
+  if (!uses_response_) return Structure::apply_pass_loads();
   const bool fused = stage_.kind == Kind::fused;
-  response_.add(fused ? stage_.shift2 : 1.0, fused ? motion_->kept(stage_.number) : z_.data());
+  response_.add(fused ? stage_.shift2 : 1.0, fused ? motion_->stored(stage_.number) : z_.data());
 }
 
-Structure::Verdict ElementStructure::judge() {
-  if (!nonlinear_ || stage_.kind == Kind::fused) return Verdict::settled;
-  switch (nonlinear_->judge(z_.data())) {
-    case NonlinearFoundation::Verdict::settled:
-      return Verdict::settled;
+Structure::Verdict ElementStructure::check_stage() {
+  if (!nonlinear_ || stage_.kind == Kind::fused) return Verdict::converged;
+  switch (nonlinear_->check_stage(z_.data())) {
+    case NonlinearFoundation::Verdict::converged:
+      return Verdict::converged;
     case NonlinearFoundation::Verdict::again:
       return Verdict::again;
     default:
@@ -238,7 +238,7 @@ Structure::Verdict ElementStructure::judge() {
 }
 
 void ElementStructure::end_stage(double* v, double* w) {
-  const double shift = stage_.shift;  // no store to w changes it: the loop goes in vectors
+  const double shift = stage_.shift;  // a local copy lets the compiler vectorise the loop
   for (int i = 0; i < n_; ++i) {
     v[i] = v_predicted_[i] + z_[i];
     w[i] = w_predicted_[i] + shift * z_[i];
@@ -248,26 +248,26 @@ void ElementStructure::end_stage(double* v, double* w) {
 void ElementStructure::update_slip(const double* v, const std::vector<Reach>& loaded) {
   if (!nonlinear_) return;
   nonlinear_->update_slip(v);
-  stand(loaded);
+  update_loaded_range(loaded);
 }
 
-// From the first to the last wheel or force.
-void ElementStructure::stand(const std::vector<Reach>& loaded) {
+// Sets the range from the first to the last wheel or force.
+void ElementStructure::update_loaded_range(const std::vector<Reach>& loaded) {
   Reach train{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const Reach& reach : loaded) train = {std::min(train.from, reach.from), std::max(train.to, reach.to)};
-  nonlinear_->stand(train.from, train.to);
+  nonlinear_->set_loaded_range(train.from, train.to);
 }
 
-std::string ElementStructure::trouble() const { return nonlinear_ ? nonlinear_->worst_point() : std::string(); }
+std::string ElementStructure::failure_reason() const { return nonlinear_ ? nonlinear_->worst_point() : std::string(); }
 
-// --- what is seen --------------------------------------------------------------------------------------------------
+// --- observation ---------------------------------------------------------------------------------------------------
 
 StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   StructureEnergy e;
   e.potential = -base::dot(dead_load_, v);
   if (motion_ && motion_->fused()) {
-    // Where nothing moves all is zero, but for what bends the beam at rest.
-    const BeamMotion::Energy energy = motion_->energy(rest_.empty() ? moving_nodes() : all_, v, w);
+    // Nodes outside the active window contribute nothing, except if the dead load deforms the beam.
+    const BeamMotion::Energy energy = motion_->energy(static_displacements_.empty() ? active_nodes() : all_, v, w);
     e.strain = energy.strain;
     e.kinetic = energy.kinetic;
   } else {
@@ -277,10 +277,10 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
     e.strain = 0.5 * base::dot(work_, v);
   }
   if (nonlinear_) e.strain += nonlinear_->energy();
-  const double slid = nonlinear_ ? nonlinear_->slid() : 0.0;
+  const double slip_loss = nonlinear_ ? nonlinear_->slip_loss() : 0.0;
   if (!motion_) return e;
   measure_dissipation(v, w);
-  e.dissipated = dissipated_ + slid;
+  e.dissipated = dissipated_ + slip_loss;
   if (window_) e.dissipated += window_->energy_left();
   e.work = worked_;
   return e;

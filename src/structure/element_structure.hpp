@@ -1,15 +1,15 @@
-// The structure by its elements: the beam cut over ranks by nodes, its foundation, the track on it.
+// The structure by elements: the beam with its nodes split over ranks, its foundation, the track on it.
 //
 //   v' = w,  M w' = P + contacts - C* w - K* v,   P: its own weight and the moving forces
 //
-// A stage's unknown is the change z of v against v~ = v at zero acceleration: v = v~ + z, w = w~ + s z, w' = s2 z.
-// Being small it keeps the digits that a solve for v itself would lose in w and w'. One solve with
-// A = s2 M + s C* + K* gives z without contacts, the columns of A^-1 at elements their compliance. Around this goes a
-// Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
+// The unknown of a stage is the change z of v from v~ = v at zero acceleration: v = v~ + z, w = w~ + s z, w' = s2 z. z
+// is small, so that w and w' keep the digits that they would lose if v were the unknown. One solution with A = s2 M + s
+// C* + K* gives z without contacts; the columns of A^-1 at elements are their compliance. If there are nonlinear
+// foundations, this is inside a Newton iteration (NonlinearFoundation).
 //
-// Stages of steps of a beam without hinges whose foundations are linear are fused with the solver's sweep (BeamMotion).
-// Where it has Rayleigh's damping alone, spans that do not touch those under the loads go through all stages of a step
-// at once, and what is at rest stays out of the steps (ActiveWindow).
+// For a beam without hinges and with linear foundations, the computation of stages is fused with the solver's sweep
+// (BeamMotion). With Rayleigh damping only, spans that do not touch those under the loads pass through all stages of a
+// step at once, and steps exclude what is at rest (ActiveWindow).
 #pragma once
 
 #include <array>
@@ -29,11 +29,11 @@ namespace traverse::structure {
 
 class ElementStructure final : public Structure {
  public:
-  /// `op`: the beam's operator where there is one already, with its factorisations.
+  /// `op`: the operator of the beam if there is one already, with its factorisations.
   ElementStructure(const beam::Beam& beam, double gravity, std::shared_ptr<BeamOperator> op = nullptr);
 
   bool linear() const override { return !nonlinear_; }
-  void expect_weights(double sum, double greatest) override;
+  void set_reference_loads(double sum, double greatest) override;
 
   void load(const std::vector<beam::ElementLoad>& forces) override;
   void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
@@ -44,18 +44,18 @@ class ElementStructure final : public Structure {
   void begin_stage(std::size_t i, const double* v, const double* w) override;
   void solve_free() override;
   const ElementCompliance& compliance(const std::vector<int>& elements) override;
-  void take(const std::vector<double>& loads) override;
+  void apply_contact_loads(const std::vector<double>& loads) override;
   const ContactField& begin_passes(const std::vector<int>& elements) override;
   const ElementCompliance& own_compliance() const override;
   void clear_loads() override;
   void respond() override;
   void find_rates(double shift) override;
-  void take_loads() override;
-  Verdict judge() override;
+  void apply_pass_loads() override;
+  Verdict check_stage() override;
   void end_stage(double* v, double* w) override;
   void update_slip(const double* v, const std::vector<Reach>& loaded) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
-  std::string trouble() const override;
+  std::string failure_reason() const override;
 
   void limit_to_active_window(double tolerance, const std::vector<double>& probes) override;
   std::optional<double> energy_left() const override {
@@ -65,7 +65,7 @@ class ElementStructure final : public Structure {
   void set_method(const Method& method, double h) override;
   void measure_errors() override { measures_errors_ = true; }
   void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
-  void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) override;
+  void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) override;
   void finish_step(double* v, double* w) override;
   void complete_step(double* v, double* w) override;
   void reject_step(double* v, double* w) override;
@@ -78,14 +78,14 @@ class ElementStructure final : public Structure {
   void keep(base::Archive& archive) override;
 
  private:
-  enum class Kind { statics, state, step, fused };  // of the stage under way
+  enum class Kind { statics, state, step, fused };  // of the present stage
   struct Stage {
     Kind kind = Kind::statics;
     double shift = 0.0, shift2 = 0.0;
-    std::size_t number = 0;  // of the step's
+    std::size_t number = 0;  // index of the stage in the step
     bool loaded = false;
     const AddedSprings* added = nullptr;
-    const double *v = nullptr, *w = nullptr;  // where the step begins
+    const double *v = nullptr, *w = nullptr;  // at the start of the step
   };
   struct Powers {  // this rank's share, W
     double beam = 0.0, forces = 0.0;
@@ -95,8 +95,8 @@ class ElementStructure final : public Structure {
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                   double* w_elements) const override;
   void external_load(double* nodal) const;
-  void load_of_stills();
-  void stand(const std::vector<Reach>& loaded);
+  void load_at_zero_acceleration();
+  void update_loaded_range(const std::vector<Reach>& loaded);
   double dissipation(const double* w);
   int local_node(int column) const;
   bool measured_between_steps() const;
@@ -104,16 +104,16 @@ class ElementStructure final : public Structure {
   void add_dissipation(const BeamMotion::Dissipation& now);
   const std::vector<Range>& find_loaded(const std::vector<Reach>& loaded);
   void make_local(std::vector<Range>& columns) const;
-  const std::vector<Range>& moving_nodes();
+  const std::vector<Range>& active_nodes();
   void set_ranges(const std::vector<Reach>& loaded);
 
   Compliance compliance_;
   ContactResponse response_;
-  bool solves_ = false;                           // in passes, in place of columns of the compliance
-  std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
-  std::vector<NodalLoad> nodal_forces_;           // the moving ones, of ascending unknowns
+  bool uses_response_ = false;                    // in passes: response_, not the columns of compliance_
+  std::optional<NonlinearFoundation> nonlinear_;  // only for a nonlinear foundation
+  std::vector<NodalLoad> nodal_forces_;           // moving forces, unknowns ascending
   Stage stage_;
-  // This rank's unknowns: z of the stage under way, v~ and w~, its load where there is a Newton iteration.
+  // This rank's unknowns: z of the present stage, v~ and w~, and its load if there is a Newton iteration.
   std::vector<double> z_, v_predicted_, w_predicted_, stage_load_, work_;
   std::vector<double> element_work_;
 
@@ -122,25 +122,25 @@ class ElementStructure final : public Structure {
   double length_ = 0.0;  // s, of a step
   std::optional<BeamMotion> motion_;
   std::optional<ActiveWindow> window_;
-  double longest_span_ = 0.0;    // m
-  double rest_tolerance_ = 0.0;  // 0: everything is stepped
-  std::vector<int> watched_;     // columns of probes
-  std::vector<double> rest_;     // deflections under its own weight alone; empty: none
+  double longest_span_ = 0.0;                 // m
+  double window_tolerance_ = 0.0;             // 0: all nodes are in the steps
+  std::vector<int> probe_columns_;            // columns of probes
+  std::vector<double> static_displacements_;  // deflections under the dead load only; empty: none
   std::array<Powers, most_accelerations> powers_;
-  /// Integrals of this rank's powers, J. What is lost, where it is measured, is known up to `unmeasured_` s ago, when
-  /// it was `measured_`.
+  /// Integrals of this rank's powers, J. The measured dissipation is integrated up to `unmeasured_` s ago, when it was
+  /// `measured_`.
   double dissipated_ = 0.0, worked_ = 0.0, unmeasured_ = 0.0;
   BeamMotion::Dissipation measured_;
   bool measuring_ = false, to_measure_ = true;
   struct {
     double dissipated = 0.0, worked = 0.0;
     std::vector<double> v, w;  // of the motion's ranges
-  } before_;                   // the step, where it may be taken back
-  std::vector<Range> free_;    // nodes of parts that nothing loads during the step
-  std::vector<Range> loaded_, moving_, all_;
+  } before_;                   // the start of a step that may be rejected
+  std::vector<Range> free_;    // nodes of parts without loads in the step
+  std::vector<Range> loaded_, active_, all_;
   std::vector<Reach> reaches_;
   bool stepped_ = false;     // since the last restart
-  bool incomplete_ = false;  // these are still at the start of the last step
+  bool incomplete_ = false;  // free_ is at the start of the last step
   bool measures_errors_ = false;
 };
 

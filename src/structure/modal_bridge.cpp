@@ -14,7 +14,7 @@ namespace traverse::structure {
 namespace {
 
 using base::check;
-constexpr double negligible = 1e-6;  // damping between two modes that is none, over the geometric mean of their own
+constexpr double negligible = 1e-6;  // damping between two modes over the geometric mean of their own
 
 base::Handle<Vec> vector(MPI_Comm comm, const double* local, int size) {
   base::Handle<Vec> v;
@@ -36,7 +36,7 @@ ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int coun
   const std::vector<double>& ratio = beam.model().given->ratio;
   for (std::size_t i = 0; i < modes(); ++i) sigma_.push_back(ratio[i] * basis_.omega[i]);
   own_drag_.assign(modes(), 0.0);
-  statics_.yield_by(basis_.shape, basis_.omega, beam_.first_column() * beam_.block());
+  statics_.set_modal_flexibility(basis_.shape, basis_.omega, beam_.first_column() * beam_.block());
   influence_ = influence_of(lines_of_modes(), {});
 }
 
@@ -53,7 +53,7 @@ const double* ModalBridge::shape(std::size_t mode) const {
   return basis_.shape[mode].data() + static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
 }
 
-/// matrix times every shape, this rank's unknowns; zero of no matrix.
+/// The product of a matrix with every shape, this rank's unknowns; zero if there is no matrix.
 Eigen::MatrixXd ModalBridge::on_shapes(Mat matrix) const {
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(beam_.local_unknowns(), static_cast<Eigen::Index>(modes()));
   for (std::size_t i = 0; matrix != nullptr && i < modes(); ++i) {
@@ -79,7 +79,7 @@ void ModalBridge::set_damping(const std::vector<double>& ratios) {
   const beam::Rayleigh ab = beam_.rayleigh();
   if (ratios.empty()) ab_ = ab;
   const auto m = static_cast<Eigen::Index>(modes());
-  Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(m, m);  // what is not Rayleigh's
+  Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(m, m);  // other than Rayleigh damping
   // Rayleigh's b damps the beam, but not the foundation's springs.
   if (beam_.dampers() != nullptr || (beam_.springs() != nullptr && ab.b != 0.0)) {
     const Eigen::MatrixXd forces = on_shapes(beam_.dampers()) - ab.b * on_shapes(beam_.springs());
@@ -101,7 +101,7 @@ void ModalBridge::set_damping(const std::vector<double>& ratios) {
     cross_damping_ = 0.5 * (damping + damping.transpose());
 }
 
-/// `forces` of the damping that is not Rayleigh's, less what the modes themselves take of them.
+/// From the `forces` of the damping that is not Rayleigh damping, minus the modes' own share.
 void ModalBridge::set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share) {
   Eigen::MatrixXd others = on_shapes(beam_.mass()) * share - forces;
   for (Eigen::Index k = 0; k < others.rows(); ++k)
@@ -141,15 +141,15 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   beam::Recovery recovery(beam_, stations, 0.0);
   record_forms(recovery);
   if (forces_on_others_.cols() > 0) record_others(recovery);
-  beam::Recovery heavy(beam_, stations, gravity);
-  record_weight(heavy, gravity);
+  beam::Recovery with_weight(beam_, stations, gravity);
+  record_weight(with_weight, gravity);
   std::vector<Line> lines = lines_of_modes();
   for (const auto quantity : {&beam::Response::deflection, &beam::Response::moment})
     for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
   influence_ = influence_of(lines, stations);
 }
 
-// Deflections by the shapes; moments and what other modes would add are zero.
+// Deflections by the shapes; moments and contributions of other modes are zero.
 void ModalBridge::add_given_probes(const std::vector<double>& stations) {
   for (const std::vector<double>& shape : basis_.shape)
     for (const double x : stations) {
@@ -174,7 +174,7 @@ ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, double gravity
   slopes.count = unknowns.size();
   for (const auto& shape : basis_.shape)
     for (const int unknown : unknowns) slopes.of_q.push_back(shape[static_cast<std::size_t>(unknown)]);
-  const std::vector<double> weight = sagging(gravity);
+  const std::vector<double> weight = weight_displacements(gravity);
   std::vector<Line> lines = lines_of_modes();
   for (const int unknown : unknowns) {
     const auto u = static_cast<std::size_t>(unknown);
@@ -189,47 +189,47 @@ ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, double gravity
 
 void ModalBridge::record_forms(beam::Recovery& recovery) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
-  std::vector<beam::Response> seen;
+  std::vector<beam::Response> responses;
   for (std::size_t i = 0; i < modes(); ++i) {
-    recovery.evaluate(shape(i), zero.data(), zero.data(), {}, seen);
-    for (const beam::Response& r : seen) {
+    recovery.evaluate(shape(i), zero.data(), zero.data(), {}, responses);
+    for (const beam::Response& r : responses) {
       probes_.deflection.push_back(r.deflection);
       probes_.moment.push_back(r.moment);
     }
-    recovery.evaluate(zero.data(), zero.data(), shape(i), {}, seen);
-    const double squared = basis_.omega[i] * basis_.omega[i];  // the mode's own shape where a foundation bends it
-    for (std::size_t p = 0; p < seen.size(); ++p) {
-      probes_.deflection[i * probes_.count + p] -= squared * seen[p].deflection;
-      probes_.moment_by_acceleration.push_back(seen[p].moment);
+    recovery.evaluate(zero.data(), zero.data(), shape(i), {}, responses);
+    const double squared = basis_.omega[i] * basis_.omega[i];  // adds inertia: the mode's shape, also on a bed
+    for (std::size_t p = 0; p < responses.size(); ++p) {
+      probes_.deflection[i * probes_.count + p] -= squared * responses[p].deflection;
+      probes_.moment_by_acceleration.push_back(responses[p].moment);
     }
-    recovery.evaluate(zero.data(), shape(i), zero.data(), {}, seen);
-    for (const beam::Response& r : seen) {
+    recovery.evaluate(zero.data(), shape(i), zero.data(), {}, responses);
+    for (const beam::Response& r : responses) {
       const std::size_t at = probes_.moment_by_rate.size();
       probes_.moment_by_rate.push_back(r.moment + own_drag_[i] * probes_.moment_by_acceleration[at]);
     }
   }
 }
 
-/// Of each mode's rate: what its forces on the others deflect these by.
+/// The static deflections of the other modes per rate of each mode.
 void ModalBridge::record_others(beam::Recovery& recovery) {
   const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
-  std::vector<beam::Response> seen;
+  std::vector<beam::Response> responses;
   for (std::size_t i = 0; i < modes(); ++i) {
     std::vector<double> force(basis_.shape.front().size(), 0.0);
     const auto own = forces_on_others_.col(static_cast<Eigen::Index>(i));
     std::copy(own.begin(), own.end(), force.begin() + begin);
     const std::vector<double> others = static_solution(force);
-    recovery.evaluate(others.data() + begin, zero.data(), zero.data(), {}, seen);
-    for (std::size_t p = 0; p < seen.size(); ++p) {
-      probes_.deflection_by_rate.push_back(seen[p].deflection);
-      probes_.moment_by_rate[i * probes_.count + p] += seen[p].moment;
+    recovery.evaluate(others.data() + begin, zero.data(), zero.data(), {}, responses);
+    for (std::size_t p = 0; p < responses.size(); ++p) {
+      probes_.deflection_by_rate.push_back(responses[p].deflection);
+      probes_.moment_by_rate[i * probes_.count + p] += responses[p].moment;
     }
   }
 }
 
-/// Displacements by the beam's own weight, of all ranks' unknowns.
-std::vector<double> ModalBridge::sagging(double gravity) {
+/// Displacements under the beam's own weight, of all ranks' unknowns.
+std::vector<double> ModalBridge::weight_displacements(double gravity) {
   std::vector<double> weight(basis_.shape.front().size(), 0.0);
   beam_.add_self_weight(gravity, weight.data() + static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block());
   return static_solution(weight);
@@ -237,27 +237,28 @@ std::vector<double> ModalBridge::sagging(double gravity) {
 
 void ModalBridge::record_weight(beam::Recovery& recovery, double gravity) {
   const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
-  const std::vector<double> sagged = sagging(gravity), zero(beam_.local_unknowns(), 0.0);
-  std::vector<beam::Response> seen;
-  recovery.evaluate(sagged.data() + begin, zero.data(), zero.data(), {}, seen);
-  for (const beam::Response& r : seen) {
+  const std::vector<double> displacements = weight_displacements(gravity), zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> responses;
+  recovery.evaluate(displacements.data() + begin, zero.data(), zero.data(), {}, responses);
+  for (const beam::Response& r : responses) {
     probes_.weight_deflection.push_back(r.deflection);
     probes_.weight_moment.push_back(r.moment);
   }
 }
 
-/// The influence line of a response at a probe, less the modes' share. What the nodal values of the probe's element
-/// give is a load on the structure, whose deflections are that line (Maxwell and Betti).
+/// The influence line of a response at a probe, minus the modes' share. By the theorem of Maxwell and Betti it is the
+/// deflection of the structure under a load: the linear form of the nodal values of the probe's element that gives the
+/// response.
 ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size_t p,
                                              double beam::Response::*quantity) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
-  std::vector<beam::Response> seen;
+  std::vector<beam::Response> responses;
   std::vector<double> load(basis_.shape.front().size(), 0.0);
   for (const int unknown : beam_.bridge().transverse(beam_.mesh().locate(recovery.stations()[p]).element)) {
     std::vector<double> unit = zero;
     if (beam_.local(unknown) >= 0) unit[static_cast<std::size_t>(beam_.local(unknown))] = 1.0;
-    recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, seen);
-    load[static_cast<std::size_t>(unknown)] = seen[p].*quantity;
+    recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, responses);
+    load[static_cast<std::size_t>(unknown)] = responses[p].*quantity;
   }
   const std::vector<double>& form = quantity == &beam::Response::deflection ? probes_.deflection : probes_.moment;
   Line line = line_of(load, [&](std::size_t mode) { return form[mode * probes_.count + p]; });
@@ -266,8 +267,8 @@ ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size
   return line;
 }
 
-/// What a unit downward force does to the sum of displacements times `load`, whose form in the modes is given, less the
-/// modes' share.
+/// The influence line of the sum of displacements times `load`, minus the modes' share; `form` is the sum for each
+/// mode.
 ModalBridge::Line ModalBridge::line_of(const std::vector<double>& load,
                                        const std::function<double(std::size_t)>& form) {
   Line line{static_solution(load)};
@@ -286,7 +287,7 @@ PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const s
   PiecewiseCubic influence = {{mesh.start()}, lines.size(), {}};
   for (int e = 0; e < mesh.elements(); ++e) {
     const beam::Element& element = mesh.element(e);
-    std::vector<double> ends = {element.length};  // of the pieces, from the element's left end
+    std::vector<double> ends = {element.length};  // right ends of the pieces, from the element's left end
     for (const double x : stations)
       if (x > element.x && x < element.x + element.length) ends.push_back(x - element.x);
     std::sort(ends.begin(), ends.end());

@@ -1,14 +1,14 @@
 // A bridge under moving forces by its first natural modes, mass-normalised:
 //
-//   v(x, t) = sum phi_i(x) q_i(t) + what the other modes deflect by, taken as static (static correction)
+//   v(x, t) = sum phi_i(x) q_i(t) + static deflection in all other modes (static correction)
 //   q_i'' + 2 sigma_i q_i' + sum_k d_ik q_k' + omega_i^2 q_i = -sum_j F_j phi_i(x_j)          F_j downward
 //
-// The damping d between modes is zero where C* is diagonal in the modes, as Rayleigh damping is. Single dampers, and
-// springs that Rayleigh's b does not damp, couple the modes; what their forces do to the modes left out is taken as
-// static too.
+// The damping d between modes is zero if C* is diagonal in the modes, as Rayleigh damping is. Single dampers, and
+// springs that Rayleigh's b does not damp, couple the modes; the response of the other modes to these forces is static
+// too.
 //
-// On an element phi_i is a cubic polynomial of x, and so is the influence line of any static response. What a unit
-// force does is therefore a list of cubic polynomials, one for each piece between nodes and probes.
+// On an element phi_i is a cubic polynomial of x, and so is the influence line of any static response. The effects of a
+// unit force are therefore a list of cubic polynomials, one for each piece between nodes and probes.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,42 +36,42 @@ struct PiecewiseCubic {
 struct ModalProbes {
   std::size_t count = 0;
   std::vector<double> deflection;          // of q; of q'' it is the acceleration
-  std::vector<double> deflection_by_rate;  // empty where damping does nothing to modes left out
+  std::vector<double> deflection_by_rate;  // empty if damping forces act on no other modes
   std::vector<double> moment, moment_by_rate, moment_by_acceleration;
-  std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: of the beam's own weight
+  std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: due to the beam's own weight
 };
 
 /// Rotations at nodes as linear forms of the modes' coordinates.
 struct ModalSlopes {
   std::size_t count = 0;
   std::vector<double> of_q;    // [mode][rotation]
-  std::vector<double> weight;  // rad, of the beam's own weight
-  /// As ModalBridge::influence, the rotations behind the modal forces.
+  std::vector<double> weight;  // rad, due to the beam's own weight
+  /// As ModalBridge::influence: the modal forces, then the rotations.
   PiecewiseCubic influence;
 };
 
 class ModalBridge {
  public:
-  /// Collective. By these modes of bending. `ratios`: damping ratios of each mode, the last one for all further modes;
-  /// empty: the beam's Rayleigh damping. InputError where the beam floats. The operator may be used further; the beam
-  /// must stay.
+  /// Collective. With these modes of bending. `ratios`: damping ratios of each mode, the last one for all further
+  /// modes; empty: the beam's Rayleigh damping. InputError if the beam is not supported. The operator may be used by
+  /// others; the beam must outlive this object.
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, modes::Basis basis, const std::vector<double>& ratios);
-  /// The `count` lowest, with all copies of the last frequency.
+  /// The `count` lowest modes, and all further ones with the last frequency.
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios)
       : ModalBridge(beam, statics, modes::bending_basis(beam, count), ratios) {}
 
-  /// Collective. The `count` lowest of the modes that the beam's model gives, and nothing besides: there are no others
-  /// that could deflect statically, and moments are not known. The operator's statics are theirs from then on.
+  /// Collective. The `count` lowest of the modes that the beam's model gives. There are no other modes that could
+  /// deflect statically, and moments are unknown. From then on the operator's statics use these modes.
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count);
 
   /// Collective. Adds the response at stations to the forms, and its static correction to the influence. gravity: 0
   /// without self-weight.
   void add_probes(const std::vector<double>& stations, double gravity);
 
-  /// Collective. Rotations of nodes given by their unknowns, where dampers do not couple modes.
+  /// Collective. Rotations of nodes given by their unknowns, if dampers do not couple modes.
   ModalSlopes slopes(const std::vector<int>& unknowns, double gravity);
 
-  /// Whether the modes were given, and are all there is.
+  /// Whether the modes were given, and are complete.
   bool given() const { return beam_.model().given.has_value(); }
   std::size_t modes() const { return basis_.omega.size(); }
   const modes::Basis& basis() const { return basis_; }
@@ -81,26 +81,26 @@ class ModalBridge {
   /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 where C* is diagonal.
   const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
   bool coupled() const { return cross_damping_.size() > 0; }
-  /// Whether dampers couple modes with each other, or with those left out (after add_probes).
+  /// Whether dampers couple modes with each other, or with the other modes (after add_probes).
   bool dampers_couple() const { return coupled() || !probes_.deflection_by_rate.empty(); }
-  /// Adds to this rank's nodal forces what damping does, at the modes' rates q', to the modes left out: -C* phi q' less
+  /// Adds to this rank's nodal forces the damping forces on the other modes, at the modes' rates q': -C* phi q' minus
   /// the modes' share of it.
   void add_forces_on_others(const double* rates, double* nodal) const;
-  /// The free oscillations of coupled modes, found when they are first asked for.
+  /// The free oscillations of coupled modes, computed at the first call.
   const ComplexModes& complex_modes() const;
-  /// Damping given by ratios, 1/s: its forces are the mass times an acceleration own_drag q'.
+  /// Damping from given ratios, 1/s: its forces are the mass times an acceleration own_drag q'.
   const std::vector<double>& own_drag() const { return own_drag_; }
   const ModalProbes& probes() const { return probes_; }
-  /// Of a unit downward force at x: the modal forces; then the deflections of all probes, then their moments,
-  /// less the modes' static share.
+  /// The effects of a unit downward force at x: the modal forces; then the deflections of all probes, then their
+  /// moments, minus the modes' static share.
   const PiecewiseCubic& influence() const { return influence_; }
   const beam::Beam& beam() const { return beam_; }
   /// phi_i, this rank's unknowns.
   const double* shape(std::size_t mode) const;
 
  private:
-  /// Values of a unit downward force's response along x: the nodal values of an influence line, and what a force does
-  /// within the probe's own element.
+  /// Values of a response under a unit downward force along x: the nodal values of an influence line, and the direct
+  /// response if the force is inside the probe's element.
   struct Line {
     std::vector<double> nodal;  // all ranks' unknowns
     std::size_t probe = 0;
@@ -119,15 +119,15 @@ class ModalBridge {
   Line line_of(const std::vector<double>& load, const std::function<double(std::size_t)>& form);
   PiecewiseCubic influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const;
   std::vector<double> static_solution(const std::vector<double>& load);
-  std::vector<double> sagging(double gravity);
+  std::vector<double> weight_displacements(double gravity);
 
   const beam::Beam& beam_;
   BeamOperator& statics_;
   modes::Basis basis_;
   std::vector<double> sigma_, own_drag_;
   Eigen::MatrixXd cross_damping_;
-  beam::Rayleigh ab_;                 // zeros where ratios damp the modes
-  Eigen::MatrixXd forces_on_others_;  // of each mode's rate, this rank's unknowns; no columns where there are none
+  beam::Rayleigh ab_;                 // zero if ratios damp the modes
+  Eigen::MatrixXd forces_on_others_;  // per rate of each mode, this rank's unknowns; no columns: none
   mutable std::optional<ComplexModes> complex_modes_;
   ModalProbes probes_;
   PiecewiseCubic influence_;

@@ -1,4 +1,4 @@
-// Stages and steps of a structure by its modes, and how it yields in a stage.
+// Stages and steps of a structure by modes, and its compliance in a stage.
 #include <algorithm>
 
 #include "structure/modal_structure.hpp"
@@ -27,7 +27,7 @@ void ModalStructure::factorise() {
   factor_.solveInPlace(inverse_);
 }
 
-/// S^-1 force.
+/// Computes S^-1 force.
 void ModalStructure::divide(const double* force, double* displacement) const {
   if (!bridge_.coupled()) {
     for (std::size_t i = 0; i < modes_; ++i) displacement[i] = force[i] / stiffness_[i];
@@ -58,8 +58,8 @@ void ModalStructure::begin_stage(std::size_t stage, const double* v, const doubl
     v_predicted_[i] = v[i] + rule.w_in_v * w[i];
     w_predicted_[i] = w[i];
     for (int j = 0; j < rule.known; ++j) {
-      v_predicted_[i] += rule.a_in_v[j] * kept_[j][i];
-      w_predicted_[i] += rule.a_in_w[j] * kept_[j][i];
+      v_predicted_[i] += rule.a_in_v[j] * accelerations_[j][i];
+      w_predicted_[i] += rule.a_in_w[j] * accelerations_[j][i];
     }
   }
 }
@@ -76,11 +76,11 @@ void ModalStructure::solve_free() {
 
 const ElementCompliance& ModalStructure::compliance(const std::vector<int>& elements) {
   elements_ = elements;
-  yield_.prepare(elements);
-  return yield_;
+  compliance_.prepare(elements);
+  return compliance_;
 }
 
-void ModalStructure::Yield::prepare(const std::vector<int>& elements) {
+void ModalStructure::ModalCompliance::prepare(const std::vector<int>& elements) {
   const bool same = shift_ == structure_.shift_ && shift2_ == structure_.shift2_;
   if (same && elements == elements_) return;
   std::swap(elements_, elements_before_);
@@ -90,36 +90,37 @@ void ModalStructure::Yield::prepare(const std::vector<int>& elements) {
   shift2_ = structure_.shift2_;
   const int count = static_cast<int>(elements_.size()), before = static_cast<int>(elements_before_.size());
   const std::size_t size = static_cast<std::size_t>(m_) * static_cast<std::size_t>(m_);
-  known_as_.assign(elements_.size(), -1);
+  previous_index_.assign(elements_.size(), -1);
   for (std::size_t a = 0; same && a < elements_.size(); ++a) {
     const auto at = std::find(elements_before_.begin(), elements_before_.end(), elements_[a]);
-    if (at != elements_before_.end()) known_as_[a] = static_cast<int>(at - elements_before_.begin());
+    if (at != elements_before_.end()) previous_index_[a] = static_cast<int>(at - elements_before_.begin());
   }
   blocks_.resize(elements_.size() * elements_.size() * size);
   responses_.resize(elements_.size());
   const auto block_at = [&](int a, int b, int of) {
     return static_cast<std::ptrdiff_t>(static_cast<std::size_t>(b * of + a) * size);
   };
-  over_.resize(static_cast<std::size_t>(m_) * structure_.modes_);
+  loaded_shapes_.resize(static_cast<std::size_t>(m_) * structure_.modes_);
   for (int b = 0; b < count; ++b) {
     responses_[b] = {0, count, static_cast<std::size_t>(b) * elements_.size() * size};
     const auto unknowns = structure_.line_.unknowns(elements_[b]);
     for (int k = 0; k < m_; ++k)
-      structure_.divide(structure_.shapes(unknowns[k]), &over_[static_cast<std::size_t>(k) * structure_.modes_]);
+      structure_.divide(structure_.shapes(unknowns[k]),
+                        &loaded_shapes_[static_cast<std::size_t>(k) * structure_.modes_]);
     for (int a = 0; a < count; ++a) {
       double* to = blocks_.data() + block_at(a, b, count);
-      if (known_as_[a] >= 0 && known_as_[b] >= 0)
-        std::copy_n(blocks_before_.data() + block_at(known_as_[a], known_as_[b], before), size, to);
+      if (previous_index_[a] >= 0 && previous_index_[b] >= 0)
+        std::copy_n(blocks_before_.data() + block_at(previous_index_[a], previous_index_[b], before), size, to);
       else
         fill(a, to);
     }
   }
 }
 
-void ModalStructure::Yield::fill(int a, double* to) const {
+void ModalStructure::ModalCompliance::fill(int a, double* to) const {
   const auto unknowns = structure_.line_.unknowns(elements_[a]);
   for (int j = 0; j < m_; ++j) {
-    const double* loaded = &over_[static_cast<std::size_t>(j) * structure_.modes_];
+    const double* loaded = &loaded_shapes_[static_cast<std::size_t>(j) * structure_.modes_];
     for (int k = 0; k < m_; ++k) {
       const double* phi = structure_.shapes(unknowns[k]);
       double sum = 0.0;
@@ -129,11 +130,11 @@ void ModalStructure::Yield::fill(int a, double* to) const {
   }
 }
 
-void ModalStructure::take(const std::vector<double>& loads) {
+void ModalStructure::apply_contact_loads(const std::vector<double>& loads) {
   std::fill(q_.begin(), q_.end(), 0.0);
   add_modal_forces({elements_, loads}, q_.data());
-  divide(q_.data(), moved_.data());
-  for (int i = 0; i < n_; ++i) z_[i] += moved_[i];
+  divide(q_.data(), displacements_.data());
+  for (int i = 0; i < n_; ++i) z_[i] += displacements_[i];
 }
 
 void ModalStructure::end_stage(double* v, double* w) {
@@ -145,7 +146,7 @@ void ModalStructure::end_stage(double* v, double* w) {
 
 void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const double* /*w*/) {
   for (int i = 0; i < n_; ++i) {
-    kept_[stage + 1][i] = shift2_ * z_[i];
+    accelerations_[stage + 1][i] = shift2_ * z_[i];
     w_predicted_[i] += shift_ * z_[i];
   }
   powers_[stage + 1] = {damping(w_predicted_.data()), work_rate(w_predicted_.data())};
@@ -155,20 +156,20 @@ void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const dou
 
 void ModalStructure::begin_motion(const Method& method) {
   method_ = method;
-  for (int j = 0; j < method.step.known; ++j) kept_[j].assign(static_cast<std::size_t>(n_), 0.0);
+  for (int j = 0; j < method.step.known; ++j) accelerations_[j].assign(static_cast<std::size_t>(n_), 0.0);
 }
 
 void ModalStructure::set_method(const Method& method, double /*h*/) { method_ = method; }
 
 void ModalStructure::restart(const std::vector<Reach>& /*loaded*/, double* /*v*/, double* w, const double* a) {
-  std::copy_n(a, n_, kept_[0].begin());
+  std::copy_n(a, n_, accelerations_[0].begin());
   powers_[0].damping = damping(w);
 }
 
-void ModalStructure::begin_step(const std::vector<Reach>& /*loaded*/, const double* v, const double* w, bool keep) {
+void ModalStructure::begin_step(const std::vector<Reach>& /*loaded*/, const double* v, const double* w, bool store) {
   before_.dissipated = dissipated_;
   before_.worked = worked_;
-  if (keep) {
+  if (store) {
     before_.v.assign(v, v + n_);
     before_.w.assign(w, w + n_);
   }
@@ -181,11 +182,11 @@ void ModalStructure::finish_step(double* v, double* w) {
     v[i] += rule.w_in_v * w[i];
     double next = 0.0;
     for (int j = 0; j < rule.known; ++j) {
-      v[i] += rule.a_in_v[j] * kept_[j][i];
-      w[i] += rule.a_in_w[j] * kept_[j][i];
-      next += rule.a_next[j] * kept_[j][i];
+      v[i] += rule.a_in_v[j] * accelerations_[j][i];
+      w[i] += rule.a_in_w[j] * accelerations_[j][i];
+      next += rule.a_next[j] * accelerations_[j][i];
     }
-    kept_[0][i] = next;
+    accelerations_[0][i] = next;
   }
   for (int j = 0; j < rule.known; ++j) {
     dissipated_ += rule.power[j] * powers_[j].damping;
@@ -205,13 +206,13 @@ double ModalStructure::error_energy(const double* /*v*/, const double* /*w*/) {
   const StepRule& rule = method_.step;
   double energy = 0.0;
   for (int i = 0; i < n_; ++i) {
-    double v_off = 0.0, w_off = 0.0;
+    double error_of_v = 0.0, error_of_w = 0.0;
     for (int j = 0; j < rule.known; ++j) {
-      v_off += rule.error_in_v[j] * kept_[j][i];
-      w_off += rule.error_in_w[j] * kept_[j][i];
+      error_of_v += rule.error_in_v[j] * accelerations_[j][i];
+      error_of_w += rule.error_in_w[j] * accelerations_[j][i];
     }
     const double omega = bridge_.omega()[i];
-    energy += 0.5 * (omega * omega * v_off * v_off + w_off * w_off);
+    energy += 0.5 * (omega * omega * error_of_v * error_of_v + error_of_w * error_of_w);
   }
   return energy;
 }

@@ -1,5 +1,5 @@
 // Modal forces, accelerations, energies and nodal values by superposition of the modes; nodal displacements include the
-// static correction for the modes that are left out.
+// static correction for the other modes.
 #include "structure/modal_structure.hpp"
 
 #include <algorithm>
@@ -14,7 +14,10 @@ using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 }  // namespace
 
 ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics)
-    : Structure(bridge.beam(), std::move(statics), gravity), bridge_(bridge), modes_(bridge.modes()), yield_(*this) {
+    : Structure(bridge.beam(), std::move(statics), gravity),
+      bridge_(bridge),
+      modes_(bridge.modes()),
+      compliance_(*this) {
   int rank = 0;
   MPI_Comm_rank(beam_.comm(), &rank);
   n_ = rank == 0 ? static_cast<int>(modes_) : 0;
@@ -23,27 +26,27 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
   for (std::size_t i = 0; i < modes_; ++i)
     for (std::size_t u = 0; u < shape[i].size(); ++u) by_unknown_[u * modes_ + i] = shape[i][u];
 
-  sag_.assign(shape.front().size(), 0.0);
+  weight_displacement_.assign(shape.front().size(), 0.0);
   weight_.assign(modes_, 0.0);
   const auto first = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
   if (gravity != 0.0) {
-    double* own = sag_.data() + first;
+    double* own = weight_displacement_.data() + first;
     std::copy(dead_load_.begin(), dead_load_.end(), own);
     release_held(own);
     statics_->solve_static(own);
     for (std::size_t k = 0; k < dead_load_.size(); ++k) {
-      sag_work_ += dead_load_[k] * own[k];
+      weight_work_ += dead_load_[k] * own[k];
       const double* phi = shapes(static_cast<int>(first) + static_cast<int>(k));
       for (std::size_t i = 0; i < modes_; ++i) weight_[i] += phi[i] * dead_load_[k];
     }
     const auto add_up = [&](double* x, std::size_t count) {
       MPI_Allreduce(MPI_IN_PLACE, x, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, beam_.comm());
     };
-    add_up(sag_.data(), sag_.size());
+    add_up(weight_displacement_.data(), weight_displacement_.size());
     add_up(weight_.data(), modes_);
-    add_up(&sag_work_, 1);
+    add_up(&weight_work_, 1);
   }
-  for (std::vector<double>* x : {&modal_force_, &stiffness_, &v_predicted_, &w_predicted_, &z_, &q_, &moved_})
+  for (std::vector<double>* x : {&modal_force_, &stiffness_, &v_predicted_, &w_predicted_, &z_, &q_, &displacements_})
     x->assign(modes_, 0.0);
   if (bridge_.coupled()) {
     const auto m = static_cast<Eigen::Index>(modes_);
@@ -91,7 +94,7 @@ void ModalStructure::accelerations(const double* v, const double* w, bool own, c
   if (contacts != nullptr) add_modal_forces(*contacts, a);
 }
 
-/// Of rates w, from the modal forces.
+/// Subtracts the cross damping forces at the rates w from the modal forces.
 void ModalStructure::subtract_cross_damping(const double* w, double* forces) const {
   if (!bridge_.coupled()) return;
   Eigen::Map<Eigen::VectorXd>(forces, n_).noalias() -=
@@ -124,7 +127,7 @@ void ModalStructure::add_values(const std::vector<int>& elements, const double* 
     const auto unknowns = line_.unknowns(elements[a]);
     for (std::size_t k = 0; k < m; ++k) {
       const double* phi = shapes(unknowns[k]);
-      double value = sag_[static_cast<std::size_t>(unknowns[k])], rate = 0.0;
+      double value = weight_displacement_[static_cast<std::size_t>(unknowns[k])], rate = 0.0;
       for (std::size_t i = 0; i < modes_; ++i) {
         value += phi[i] * (v != nullptr ? v[i] : v_predicted_[i] + z_[i]);
         rate += phi[i] * (v != nullptr ? w[i] : w_predicted_[i] + shift_ * z_[i]);
@@ -135,14 +138,14 @@ void ModalStructure::add_values(const std::vector<int>& elements, const double* 
   }
 }
 
-// --- what is seen --------------------------------------------------------------------------------------------------
+// --- observation ---------------------------------------------------------------------------------------------------
 
-// Of the modes: what the static correction stores is left out, as is the work that goes there.
+// Energy of the modes only: the energy of the static correction and the work for it are not included.
 StructureEnergy ModalStructure::energy(const double* v, const double* w) {
   StructureEnergy e;
   if (n_ == 0) return e;
-  e.strain = 0.5 * sag_work_;
-  e.potential = -sag_work_;
+  e.strain = 0.5 * weight_work_;
+  e.potential = -weight_work_;
   for (int i = 0; i < n_; ++i) {
     const double omega = bridge_.omega()[i];
     e.kinetic += 0.5 * w[i] * w[i];
@@ -158,7 +161,7 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
                              bool /*with_loads*/, NodalMotion& out) {
   const auto size = static_cast<std::size_t>(beam_.local_unknowns());
   const auto first = static_cast<std::size_t>(beam_.first_column()) * static_cast<std::size_t>(beam_.block());
-  std::vector<double>&q = seen_, &share = share_;
+  std::vector<double>&q = observed_, &share = share_;
   q.assign(4 * modes_, 0.0);
   share.assign(modes_, 0.0);
   if (n_ > 0) {
@@ -170,27 +173,27 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
 
   out.coordinates.assign(q.begin(), q.begin() + static_cast<std::ptrdiff_t>(modes_));
 
-  // Forces but its own weight; what they and dampers deflect it by at rest, less the modes' share of that.
+  // Forces except the self-weight; the static deflections under them and dampers' forces, minus the modes' share.
   out.P.assign(size, 0.0);
   add_contacts(contacts, out.P.data());
   for (const beam::ElementLoad& force : forces_) add_force(line_, force, out.P.data());
-  rest_ = out.P;
-  bridge_.add_forces_on_others(&q[modes_], rest_.data());
-  release_held(rest_.data());
+  static_displacement_ = out.P;
+  bridge_.add_forces_on_others(&q[modes_], static_displacement_.data());
+  release_held(static_displacement_.data());
   const auto rows = static_cast<Eigen::Index>(size), modes = static_cast<Eigen::Index>(modes_);
   const Eigen::Map<const ByRows> phi(by_unknown_.data() + first * modes_, rows, modes);
   Eigen::Map<Eigen::VectorXd>(share.data(), modes).noalias() =
-      phi.transpose() * Eigen::Map<const Eigen::VectorXd>(rest_.data(), rows);
+      phi.transpose() * Eigen::Map<const Eigen::VectorXd>(static_displacement_.data(), rows);
   MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(modes_), MPI_DOUBLE, MPI_SUM, beam_.comm());
   if (bridge_.given()) {  // there are no other modes
-    std::fill(rest_.begin(), rest_.end(), 0.0);
+    std::fill(static_displacement_.begin(), static_displacement_.end(), 0.0);
     std::fill(share.begin(), share.end(), 0.0);
   } else {
-    statics_->solve_static(rest_.data());
+    statics_->solve_static(static_displacement_.data());
   }
   for (std::size_t i = 0; i < modes_; ++i) share[i] /= bridge_.omega()[i] * bridge_.omega()[i];
 
-  Eigen::Map<Eigen::MatrixXd> motion(q.data(), modes, 4);  // q, q', q'', and how damping drags
+  Eigen::Map<Eigen::MatrixXd> motion(q.data(), modes, 4);  // q, q', q'', and accelerations due to own_drag
   for (std::size_t i = 0; i < modes_; ++i) {
     q[i] -= share[i];
     q[3 * modes_ + i] = bridge_.own_drag()[i] * q[modes_ + i];
@@ -202,7 +205,7 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   a_nodal_.resize(size);
   for (std::size_t k = 0; k < size; ++k) {
     const auto row = static_cast<Eigen::Index>(k);
-    v_nodal_[k] = sag_[first + k] + rest_[k] + nodal_(row, 0);
+    v_nodal_[k] = weight_displacement_[first + k] + static_displacement_[k] + nodal_(row, 0);
     w_nodal_[k] = nodal_(row, 1);
     a_nodal_[k] = nodal_(row, 2);
     out.drag[k] = nodal_(row, 3);

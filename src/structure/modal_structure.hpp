@@ -1,12 +1,12 @@
-// The structure by its natural modes, mass-normalised: nodal values v = v_0 + sum phi_i q_i with v_0 under its own
-// weight alone, and
+// The structure by its natural modes, mass-normalised: nodal values v = v_0 + sum phi_i q_i, with v_0 under the
+// self-weight only, and
 //
 //   q_i'' + 2 sigma_i q_i' + sum_k d_ik q_k' + omega_i^2 q_i = phi_i^T (moving forces + contacts)
 //
-// with the damping d between modes, where there is any (modal_bridge.hpp).
-// The contacts feel what the modes yield. What is seen of the bridge carries, besides, what all other modes deflect by
-// as they would at rest (static correction), so that reactions and moments balance the loads exactly. The state is q
-// and q', on the first rank; shapes are on all.
+// with the damping d between modes, if there is any (modal_bridge.hpp).
+// The contacts move with the modes only. Observed values of the bridge also include the static deflection of all other
+// modes (static correction), so that reactions and moments balance the loads exactly. The state is q and q', on the
+// first rank; all ranks store the shapes.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -24,7 +24,7 @@ class ModalStructure final : public Structure {
   /// The bridge must outlive the structure.
   ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics);
 
-  bool yields_inside(bool /*asked*/) const override { return false; }
+  bool uses_local_compliance(bool /*asked*/) const override { return false; }
   void load(const std::vector<beam::ElementLoad>& forces) override;
   void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
   std::array<double, 2> powers(const double* w) override;
@@ -34,48 +34,49 @@ class ModalStructure final : public Structure {
   void begin_stage(std::size_t i, const double* v, const double* w) override;
   void solve_free() override;
   const ElementCompliance& compliance(const std::vector<int>& elements) override;
-  void take(const std::vector<double>& loads) override;
+  void apply_contact_loads(const std::vector<double>& loads) override;
   void end_stage(double* v, double* w) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
 
   void begin_motion(const Method& method) override;
   void set_method(const Method& method, double h) override;
   void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
-  void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) override;
+  void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) override;
   void finish_step(double* v, double* w) override;
   void reject_step(double* v, double* w) override;
-  const double* acceleration() const override { return kept_[0].data(); }
+  const double* acceleration() const override { return accelerations_[0].data(); }
   double error_energy(const double* v, const double* w) override;
 
   StructureEnergy energy(const double* v, const double* w) override;
   void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                NodalMotion& out) override;
   void keep(base::Archive& archive) override {
-    archive.cut(kept_[0]);
+    archive.cut(accelerations_[0]);
     archive.sum(powers_[0].damping, powers_[0].forces, dissipated_, worked_);
   }
 
  private:
-  /// phi S^-1 phi^T between elements, S the stage's matrix.
-  class Yield final : public ElementCompliance {
+  /// phi S^-1 phi^T between elements, with S the stage's matrix.
+  class ModalCompliance final : public ElementCompliance {
    public:
-    explicit Yield(const ModalStructure& structure) : ElementCompliance(structure.per_node()), structure_(structure) {}
-    /// At the structure's stage.
+    explicit ModalCompliance(const ModalStructure& structure)
+        : ElementCompliance(structure.per_node()), structure_(structure) {}
+    /// For the structure's present stage.
     void prepare(const std::vector<int>& elements);
 
    private:
     void fill(int a, double* to) const;
     const ModalStructure& structure_;
-    std::vector<int> elements_, elements_before_, known_as_;
-    double shift_ = -1.0, shift2_ = -1.0;  // of the stage that the blocks are of
+    std::vector<int> elements_, elements_before_, previous_index_;
+    double shift_ = -1.0, shift2_ = -1.0;  // of the stage of the blocks
     std::vector<double> blocks_before_;
-    std::vector<double> over_;  // S^-1 times the shapes of the element that is loaded: [unknown][mode]
+    std::vector<double> loaded_shapes_;  // S^-1 times the shapes of the loaded element: [unknown][mode]
   };
   struct Powers {  // W
     double damping = 0.0, forces = 0.0;
   };
 
-  /// Of an unknown of the beam, counted over all ranks: its value in every mode.
+  /// The values of an unknown of the beam, counted over all ranks, in every mode.
   const double* shapes(int unknown) const { return &by_unknown_[static_cast<std::size_t>(unknown) * modes_]; }
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                   double* w_elements) const override;
@@ -89,32 +90,33 @@ class ModalStructure final : public Structure {
 
   const ModalBridge& bridge_;
   std::size_t modes_;
-  std::vector<double> by_unknown_;         // [unknown][mode]
-  std::vector<double> sag_;                // v_0, of all ranks' unknowns
-  std::vector<double> weight_;             // phi^T of its own weight, N
-  double sag_work_ = 0.0;                  // J, its own weight times v_0
-  std::vector<beam::ElementLoad> forces_;  // the moving ones
-  std::vector<double> modal_force_;        // of these
-  double shift_ = 0.0, shift2_ = 0.0;      // of the stage: of rates, of accelerations by displacements
-  // Of the stage S = s2 + 2 sigma s + omega^2, its diagonal; of coupled modes S^-1 with the damping between them.
+  std::vector<double> by_unknown_;           // [unknown][mode]
+  std::vector<double> weight_displacement_;  // v_0, of all ranks' unknowns
+  std::vector<double> weight_;               // phi^T of the self-weight, N
+  double weight_work_ = 0.0;                 // J, self-weight times v_0
+  std::vector<beam::ElementLoad> forces_;    // the moving forces
+  std::vector<double> modal_force_;          // of the moving forces
+  double shift_ = 0.0, shift2_ = 0.0;        // of the stage: rates, accelerations over displacements
+  // The diagonal of the stage's S = s2 + 2 sigma s + omega^2; for coupled modes S^-1 including the damping between
+  // them.
   std::vector<double> stiffness_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
   Eigen::MatrixXd inverse_;
   std::vector<double> v_predicted_, w_predicted_, z_;  // as in ElementStructure
-  std::vector<int> elements_;                          // of the last yield
-  Yield yield_;
+  std::vector<int> elements_;                          // of the last compliance
+  ModalCompliance compliance_;
   Method method_;
-  std::array<std::vector<double>, most_accelerations> kept_;  // q'' at the start of the step and at its stages
+  std::array<std::vector<double>, most_accelerations> accelerations_;  // q'' at the start of the step and at its stages
   std::array<Powers, most_accelerations> powers_;
   double dissipated_ = 0.0, worked_ = 0.0;  // J, on the first rank
   struct {
     double dissipated = 0.0, worked = 0.0;
     std::vector<double> v, w;
   } before_;
-  std::vector<double> q_, moved_;  // modal forces and what they move, of solve_free and take
-  // What is seen: nodal values, the static solution; q, q', q'' and the modes' share of that.
-  std::vector<double> v_nodal_, w_nodal_, a_nodal_, rest_, seen_, share_;
-  Eigen::MatrixXd nodal_;  // [unknown][as seen_]
+  std::vector<double> q_, displacements_;  // modal forces and their displacements
+  // Observed nodal values, the static solution; q, q', q'' and the modes' share of the static solution.
+  std::vector<double> v_nodal_, w_nodal_, a_nodal_, static_displacement_, observed_, share_;
+  Eigen::MatrixXd nodal_;  // [unknown][as observed_]
 };
 
 }  // namespace traverse::structure

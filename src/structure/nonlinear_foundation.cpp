@@ -1,4 +1,4 @@
-// Forces, energy and dissipation of each non-linear foundation point from its displacement and rate, the history of
+// Forces, energy and dissipation of each nonlinear foundation point from its displacement and rate, the history of
 // points that slide with friction, and the sum of forces over all ranks.
 #include "structure/nonlinear_foundation.hpp"
 
@@ -24,48 +24,49 @@ NonlinearFoundation::NonlinearFoundation(const beam::Beam& beam, const BeamOpera
       point_load_(point_load),
       borders_(2 * static_cast<std::size_t>(op.block()), 0.0) {
   const auto [first, past] = beam.bridge().elements_at(beam.first_column(), beam.local_columns());
-  for (const beam::NonlinearPoint& its : beam::nonlinear_points(beam.bridge(), first, past)) add_point(beam, its, load);
-  for (const beam::NonlinearPoint& its : beam::hanging_sleepers(beam.bridge(), beam.layout(), 0, beam.columns())) {
-    add_point(beam, its, load);
+  for (const beam::NonlinearPoint& source : beam::nonlinear_points(beam.bridge(), first, past))
+    add_point(beam, source, load);
+  for (const beam::NonlinearPoint& source : beam::hanging_sleepers(beam.bridge(), beam.layout(), 0, beam.columns())) {
+    add_point(beam, source, load);
     ++sleepers_;
   }
-  for (const beam::NonlinearPoint& its : beam::sliding_sleepers(beam.bridge(), beam.layout(), 0, beam.columns()))
-    add_point(beam, its, load);
+  for (const beam::NonlinearPoint& source : beam::sliding_sleepers(beam.bridge(), beam.layout(), 0, beam.columns()))
+    add_point(beam, source, load);
   record_terms(beam);
-  wanted_k_.resize(points_.size());
-  wanted_c_.resize(points_.size());
-  for (AddedSprings& springs : kept_) {
+  tangent_k_.resize(points_.size());
+  tangent_c_.resize(points_.size());
+  for (AddedSprings& springs : stored_) {
     springs.terms = &terms_;
-    springs.k.assign(points_.size(), -1.0);  // like nothing that is wanted
+    springs.k.assign(points_.size(), -1.0);  // differs from all required tangents
     springs.c.assign(points_.size(), -1.0);
   }
 }
 
-void NonlinearFoundation::add_point(const beam::Beam& beam, const beam::NonlinearPoint& its, double load) {
-  const beam::NonlinearShape shape = beam::shape_of(beam.bridge(), its);
+void NonlinearFoundation::add_point(const beam::Beam& beam, const beam::NonlinearPoint& source, double load) {
+  const beam::NonlinearShape shape = beam::shape_of(beam.bridge(), source);
   Point p;
-  p.its = its;
+  p.source = source;
   p.terms = static_cast<std::size_t>(shape.count);
   p.shape = shape.shape;
   p.place.fill(-1);
-  bool here = its.kind < beam::foundation_kind_count;
+  bool on_this_rank = source.kind < beam::foundation_kind_count;
   for (std::size_t i = 0; i < p.terms; ++i) {
     const int from_first = shape.unknown[i] - beam.first_column() * block_;
     p.place[i] = shape.unknown[i] < 0 ? -1 : from_first < 0 ? n_ + block_ + from_first : from_first;
     // The left neighbour's column follows this rank's unknowns, then the right neighbour's.
     if (shape.unknown[i] >= 0 && from_first >= n_) p.place[i] = from_first + block_;
-    here = here || beam.local(shape.unknown[i]) >= 0;
+    on_this_rank = on_this_rank || beam.local(shape.unknown[i]) >= 0;
   }
-  if (!here) return;
+  if (!on_this_rank) return;
   p.counted = beam.local(shape.unknown[0]) >= 0;
-  p.reference = its.k + std::cbrt(its.law.cubic * load * load);
+  p.reference = source.k + std::cbrt(source.law.cubic * load * load);
   points_.push_back(p);
 }
 
 void NonlinearFoundation::record_terms(const beam::Beam& beam) {
   const int b = block_;
   for (std::size_t n = 0; n < points_.size(); ++n) {
-    const beam::NonlinearShape s = beam::shape_of(beam.bridge(), points_[n].its);
+    const beam::NonlinearShape s = beam::shape_of(beam.bridge(), points_[n].source);
     const std::size_t terms = points_[n].terms;
     for (std::size_t i = 0; i < terms; ++i) {
       const int row = s.unknown[i] < 0 ? -1 : beam.local(s.unknown[i]);
@@ -93,9 +94,10 @@ void NonlinearFoundation::gather(const double* x, double Point::*into) {
 }
 
 beam::FoundationForce NonlinearFoundation::force_of(const Point& p, double displacement, double rate) {
-  if (!p.slides()) return beam::foundation_force(p.its.law, p.its.k, p.its.c, displacement, rate);
-  const beam::Sliding& law = p.its.sliding;
-  return beam::sliding_force(law.k_of(p.loaded), law.limit_of(p.loaded), p.settled_force, displacement - p.settled);
+  if (!p.slides()) return beam::foundation_force(p.source.law, p.source.k, p.source.c, displacement, rate);
+  const beam::Sliding& law = p.source.sliding;
+  return beam::sliding_force(law.k_of(p.loaded), law.limit_of(p.loaded), p.slip_force,
+                             displacement - p.slip_displacement);
 }
 
 void NonlinearFoundation::evaluate(const double* v, const double* w) {
@@ -133,33 +135,35 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
                                                      : 0;
     forces.of_kind[i].assign(count, 0.0);
   }
-  std::vector<beam::ElementLoad> mine;
+  std::vector<beam::ElementLoad> own_loads;
   forces.below_sleepers.assign(sleepers_, 0.0);
   forces.open_gaps.assign(sleepers_, 0.0);
   forces.of_ground = forces.along_ground = 0.0;
   for (const Point& p : points_) {
     if (!p.counted) continue;
-    if (p.its.kind == beam::below_a_sleeper) {
-      forces.below_sleepers[static_cast<std::size_t>(p.its.index)] = p.state.force;
-      forces.open_gaps[static_cast<std::size_t>(p.its.index)] = p.predicted + p.its.law.gap;
-      if (!p.its.on_bridge && p.its.below < 0) forces.of_ground += p.state.force;
-      if (p.its.on_bridge && p.state.force != 0.0) mine.push_back({p.its.at.element, p.its.at.xi, 0.0, -p.state.force});
+    if (p.source.kind == beam::hanging_sleeper_kind) {
+      forces.below_sleepers[static_cast<std::size_t>(p.source.index)] = p.state.force;
+      forces.open_gaps[static_cast<std::size_t>(p.source.index)] = p.predicted + p.source.law.gap;
+      if (!p.source.on_bridge && p.source.below < 0) forces.of_ground += p.state.force;
+      if (p.source.on_bridge && p.state.force != 0.0)
+        own_loads.push_back({p.source.at.element, p.source.at.xi, 0.0, -p.state.force});
       continue;
     }
     if (p.state.force == 0.0) continue;
-    if (p.its.kind == beam::along_a_sleeper) {
-      const double height = p.its.height, on_beam = -p.state.force;
-      if (p.its.on_bridge) mine.push_back({p.its.at.element, p.its.at.xi, on_beam, 0.0, -height * on_beam});
-      if (!p.its.on_bridge) forces.along_ground += p.state.force;
+    if (p.source.kind == beam::sliding_sleeper_kind) {
+      const double height = p.source.height, on_beam = -p.state.force;
+      if (p.source.on_bridge)
+        own_loads.push_back({p.source.at.element, p.source.at.xi, on_beam, 0.0, -height * on_beam});
+      if (!p.source.on_bridge) forces.along_ground += p.state.force;
       continue;
     }
-    forces.of_kind[p.its.kind][static_cast<std::size_t>(p.its.index)] += p.state.force;
-    beam::ElementLoad load{p.its.at.element, p.its.at.xi};
-    (p.its.direction == Direction::vertical       ? load.fy
-     : p.its.direction == Direction::longitudinal ? load.fx
-                                                  : load.moment) = p.state.force;
-    if (p.its.depth != 0.0) load.moment = p.its.depth * p.state.force;
-    mine.push_back(load);
+    forces.of_kind[p.source.kind][static_cast<std::size_t>(p.source.index)] += p.state.force;
+    beam::ElementLoad load{p.source.at.element, p.source.at.xi};
+    (p.source.direction == Direction::vertical       ? load.fy
+     : p.source.direction == Direction::longitudinal ? load.fx
+                                                     : load.moment) = p.state.force;
+    if (p.source.depth != 0.0) load.moment = p.source.depth * p.state.force;
+    own_loads.push_back(load);
   }
   const auto sum = [&](std::vector<double>& list) {
     if (!list.empty())
@@ -174,33 +178,35 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
   int ranks = 1;
   MPI_Comm_size(comm_, &ranks);
   std::vector<int> counts(static_cast<std::size_t>(ranks)), starts(counts.size(), 0);
-  const int bytes = static_cast<int>(mine.size() * sizeof(beam::ElementLoad));
+  const int bytes = static_cast<int>(own_loads.size() * sizeof(beam::ElementLoad));
   MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_);
   for (std::size_t i = 1; i < starts.size(); ++i) starts[i] = starts[i - 1] + counts[i - 1];
   const std::size_t before = loads.size();
   loads.resize(before + static_cast<std::size_t>(starts.back() + counts.back()) / sizeof(beam::ElementLoad));
-  MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, loads.data() + before, counts.data(), starts.data(), MPI_BYTE, comm_);
+  MPI_Allgatherv(own_loads.data(), bytes, MPI_BYTE, loads.data() + before, counts.data(), starts.data(), MPI_BYTE,
+                 comm_);
 }
 
-// --- sleepers and bearings that slide ------------------------------------------------------------------------------
+// --- sliding sleepers and bearings ---------------------------------------------------------------------------------
 
-void NonlinearFoundation::stand(double from, double to) {
-  for (Point& p : points_) p.loaded = p.slides() && p.its.x >= from - same_station && p.its.x <= to + same_station;
+void NonlinearFoundation::set_loaded_range(double from, double to) {
+  for (Point& p : points_)
+    p.loaded = p.slides() && p.source.x >= from - same_station && p.source.x <= to + same_station;
 }
 
 void NonlinearFoundation::update_slip(const double* v) {
   gather(v, &Point::predicted);
   for (Point& p : points_) {
     if (!p.slides()) continue;
-    const double k = p.its.sliding.k_of(p.loaded), limit = p.its.sliding.limit_of(p.loaded);
+    const double k = p.source.sliding.k_of(p.loaded), limit = p.source.sliding.limit_of(p.loaded);
     p.state = force_of(p, p.predicted, 0.0);
-    const double start = std::clamp(p.settled_force, -limit, limit), force = p.state.force;
-    const double slide = std::abs(p.predicted - p.settled) - std::abs(force - start) / k;
+    const double start = std::clamp(p.slip_force, -limit, limit), force = p.state.force;
+    const double slide = std::abs(p.predicted - p.slip_displacement) - std::abs(force - start) / k;
     const double work = 0.5 * (force * force - start * start) / k + std::abs(force) * slide;
-    if (p.counted) slid_ += p.settled_energy + work - p.state.energy;
-    p.settled_force = force;
-    p.settled = p.predicted;
-    p.settled_energy = p.state.energy;
+    if (p.counted) slip_loss_ += p.slip_energy + work - p.state.energy;
+    p.slip_force = force;
+    p.slip_displacement = p.predicted;
+    p.slip_energy = p.state.energy;
   }
 }
 
@@ -208,8 +214,8 @@ NonlinearFoundation::History NonlinearFoundation::history() const {
   History history;
   for (const Point& p : points_) {
     if (!p.slides()) continue;
-    history.force.push_back(p.settled_force);
-    history.displacement.push_back(p.settled);
+    history.force.push_back(p.slip_force);
+    history.displacement.push_back(p.slip_displacement);
   }
   return history;
 }
@@ -218,14 +224,14 @@ void NonlinearFoundation::set_history(const History& history) {
   std::size_t i = 0;
   for (Point& p : points_) {
     if (!p.slides()) continue;
-    p.settled_force = history.force.empty() ? 0.0 : history.force[i];
-    p.settled = history.force.empty() ? 0.0 : history.displacement[i++];
+    p.slip_force = history.force.empty() ? 0.0 : history.force[i];
+    p.slip_displacement = history.force.empty() ? 0.0 : history.displacement[i++];
   }
 }
 
 void NonlinearFoundation::keep(base::Bytes& bytes) {
-  bytes(points_, current_, versions_, shift_, slid_, iteration_);
-  for (AddedSprings& kept : kept_) bytes(kept.version, kept.k, kept.c);
+  bytes(points_, current_, versions_, shift_, slip_loss_, iteration_);
+  for (AddedSprings& stored : stored_) bytes(stored.version, stored.k, stored.c);
 }
 
 }  // namespace traverse::structure

@@ -1,4 +1,4 @@
-// Stretches of the structure: of columns or nodes, [first, past).
+// Ranges of columns or nodes of the structure, [first, past).
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-/// Sorts them, and makes one of those that overlap or touch; empty ones go. Takes no memory.
+/// Sorts the ranges, merges those that overlap or touch, and removes empty ones. Allocates no memory.
 inline void merge(std::vector<Range>& ranges) {
   std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
   std::size_t count = 0;
@@ -26,16 +26,16 @@ inline void merge(std::vector<Range>& ranges) {
   ranges.resize(count);
 }
 
-/// What of one list is not in the other, both as merge() leaves them, into `rest`.
-inline void subtract(const std::vector<Range>& all, const std::vector<Range>& some, std::vector<Range>& rest) {
-  rest.clear();
+/// Stores the part of one list outside the other in `remaining`; both lists as merge() returns them.
+inline void subtract(const std::vector<Range>& all, const std::vector<Range>& removed, std::vector<Range>& remaining) {
+  remaining.clear();
   for (Range r : all) {
-    for (const Range& s : some) {
+    for (const Range& s : removed) {
       if (s.past <= r.first || s.first >= r.past) continue;
-      if (r.first < s.first) rest.push_back({r.first, s.first});
+      if (r.first < s.first) remaining.push_back({r.first, s.first});
       r.first = std::max(r.first, s.past);
     }
-    if (r.first < r.past) rest.push_back(r);
+    if (r.first < r.past) remaining.push_back(r);
   }
 }
 

@@ -1,10 +1,11 @@
-// Static equilibrium under own weight, imposed strains and settlements, and the transfer of forces to nodal values of
+// Static equilibrium under self-weight, imposed strains and settlements, and the transfer of forces to nodal values of
 // an element by the shape vectors S and T (equations 13 to 15 of the paper).
 #include "structure/structure.hpp"
 
 #include <algorithm>
 
 #include "beam/shape.hpp"
+#include "recovery/spread_load.hpp"
 
 namespace traverse::structure {
 
@@ -20,7 +21,7 @@ Structure::Structure(const beam::Beam& beam, std::shared_ptr<BeamOperator> stati
   for (std::size_t i = 0; i < beam.strain_forces().size(); ++i) dead_load_[i] += beam.strain_forces()[i];
 }
 
-std::vector<double> Structure::rest() {
+std::vector<double> Structure::displacements_without_traffic() {
   const std::vector<double>& imposed = beam_.imposed();
   std::vector<double> v = dead_load_;
   if (!imposed.empty()) {
@@ -42,16 +43,19 @@ void Structure::release_held(double* nodal) const {
 
 std::array<double, 6> on_unknowns(const beam::Line& line, const beam::ElementLoad& force) {
   const beam::Element& element = line.mesh.element(force.element);
-  const auto psi = beam::hermite(force.xi, element.length, element.shear).value;
-  std::array<double, 4> bent{};
-  for (std::size_t i = 0; i < 4; ++i) bent[i] = force.fy * psi[i];
-  if (line.per_node == 2) return {bent[0], bent[1], bent[2], bent[3], 0.0, 0.0};
-  const auto phi = beam::linear(force.xi);
-  if (force.moment != 0.0) {
-    const auto turn = beam::rotation(force.xi, element.length, element.shear);
-    for (std::size_t i = 0; i < 4; ++i) bent[i] += force.moment * turn[i];
-  }
-  return {force.fx * phi[0], bent[0], bent[1], force.fx * phi[1], bent[2], bent[3]};
+  std::array<double, 4> transverse{};
+  std::array<double, 2> along{};
+  beam::for_points(force, 0.0, [&](const beam::ElementLoad& point) {
+    const auto psi = beam::hermite(point.xi, element.length, element.shear).value;
+    for (std::size_t i = 0; i < 4; ++i) transverse[i] += point.fy * psi[i];
+    const auto phi = beam::linear(point.xi);
+    for (std::size_t i = 0; i < 2; ++i) along[i] += point.fx * phi[i];
+    if (point.moment == 0.0) return;
+    const auto turn = beam::rotation(point.xi, element.length, element.shear);
+    for (std::size_t i = 0; i < 4; ++i) transverse[i] += point.moment * turn[i];
+  });
+  if (line.per_node == 2) return {transverse[0], transverse[1], transverse[2], transverse[3], 0.0, 0.0};
+  return {along[0], transverse[0], transverse[1], along[1], transverse[2], transverse[3]};
 }
 
 void Structure::add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const {
@@ -64,12 +68,12 @@ void Structure::add_force(const beam::Line& line, const beam::ElementLoad& force
 void Structure::gather(const std::vector<int>& elements, const double* v, const double* w,
                        std::vector<double>& v_elements, std::vector<double>& w_elements) {
   const std::size_t least = 2 * static_cast<std::size_t>(per_node()), count = elements.size() * least;
-  both_.assign(2 * std::max(count, least), 0.0);
-  add_values(elements, v, w, both_.data(), both_.data() + count);
+  gathered_.assign(2 * std::max(count, least), 0.0);
+  add_values(elements, v, w, gathered_.data(), gathered_.data() + count);
   if (count > 0 && ranks_ > 1)
-    MPI_Allreduce(MPI_IN_PLACE, both_.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, beam_.comm());
-  v_elements.assign(both_.begin(), both_.begin() + static_cast<std::ptrdiff_t>(std::max(count, least)));
-  w_elements.assign(both_.begin() + static_cast<std::ptrdiff_t>(count), both_.end());
+    MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, beam_.comm());
+  v_elements.assign(gathered_.begin(), gathered_.begin() + static_cast<std::ptrdiff_t>(std::max(count, least)));
+  w_elements.assign(gathered_.begin() + static_cast<std::ptrdiff_t>(count), gathered_.end());
 }
 
 void Structure::gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w) {
@@ -80,14 +84,14 @@ const ContactField& Structure::begin_passes(const std::vector<int>& elements) {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node()), size = elements.size() * m;
   gather_free(elements, v_free_, w_free_);
   own_ = &compliance(elements);
-  for (std::vector<double>* x : {&v_passed_, &w_passed_}) x->assign(size + m, 0.0);
+  for (std::vector<double>* x : {&v_pass_, &w_pass_}) x->assign(size + m, 0.0);
   loads_.resize(size);
   field_.slot.resize(elements.size());
   for (std::size_t i = 0; i < elements.size(); ++i) field_.slot[i] = static_cast<int>(i * m);
   for (std::size_t k = 0; k < m; ++k) field_.offset[k] = static_cast<int>(k);
   field_.ground = static_cast<int>(size);
-  field_.v = v_passed_.data();
-  field_.w = w_passed_.data();
+  field_.v = v_pass_.data();
+  field_.w = w_pass_.data();
   field_.load = loads_.data();
   return field_;
 }
@@ -95,12 +99,12 @@ const ContactField& Structure::begin_passes(const std::vector<int>& elements) {
 void Structure::clear_loads() { std::fill(loads_.begin(), loads_.end(), 0.0); }
 
 void Structure::respond() {
-  std::copy_n(v_free_.begin(), loads_.size(), v_passed_.begin());
-  if (!loads_.empty()) own_->respond(loads_, v_passed_);
+  std::copy_n(v_free_.begin(), loads_.size(), v_pass_.begin());
+  if (!loads_.empty()) own_->respond(loads_, v_pass_);
 }
 
 void Structure::find_rates(double shift) {
-  for (std::size_t i = 0; i < loads_.size(); ++i) w_passed_[i] = w_free_[i] + shift * (v_passed_[i] - v_free_[i]);
+  for (std::size_t i = 0; i < loads_.size(); ++i) w_pass_[i] = w_free_[i] + shift * (v_pass_[i] - v_free_[i]);
 }
 
 void Structure::add_contacts(const ElementLoads& contacts, double* nodal) const {

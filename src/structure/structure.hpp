@@ -1,12 +1,12 @@
-// What carries: the structure's side of the coupling. Wheels and forces run on its line; between them and the structure
-// pass nodal values of the line's elements and nothing else, 2*per_node numbers an element:
+// The structure's side of the coupling. Wheels and forces move on the structure's line. The coupling exchanges only
+// nodal values of the line's elements, 2*per_node numbers for each element:
 //
-//   where the elements would be without the contacts' forces (gather),
-//   by how much they yield to such forces (ElementCompliance),
-//   the forces that were found (take).
+//   the motion of the elements without contact forces (gather),
+//   their displacements under contact forces (ElementCompliance),
+//   the computed contact forces (apply_contact_loads).
 //
-// The state of a structure is v and w = v' of its own unknowns: nodal displacements, or coordinates of modes. What a
-// stage is, how it is solved and what is kept of it is the structure's own affair.
+// The state of a structure is v and w = v' of its own unknowns: nodal displacements, or modal coordinates. The kind of
+// structure determines what a stage is, how it is solved, and which of its data are stored.
 #pragma once
 
 #include <array>
@@ -26,17 +26,17 @@
 
 namespace traverse::structure {
 
-/// Forces of contacts as nodal values of elements: 2*per_node an element, N and N m.
+/// Forces of contacts as nodal values of elements: 2*per_node for each element, N and N m.
 struct ElementLoads {
   const std::vector<int>& elements;
   const std::vector<double>& values;
 };
 
-/// A concentrated force on a line as forces on the unknowns of its element, in the order of beam::Line::unknowns. Along
-/// x and as a moment it acts where there are axial unknowns.
+/// A load on a line as forces on the unknowns of its element, in the order of beam::Line::unknowns (equations 13 to
+/// 15). Forces along x have an effect only if there are axial unknowns.
 std::array<double, 6> on_unknowns(const beam::Line& line, const beam::ElementLoad& force);
 
-/// A stretch of the line where a wheel or a force is at some time of a step, m.
+/// The range of the line in which a wheel or a force is during a step, m.
 struct Reach {
   double from = 0.0, to = 0.0;
 };
@@ -44,158 +44,160 @@ struct Reach {
 /// Energies of a structure and the integrals of its powers, J.
 struct StructureEnergy {
   double kinetic = 0.0, strain = 0.0, potential = 0.0;
-  double dissipated = 0.0, work = 0.0;  // since the motion began
+  double dissipated = 0.0, work = 0.0;  // since the start of the motion
 };
 
-/// An accepted instant of a structure, as nodal values of the beam: this rank's.
+/// An accepted instant of a structure, as this rank's nodal values of the beam.
 struct NodalMotion {
   const double *v = nullptr, *w = nullptr, *a = nullptr;
-  std::vector<double> P;     // loads, on held unknowns too, where they are asked for
-  std::vector<double> drag;  // what damping that acts like inertia adds to the accelerations in all forces; empty: none
-  std::vector<double> coordinates;  // of a bridge by its modes: q of each, m kg^(1/2), on every rank
+  std::vector<double> P;            // loads, also on held unknowns, if requested
+  std::vector<double> drag;         // acceleration whose inertia forces equal modal damping forces; empty: none
+  std::vector<double> coordinates;  // by modes: q of each mode, m kg^(1/2), on every rank
   NonlinearForces foundation;
-  std::vector<beam::ElementLoad> foundation_loads;  // of the foundation that is not linear
+  std::vector<beam::ElementLoad> foundation_loads;  // of the nonlinear foundation
 };
 
-/// A structure with n unknowns on this rank. All functions but those that only return a value are collective.
+/// A structure with n unknowns on this rank. All functions are collective, except those that only return a value.
 class Structure {
  public:
-  /// gravity: of the beam's own weight, m/s2; 0: it has none. The beam must outlive the structure.
+  /// gravity: for the self-weight of the beam, m/s2; 0: none. The beam must outlive the structure.
   Structure(const beam::Beam& beam, std::shared_ptr<BeamOperator> statics, double gravity);
   virtual ~Structure() = default;
   Structure(const Structure&) = delete;
   Structure& operator=(const Structure&) = delete;
 
   const beam::Beam& beam() const { return beam_; }
-  const beam::Line& line() const { return line_; }  // that wheels and forces run on
+  const beam::Line& line() const { return line_; }  // of wheels and forces
   int per_node() const { return line_.per_node; }
   int unknowns() const { return n_; }
-  /// The beam's matrices, for what is at rest.
+  /// The beam's matrices, for static problems.
   BeamOperator& statics() const { return *statics_; }
-  /// Nodal forces of the beam's own weight and of its strains, this rank's unknowns of the beam.
+  /// Nodal forces of the self-weight and the strains of the beam, this rank's unknowns of the beam.
   const std::vector<double>& dead_load() const { return dead_load_; }
-  /// Whether what an element yields between its nodes counts under a wheel. A rail bends there, and an element that
-  /// shears has a kink under a wheel, and none at its nodes; others where that is asked for.
-  virtual bool yields_inside(bool asked) const {
-    return asked || beam_.rail() != nullptr || beam_.model().GA.has_value();
+  /// Whether the deflection of an element between its nodes is included under a wheel. Always for a rail, which bends
+  /// there, and for an element with shear, whose deflection has a kink under a wheel but not at the nodes; otherwise if
+  /// requested.
+  virtual bool uses_local_compliance(bool requested) const {
+    return requested || beam_.rail() != nullptr || beam_.model().GA.has_value();
   }
-  /// Whether it is bent or stretched without vehicles and moving forces.
-  bool bent_at_rest() const { return gravity_ != 0.0 || beam_.model().strained(); }
-  /// Collective. Its displacements then, without foundations that are not linear: this rank's unknowns of the beam.
-  std::vector<double> rest();
-  /// Sets nodal forces on unknowns that a support holds to zero: they go into the reactions.
+  /// Whether the structure is deformed without vehicles and moving forces.
+  bool deformed_without_traffic() const { return gravity_ != 0.0 || beam_.model().strained(); }
+  /// Collective. Its displacements then, without nonlinear foundations: this rank's unknowns of the beam.
+  std::vector<double> displacements_without_traffic();
+  /// Sets nodal forces on held unknowns to zero: the supports carry them.
   void release_held(double* nodal) const;
   /// Adds a vertical force (N, upward) inside an element of a line to this rank's nodal forces.
   void add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const;
-  /// Whether the answer to two loads is the sum of the answers.
+  /// Whether the superposition of loads is valid.
   virtual bool linear() const { return true; }
-  /// All that will weigh on it, and the greatest single force, N: what forces of a foundation are judged by.
-  virtual void expect_weights(double /*sum*/, double /*greatest*/) {}
+  /// Sum of all weights and forces, and the greatest single one, N: the reference for forces of a foundation.
+  virtual void set_reference_loads(double /*sum*/, double /*greatest*/) {}
 
   // --- at a state --------------------------------------------------------------------------------------------------
 
-  /// The moving forces from here on, as they stand on the line.
+  /// Sets the moving forces with their present positions.
   virtual void load(const std::vector<beam::ElementLoad>& forces) = 0;
   /// v and w of elements at a state, on all ranks.
   void gather(const std::vector<int>& elements, const double* v, const double* w, std::vector<double>& v_elements,
               std::vector<double>& w_elements);
-  /// w' of a state, of what is asked for: all that acts but contacts, and contacts (null: none).
+  /// w' of a state due to all loads but contacts (`own`), and due to contacts (null: none).
   virtual void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) = 0;
-  /// Power lost in damping, and that of the moving forces, W: this rank's share at the state whose accelerations were
-  /// asked for last, or of the stage that was solved last.
+  /// Power lost in damping, and power of the moving forces, W: this rank's share at the state whose accelerations were
+  /// computed last, or of the stage that was solved last.
   virtual std::array<double, 2> powers(const double* w) = 0;
 
   // --- a stage -----------------------------------------------------------------------------------------------------
 
-  enum class Verdict { settled, again, failed };
+  enum class Verdict { converged, again, failed };
 
-  /// Statics under its own weight and the moving forces; `loaded`: whether there is anything of that.
+  /// Statics under self-weight and moving forces; `loaded`: whether there are any.
   virtual void begin_statics(bool loaded) = 0;
-  /// v and w with v' = w = shift*v + c_v, w' = shift*w + c_w; w_guess: about what w will be.
+  /// v and w with v' = w = shift*v + c_v, w' = shift*w + c_w; w_guess: an approximation of w.
   virtual void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) = 0;
   /// Stage i, counted from 0, of the step from v, w.
   virtual void begin_stage(std::size_t i, const double* v, const double* w) = 0;
-  /// Where it is without contacts.
+  /// Computes the stage without contact forces.
   virtual void solve_free() = 0;
-  /// v and w of elements there, on all ranks.
+  /// v and w of elements in that solution, on all ranks.
   void gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w);
-  /// How these elements yield to forces on them in this stage.
+  /// Displacements of these elements under forces on them in this stage.
   virtual const ElementCompliance& compliance(const std::vector<int>& elements) = 0;
-  /// The contacts' forces on these elements, 2 per_node values each, N and N m.
-  virtual void take(const std::vector<double>& loads) = 0;
-  /// Whether the stage is solved, or has to be solved once more from solve_free on.
-  virtual Verdict judge() { return Verdict::settled; }
+  /// Adds the response to contact forces on these elements, 2 per_node values each, N and N m.
+  virtual void apply_contact_loads(const std::vector<double>& loads) = 0;
+  /// Whether the stage is solved, or has to be solved again from solve_free on.
+  virtual Verdict check_stage() { return Verdict::converged; }
 
-  // The contacts of a stage by passes, in place of gather_free, compliance and take: loads are cleared, added to the
-  // field and responded to until the contacts' forces no longer change, and taken then.
+  // The contacts of a stage by passes, in place of gather_free, compliance and apply_contact_loads: in each pass loads
+  // are cleared, new loads are added to the field, and the response is computed, until the contact forces no longer
+  // change. Then the loads are applied.
 
-  /// From solve_free on, with contacts on these elements, ascending.
+  /// After solve_free, with contacts on these elements, ascending.
   virtual const ContactField& begin_passes(const std::vector<int>& elements);
-  /// How each of them yields to forces on itself alone.
+  /// The displacements of each of them under forces on itself only.
   virtual const ElementCompliance& own_compliance() const { return *own_; }
   virtual void clear_loads();
-  /// The field's v under its loads.
+  /// Computes the field's v under its loads.
   virtual void respond();
-  /// The field's w, which follows its v by `shift` (1/s).
+  /// Computes the field's w: its change is `shift` (1/s) times the change of v.
   virtual void find_rates(double shift);
-  virtual void take_loads() {
-    if (!loads_.empty()) take(loads_);
+  virtual void apply_pass_loads() {
+    if (!loads_.empty()) apply_contact_loads(loads_);
   }
-  /// The loads of the last pass, 2 per_node values an element of begin_passes; ElementStructure::observe asks for none.
+  /// The loads of the last pass, 2 per_node values for each element of begin_passes; ElementStructure::observe needs
+  /// none.
   const std::vector<double>& pass_loads() const { return loads_; }
 
-  /// v and w of a stage that is not one of a step.
+  /// v and w of a stage that does not belong to a step.
   virtual void end_stage(double* v, double* w) = 0;
-  /// What slides has slid to v, from which the motion goes on with wheels and forces there.
+  /// Updates the slip history with v; the motion continues with wheels and forces in these ranges.
   virtual void update_slip(const double* /*v*/, const std::vector<Reach>& /*loaded*/) {}
-  /// Keeps what the step needs of its stage i.
+  /// Stores the data of stage i that the step needs.
   virtual void end_stage(std::size_t i, const double* v, const double* w) = 0;
-  /// Why a stage has no solution, for messages.
-  virtual std::string trouble() const { return {}; }
+  /// The reason why a stage has no solution, for messages.
+  virtual std::string failure_reason() const { return {}; }
 
   // --- steps -------------------------------------------------------------------------------------------------------
 
-  /// Leaves out of the steps what moves less than `tolerance` of the largest motion (active_window.hpp); before
-  /// begin_motion. Probes' stations rest only when really quiet.
+  /// Excludes motion below `tolerance` of the largest motion from the steps (active_window.hpp); before begin_motion.
+  /// At the stations of probes only much smaller motion is excluded.
   virtual void limit_to_active_window(double /*tolerance*/, const std::vector<double>& /*probes*/) {}
-  /// J, put to rest so far, this rank's share; none where everything is stepped.
+  /// J, energy lost by setting nodes to rest so far, this rank's share; none if all nodes are in the steps.
   virtual std::optional<double> energy_left() const { return std::nullopt; }
-  /// The method of all steps to come, for steps of 1 s.
+  /// The method of all following steps, for steps of 1 s.
   virtual void begin_motion(const Method& method) = 0;
   /// The same for steps of h.
   virtual void set_method(const Method& method, double h) = 0;
-  /// Every step is to be asked for its error.
+  /// The errors of all steps will be requested.
   virtual void measure_errors() {}
-  /// Before the first step from a state with the accelerations a, and where the state was changed from outside; v and w
-  /// may be put to rest where they hardly move.
+  /// Before the first step from a state with the accelerations a, and after a change of the state from outside; v and w
+  /// may be set to rest where they are negligible.
   virtual void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) = 0;
-  /// `loaded`: where wheels and forces will be; keep: the step may be taken back.
-  virtual void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) = 0;
+  /// `loaded`: ranges of wheels and forces in the step; store: the step may be rejected.
+  virtual void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) = 0;
   virtual void finish_step(double* v, double* w) = 0;
-  /// What may be done once no step will be taken back.
+  /// The computations for which the step must be final.
   virtual void complete_step(double* /*v*/, double* /*w*/) {}
   virtual void reject_step(double* v, double* w) = 0;
-  /// w' at the state that the last step led to.
+  /// w' at the end of the last step.
   virtual const double* acceleration() const = 0;
-  /// Energy of the step's error as the method's embedded one estimates it, J: this rank's share. Once all stages are
-  /// solved.
+  /// Energy of the step's error as the embedded method estimates it, J: this rank's share. After all stages are solved.
   virtual double error_energy(const double* v, const double* w) = 0;
 
-  // --- what is seen ------------------------------------------------------------------------------------------------
+  // --- observation -------------------------------------------------------------------------------------------------
 
   /// This rank's share.
   virtual StructureEnergy energy(const double* v, const double* w) = 0;
   /// A state with its accelerations as nodal values, under the moving forces and the contacts' loads; with_loads:
-  /// whether NodalMotion::P is asked for.
+  /// whether NodalMotion::P is requested.
   virtual void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                        NodalMotion& out) = 0;
 
-  /// Between steps: what changes with time but v and w. When it is read the method has been set.
+  /// Writes or reads the state between steps except v and w. Before reading, the method has been set.
   virtual void keep(base::Archive& archive) = 0;
 
  protected:
-  /// v and w of elements, this rank's part of them; at a state, or, with null pointers, at the free response of the
-  /// stage. Both begin as zeros.
+  /// v and w of elements, this rank's part of them; at a state, or with null pointers the free response of the stage.
+  /// Both arrays begin as zeros.
   virtual void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                           double* w_elements) const = 0;
   void add_contacts(const ElementLoads& contacts, double* nodal) const;  // to this rank's nodal forces
@@ -208,11 +210,11 @@ class Structure {
   int n_, ranks_ = 1;
 
  private:
-  std::vector<double> both_;  // of gather
-  // Of the contacts' passes
+  std::vector<double> gathered_;  // of gather
+  // For the contacts' passes
   ContactField field_;
   const ElementCompliance* own_ = nullptr;
-  std::vector<double> v_free_, w_free_, v_passed_, w_passed_, loads_;
+  std::vector<double> v_free_, w_free_, v_pass_, w_pass_, loads_;
 };
 
 }  // namespace traverse::structure

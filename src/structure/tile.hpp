@@ -1,4 +1,4 @@
-// The columns of a tile unknown by unknown, as products with many nodes at a time take them.
+// The columns of a tile, one array for each unknown, for products with many nodes at a time.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace traverse::structure {
 
-/// body(the block's size as a constant, -1: another), so that what goes from columns to planes is straight code.
+/// Calls body(size of the block as a constant; -1: other sizes), so that the compiler can unroll loops over the block.
 template <class Body>
 void with_block(int block, Body body) {
   switch (block) {
@@ -26,9 +26,9 @@ void with_block(int block, Body body) {
   }
 }
 
-/// The columns from the one before a tile to the one behind it, an array for each unknown.
+/// The columns from the one before a tile to the one after it, an array for each unknown.
 struct Tile {
-  std::array<std::array<double, beam::tile + 2 + beam::abreast>, beam::kinds> plane;
+  std::array<std::array<double, beam::tile + 2 + beam::nodes_per_step>, beam::kinds> plane;
 
   beam::Planes planes() {
     beam::Planes result;
@@ -45,7 +45,7 @@ struct Tile {
         for (int c = 0; c < b; ++c) plane[c][first + i] = columns[b * i + c];
     });
   }
-  /// columns += factor * those of the first `count`.
+  /// columns += factor * the first `count` columns.
   void add_to(int block, int count, double factor, double* columns) const {
     with_block(block, [&](auto B) {
       const int b = B > 0 ? B : block;

@@ -1,5 +1,5 @@
-// Regular axle distance d from the pairs of axles, resonance speeds v = f d/i, and speeds v = 2 f L/m at which a force
-// leaves a mode of a simply supported span without vibration.
+// Computes the axle distance of a train, its resonance speeds v = f d/i, and the cancellation speeds v = 2 f L/m of a
+// simply supported span.
 #include "study/resonances.hpp"
 
 #include <algorithm>
@@ -12,14 +12,16 @@
 namespace traverse::app {
 namespace {
 
-constexpr double same_place = 0.005;  // m: axles that meet
-constexpr double most_of_it = 0.55;   // of the weight, that meets axles again
-constexpr int highest_multiple = 4;   // i
-constexpr double near = 0.5;          // of a resonance's width: its peak is so near, or at one of the speeds beside it
-constexpr double part_of_width = 0.25;   // of a resonance's width: speeds so near show its peak
-constexpr std::size_t most_axles = 400;  // of a train, the first ones, that its distance is looked for among
+constexpr double same_position = 0.005;  // m: two axles are at the same position below this difference
+constexpr double repeated_share = 0.55;  // share of the train's weight that the axle distance has to repeat
+constexpr int highest_multiple = 4;      // largest i
+constexpr double largest_offset =
+    0.5;  // resonance widths: largest distance between a resonance speed and its computed peak
+constexpr double resolved_offset =
+    0.25;                               // resonance widths: largest distance to a computed speed that resolves the peak
+constexpr std::size_t max_axles = 400;  // number of leading axles from which the axle distance is computed
 constexpr double rounding = 1e-9;
-constexpr int most_nodes = 1000;  // of bridges whose frequencies are found unasked
+constexpr int max_nodes = 1000;  // nodes of the largest bridge whose frequencies are computed for predictions only
 
 struct Axles {
   std::vector<double> x, forces;
@@ -30,7 +32,7 @@ struct Axles {
   }
 };
 
-/// Of train number `train` of the sweep; wheels count alike.
+/// The axles of train number `train` of the sweep. All wheels have the same weight here.
 Axles axles_of(const Scene& scene, std::size_t train) {
   if (!scene.vehicles.empty()) {
     const std::vector<double> x = wheels_at_start(scene);
@@ -43,20 +45,20 @@ Axles axles_of(const Scene& scene, std::size_t train) {
 std::size_t trains_of(const Scene& scene) { return std::max<std::size_t>(1, scene.sweep->loads.size()); }
 
 bool simple_spans(const beam::BeamModel& beam) {
-  const auto holds_ends_alone = [](beam::Support s) { return beam::fixes_vertical(s) && !beam::fixes_rotation(s); };
+  const auto simple_support = [](beam::Support s) { return beam::fixes_vertical(s) && !beam::fixes_rotation(s); };
   const bool foundation =
       std::any_of(beam::foundation_kinds.begin(), beam::foundation_kinds.end(), [&](const beam::FoundationKind& kind) {
         return beam::acts(kind, beam) && (kind.bed != nullptr ? (beam.foundation.*kind.bed).has_value()
                                                               : !(beam.foundation.*kind.points).empty());
       });
-  return std::all_of(beam.supports.begin(), beam.supports.end(), holds_ends_alone) && beam.EI.uniform() &&
+  return std::all_of(beam.supports.begin(), beam.supports.end(), simple_support) && beam.EI.uniform() &&
          beam.mass.uniform() && !beam.track && beam.hinges.empty() && beam.cracks.empty() && !foundation &&
          (beam.spans.size() == 1 || beam.all_separate()) &&
          std::all_of(beam.spans.begin(), beam.spans.end(), [&](double span) { return span == beam.spans.front(); });
 }
 
-/// A train's largest values at each speed; NaN where its run has not ended.
-std::vector<double> worst_of_probes(const results::StudyTable& sweep, const char* column, std::size_t train) {
+/// The largest value over the probes at each speed; NaN where the run has not ended.
+std::vector<double> largest_over_probes(const results::StudyTable& sweep, const char* column, std::size_t train) {
   const std::vector<double>& values = sweep.find(column)->values;
   const std::size_t speeds = results::speeds_of_sweep(sweep.study()).size(), probes = sweep.probes();
   std::vector<double> worst;
@@ -67,12 +69,12 @@ std::vector<double> worst_of_probes(const results::StudyTable& sweep, const char
   return worst;
 }
 
-/// The highest local peak near a resonance; Resonance::none: there is none.
+/// The speed of the highest local maximum near a resonance; Resonance::none if there is none.
 double peak_near(const std::vector<double>& speed, const std::vector<double>& value, const results::Resonance& r) {
   double found = results::Resonance::none, highest = 0.0;
   for (std::size_t i = 1; i + 1 < speed.size(); ++i) {
     const bool close =
-        std::abs(speed[i] - r.speed) <= near * r.width || (speed[i - 1] < r.speed && r.speed < speed[i + 1]);
+        std::abs(speed[i] - r.speed) <= largest_offset * r.width || (speed[i - 1] < r.speed && r.speed < speed[i + 1]);
     if (!close || !(value[i] > highest && value[i] >= value[i - 1] && value[i] >= value[i + 1])) continue;
     highest = value[i];
     found = speed[i];
@@ -83,31 +85,31 @@ double peak_near(const std::vector<double>& speed, const std::vector<double>& va
 }  // namespace
 
 double regular_distance(std::span<const double> x, std::span<const double> forces) {
-  const std::size_t count = std::min(x.size(), most_axles);
-  std::vector<std::pair<double, double>> pairs;  // their distance, the lesser force
+  const std::size_t count = std::min(x.size(), max_axles);
+  std::vector<std::pair<double, double>> pairs;  // distance, lesser force
   double weight = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     weight += forces[i];
     for (std::size_t j = 0; j < count; ++j)
-      if (x[j] - x[i] > same_place) pairs.emplace_back(x[j] - x[i], std::min(forces[i], forces[j]));
+      if (x[j] - x[i] > same_position) pairs.emplace_back(x[j] - x[i], std::min(forces[i], forces[j]));
   }
   std::sort(pairs.begin(), pairs.end());
   double best = 0.0, distance = 0.0;
-  for (std::size_t from = 0, past = 0; from < pairs.size(); from = past) {
-    double met = 0.0, moment = 0.0;
-    for (; past < pairs.size() && pairs[past].first - pairs[from].first < same_place; ++past) {
-      met += pairs[past].second;
-      moment += pairs[past].second * pairs[past].first;
+  for (std::size_t from = 0, group_end = 0; from < pairs.size(); from = group_end) {
+    double matched = 0.0, moment = 0.0;
+    for (; group_end < pairs.size() && pairs[group_end].first - pairs[from].first < same_position; ++group_end) {
+      matched += pairs[group_end].second;
+      moment += pairs[group_end].second * pairs[group_end].first;
     }
-    if (met <= best * (1.0 + rounding)) continue;
-    best = met;
-    distance = moment / met;
+    if (matched <= best * (1.0 + rounding)) continue;
+    best = matched;
+    distance = moment / matched;
   }
-  return best > most_of_it * weight ? distance : 0.0;
+  return best > repeated_share * weight ? distance : 0.0;
 }
 
 std::vector<double> resonant_frequencies(const SharedBeam& shared) {
-  if (!shared.modal && shared.beam->mesh().nodes() > most_nodes) return {};
+  if (!shared.modal && shared.beam->mesh().nodes() > max_nodes) return {};
   return first_frequencies(shared);
 }
 
@@ -147,18 +149,18 @@ void find_peaks(const results::StudyTable& sweep, std::vector<results::Resonance
   if (sweep.probes() == 0) return;
   const std::vector<double>& speeds = results::speeds_of_sweep(sweep.study());
   for (results::Resonance& r : resonances) {
-    r.of_deflection = peak_near(speeds, worst_of_probes(sweep, "peak_deflection", r.train), r);
-    r.of_acceleration = peak_near(speeds, worst_of_probes(sweep, "peak_acceleration", r.train), r);
+    r.of_deflection = peak_near(speeds, largest_over_probes(sweep, "peak_deflection", r.train), r);
+    r.of_acceleration = peak_near(speeds, largest_over_probes(sweep, "peak_acceleration", r.train), r);
   }
 }
 
-std::vector<double> unseen(std::span<const results::Resonance> resonances, std::span<const double> speeds) {
+std::vector<double> unresolved(std::span<const results::Resonance> resonances, std::span<const double> speeds) {
   std::vector<double> found;
   for (const results::Resonance& r : resonances) {
     const auto next = std::lower_bound(speeds.begin(), speeds.end(), r.speed);
     const double above = next == speeds.end() ? r.width : *next - r.speed;
     const double below = next == speeds.begin() ? r.width : r.speed - *(next - 1);
-    if (std::min(above, below) > part_of_width * r.width) found.push_back(r.speed);
+    if (std::min(above, below) > resolved_offset * r.width) found.push_back(r.speed);
   }
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());

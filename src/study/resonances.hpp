@@ -1,4 +1,4 @@
-// Speeds at which a train of regular axles should set a bridge swinging, and at which an axle should leave it at rest.
+// Resonance speeds of trains with a regular axle distance, and cancellation speeds of simply supported spans.
 #pragma once
 
 #include <span>
@@ -12,30 +12,30 @@
 
 namespace traverse::app {
 
-/// The distance (m, above 0) by which a train has to be shifted so that most of its weight meets axles again, each pair
-/// counted by the lesser force; 0 where that is never more than half of the weight. Of equal ones the shortest. x in m.
+/// The axle distance (m): the shift of a train by which most of its weight falls on its own axles again. Each pair of
+/// axles counts with the lesser force. 0 if no shift repeats more than about half of the weight; the shortest one of
+/// equal shifts. x in m.
 double regular_distance(std::span<const double> x, std::span<const double> forces);
 
-/// Hz, ascending: the distinct frequencies of bending that resonances are predicted from, three at most; none where
-/// so long a bridge makes them dear.
+/// Ascending, Hz: the first three distinct bending frequencies at most. Empty for a bridge with so many nodes that
+/// computing them would be expensive.
 std::vector<double> resonant_frequencies(const SharedBeam& shared);
 
-/// v = f d/i for i = 1 to 4 within these speeds (m/s), by train, frequency and i.
+/// The speeds v = f d/i for i = 1 to 4 within the given range (m/s), sorted by train, frequency and i.
 std::vector<results::Resonance> resonances_of(const Scene& scene, std::span<const double> frequencies, double slowest,
                                               double fastest);
 
-/// Of uniform spans L, each simply supported and nothing else: v = 2 f_n L/(n + 2 k), at which a constant force leaves
-/// no motion behind in mode n without damping. A force drives the mode by sin(n pi v t/L); what is left after it is
-/// proportional to cos(n pi) - cos(omega L/v) and to sin(omega L/v), both zero where omega L/v = (n + 2 k) pi, but for
-/// k = 0, where the drive itself is in resonance.
+/// For equal, uniform, simply supported spans L without foundations: the speeds v = 2 f_n L/(n + 2 k), at which a
+/// constant force leaves no free vibration in the undamped mode n. The force excites the mode by sin(n pi v t/L). The
+/// vibration after it is proportional to cos(n pi) - cos(omega L/v) and to sin(omega L/v); both are zero if omega L/v =
+/// (n + 2 k) pi. For k = 0 the excitation itself is resonant.
 std::vector<results::Cancellation> cancellations_of(const beam::BeamModel& beam, std::span<const double> frequencies,
                                                     double slowest, double fastest);
 
-/// Fills in where the sweep's own curves have their peaks near each resonance.
+/// Sets the peaks of the computed curves near each resonance.
 void find_peaks(const results::StudyTable& sweep, std::vector<results::Resonance>& resonances);
 
-/// Those of the speeds of resonance that stand so far from all of `speeds` (ascending) that their peaks may lie unseen
-/// between two of these.
-std::vector<double> unseen(std::span<const results::Resonance> resonances, std::span<const double> speeds);
+/// The resonance speeds whose peaks may not be resolved by `speeds` (ascending), because all of these are too far away.
+std::vector<double> unresolved(std::span<const results::Resonance> resonances, std::span<const double> speeds);
 
 }  // namespace traverse::app

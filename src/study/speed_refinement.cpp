@@ -9,12 +9,12 @@
 namespace traverse::app {
 namespace {
 
-constexpr double shortest_interval = 1e-7;  // of the speed
-constexpr double sharper = 4.0;             // times the bend that is seen: a peak between two speeds may have
-constexpr double fine_enough = 1e-2;        // of a resonance, which its neighbours lack at most
+constexpr double shortest_interval = 1e-7;  // relative to the speed
+constexpr double curvature_factor = 4.0;    // ratio of a peak's possible curvature to the computed curvature
+constexpr double accepted_error = 1e-2;     // largest relative error of a peak that is accepted
 
-/// -y'' of the parabola through a sample and its neighbours; 0 where it is bent the other way, or at either end.
-double bend_at(const std::vector<double>& v, const std::vector<double>& y, std::size_t i) {
+/// The curvature -y'' of the parabola through a sample and its neighbours; 0 if it is negative, and at both ends.
+double curvature_at(const std::vector<double>& v, const std::vector<double>& y, std::size_t i) {
   if (i == 0 || i + 1 >= v.size()) return 0.0;
   const double before = (y[i] - y[i - 1]) / (v[i] - v[i - 1]), after = (y[i + 1] - y[i]) / (v[i + 1] - v[i]);
   return std::max(0.0, 2.0 * (before - after) / (v[i + 1] - v[i - 1]));
@@ -36,8 +36,8 @@ Refinement refine(const std::vector<double>& speed, const std::vector<SpeedCurve
     if (!(largest > 0.0)) continue;
     for (std::size_t i = 0; i + 1 < v.size(); ++i) {
       const double h = v[i + 1] - v[i];
-      const double bend = std::max(bend_at(v, y, i), bend_at(v, y, i + 1));
-      const double above = (std::max(y[i], y[i + 1]) + 0.125 * sharper * bend * h * h) / largest - 1.0;
+      const double curvature = std::max(curvature_at(v, y, i), curvature_at(v, y, i + 1));
+      const double above = (std::max(y[i], y[i + 1]) + 0.125 * curvature_factor * curvature * h * h) / largest - 1.0;
       if (above > refinement.uncertainty) {
         refinement.uncertainty = above;
         refinement.curve = curve.name;
@@ -56,8 +56,8 @@ Refinement refine_for_limits(const std::vector<double>& speed, const std::vector
     for (std::size_t i = 0; i + 1 < speed.size(); ++i) {
       const double h = speed[i + 1] - speed[i], middle = speed[i] + 0.5 * h;
       const double above = std::hypot(1.0, h / (width * middle)) - 1.0;
-      const double highest = std::fmax(curve.value[i], curve.value[i + 1]);  // passes over runs that do not know it
-      if (above <= fine_enough || !((1.0 + above) * highest > limit)) continue;
+      const double highest = std::fmax(curve.value[i], curve.value[i + 1]);  // ignores NaN
+      if (above <= accepted_error || !((1.0 + above) * highest > limit)) continue;
       added.insert(middle);
       if (above <= refinement.uncertainty) continue;
       refinement.uncertainty = above;

@@ -1,4 +1,4 @@
-// Speeds that a sweep adds by itself near its peaks, until it knows each of them as well as is wanted.
+// Computes the speeds that a sweep adds near its peaks until each peak is known to the wanted accuracy.
 #pragma once
 
 #include <cstddef>
@@ -10,34 +10,34 @@ namespace traverse::app {
 /// A quantity of one train over the speed.
 struct SpeedCurve {
   std::string name;
-  std::vector<double> value;  // at every speed, a magnitude; NaN: not known
+  std::vector<double> value;  // magnitude at each speed; NaN: not computed
 };
 
 struct Refinement {
-  std::vector<double> speeds;  // m/s, ascending, to be added; empty: every peak is known well enough, or no better
-  double uncertainty = 0.0;    // the most that a peak may be above the largest known value, over that value
-  std::string curve;           // of that peak
+  std::vector<double> speeds;  // m/s, ascending, to be added; empty: no interval has to be halved, or none can be
+  double uncertainty = 0.0;    // the largest possible excess of a peak over the largest computed value, relative to it
+  std::string curve;           // name of the curve with this peak
 };
 
-/// The middles of those intervals between speeds (ascending) in which a curve may rise above its largest value by more
-/// than `tolerance` of it: above both ends by h^2/8 times four times the larger bend of the parabolas through three
-/// neighbours there, as a peak that no sample has met is sharper than its flanks show. Intervals below 1e-7 of the
-/// speed are not halved.
+/// The middles of the intervals between speeds (ascending) in which a curve may exceed its largest value by more than
+/// `tolerance` of it. The bound exceeds the higher end by h^2/8 times four times the larger curvature of the parabolas
+/// through three neighbours there, because a peak between samples is sharper than its flanks. Intervals below 1e-7 of
+/// the speed are not halved.
 Refinement refine(const std::vector<double>& speed, const std::vector<SpeedCurve>& curves, double tolerance);
 
-/// A quantity of one train that is limited, below its limit at all speeds so far.
+/// A limited quantity of one train that is below its limit at all speeds so far.
 struct LimitedCurve {
   SpeedCurve curve;
   double limit = 0.0;
 };
 
-/// The middles of those intervals between speeds (ascending) in which a resonance may break a limit. Its width at half
-/// power is `width` of the speed, 2 zeta: in the middle of an interval h its peak is hypot(1, h/(width v)) times what
-/// either end has. Where that is within a hundredth the interval is short enough.
+/// The middles of the intervals between speeds (ascending) in which a resonance may exceed a limit. The resonance width
+/// at half power is `width` = 2 zeta, relative to the speed: in the middle of an interval h the peak is hypot(1,
+/// h/(width v)) times the value at either end. An interval where this factor is below 1.01 is not halved.
 Refinement refine_for_limits(const std::vector<double>& speed, const std::vector<LimitedCurve>& curves, double width);
 
-/// How many speeds there may be where so many were given, and where no more were asked for.
-inline std::size_t most_speeds(std::size_t given) { return 10 * given + 200; }
-inline std::size_t most_speeds_unasked(std::size_t given) { return 3 * given + 50; }
+/// The largest number of speeds after refinement, with and without a tolerance from the user.
+inline std::size_t max_speeds(std::size_t given) { return 10 * given + 200; }
+inline std::size_t max_speeds_by_default(std::size_t given) { return 3 * given + 50; }
 
 }  // namespace traverse::app

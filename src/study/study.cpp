@@ -1,4 +1,4 @@
-// How a study or a sweep goes: the choice of its model, rounds of runs with more and more speeds, what is said of all.
+// Computes a study or a sweep: choice of the numerical model, rounds of runs with added speeds, results.
 #include "study/study.hpp"
 
 #include <fmt/format.h>
@@ -29,95 +29,100 @@
 namespace traverse::app {
 namespace {
 
-constexpr double most_told = 5.0;      // values of a dimension that are listed one by one
-constexpr double worth_a_word = 10.0;  // s, from which on quicker ways are looked for
-constexpr double quicker_by = 0.2;     // of the time: what modes must do with
+constexpr double max_listed = 5.0;      // a dimension with more values is not listed value by value
+constexpr double long_duration = 10.0;  // s: estimated duration from which modes are suggested
+constexpr double quicker_ratio = 0.2;   // relative duration that modes must not exceed to be suggested
 
 /// "track_seed: 1000 values from 1 to 1000".
-std::string words_of(const StudyDimension& d) {
+std::string description(const StudyDimension& d) {
   const auto [least, greatest] = std::minmax_element(d.values.begin(), d.values.end());
   if (d.law != "list")
     return fmt::format("{}: {} draws ({}) from {:g} to {:g}", d.name(), d.values.size(), d.law, *least, *greatest);
-  if (static_cast<double>(d.values.size()) > most_told)
+  if (static_cast<double>(d.values.size()) > max_listed)
     return fmt::format("{}: {} values from {:g} to {:g}", d.name(), d.values.size(), *least, *greatest);
   std::string list;
   for (const double value : d.values) list += fmt::format("{}{:g}", list.empty() ? "" : ", ", value);
   return fmt::format("{}: {}", d.name(), list);
 }
 
-void announce_runs(const Study& study, std::vector<std::string>& notes) {
+void describe_runs(const Study& study, std::vector<std::string>& notes) {
   if (study.sweep) {
     const std::vector<double>& speeds = results::speeds_of_sweep(study);
     const std::size_t trains = results::trains_of(study);
     notes.push_back(fmt::format(
-        "sweep of {} runs: {} speed{} from {:g} to {:g} m/s, {} train{}; above for the first one", study.runs(),
-        speeds.size(), speeds.size() == 1 ? "" : "s", speeds.front(), speeds.back(), trains, trains == 1 ? "" : "s"));
+        "sweep of {} runs: {} speed{} from {:g} to {:g} m/s, {} train{}; the values above are those of the first run",
+        study.runs(), speeds.size(), speeds.size() == 1 ? "" : "s", speeds.front(), speeds.back(), trains,
+        trains == 1 ? "" : "s"));
   } else {
     std::string axes;
     for (const Study::Axis& axis : study.axes)
       axes += fmt::format("{}{} of {}", axes.empty() ? "" : " times ", axis.length, axis.name);
-    notes.push_back(fmt::format("study of {} runs ({}); above for the first one", study.runs(), axes));
-    for (const StudyDimension& d : study.dimensions) notes.push_back(words_of(d));
+    notes.push_back(
+        fmt::format("study of {} runs ({}); the values above are those of the first run", study.runs(), axes));
+    for (const StudyDimension& d : study.dimensions) notes.push_back(description(d));
   }
 }
 
-/// What would be quicker than runs that take so many seconds on all ranks, of a sweep that chooses nothing itself.
+/// Suggests modes for a sweep of `seconds` on all ranks if these are much faster.
 void suggest_modes(const Scene& scene, double seconds, int ranks, bool chosen, std::vector<std::string>& notes) {
   const std::optional<QuickerModes> quicker = quicker_modes(scene);
-  if (!quicker || quicker->seconds >= quicker_by * seconds * ranks) return;
-  notes.push_back(fmt::format("quicker: -model_modes {} (all modes up to {:.3g} Hz) would take about {}{}",
-                              quicker->modes, quicker->frequency, results::duration_text(quicker->seconds / ranks),
-                              scene.modes_open && !chosen
-                                  ? "; with ts_dt and the elements left open, modes are taken where they do as well"
-                                  : ""));
+  if (!quicker || quicker->seconds >= quicker_ratio * seconds * ranks) return;
+  notes.push_back(
+      fmt::format("quicker: -model_modes {} (all modes up to {:.3g} Hz) would take about {}{}", quicker->modes,
+                  quicker->frequency, results::duration_text(quicker->seconds / ranks),
+                  scene.modes_open && !chosen
+                      ? "; without ts_dt and a given number of elements, modes are chosen if they are accurate enough"
+                      : ""));
 }
 
-/// How many runs, what they will take, and how they go.
-void announce(const Scene& scene, StudyScenes& scenes, const results::RunModel& model, std::size_t known, int ranks,
+/// Adds notes on the number of runs, their estimated duration and the way of computing them.
+void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& model, std::size_t known, int ranks,
               std::vector<std::string>& notes) {
   const Study& study = scenes.study();
   const CaseRunner& first = *scenes.runner(0).runs;
-  announce_runs(study, notes);
-  if (known > 0) notes.push_back(fmt::format("{} of them are known from the results file that was there", known));
+  describe_runs(study, notes);
+  if (known > 0) notes.push_back(fmt::format("{} of them are read from the existing results file", known));
   if (first.has_lanes())
-    notes.push_back(fmt::format(
-        "up to {} runs{} are advanced together, one in each lane of {} vectors", first.width(),
-        study.sweep
-            ? ""
-            : fmt::format(" that differ in {} alone",
-                          scenes.mixes(first.width()) ? "speed, track and vehicles' numbers" : "speed and track"),
-        engine::instructions()));
-  else if (!first.why_no_lanes().empty() && !scene.vehicles.empty())
-    notes.push_back("runs are computed one by one: " + first.why_no_lanes());
+    notes.push_back(fmt::format("up to {} runs{} are advanced together, one in each lane of {} vectors", first.width(),
+                                study.sweep
+                                    ? ""
+                                    : fmt::format(" that differ in {} only", scenes.mixes_vehicles(first.width())
+                                                                                 ? "speed, track and vehicle parameters"
+                                                                                 : "speed and track"),
+                                engine::instructions()));
+  else if (!first.lane_obstacle().empty() && !scene.vehicles.empty())
+    notes.push_back("runs are computed one by one: " + first.lane_obstacle());
   if (study.refine > 0.0)
-    notes.push_back(fmt::format("speeds are added until the peaks over the speed are known to {:g}", study.refine));
+    notes.push_back(
+        fmt::format("speeds are added until the error of the peaks over the speed is below {:g}", study.refine));
   if (study.refine < 0.0)
     notes.emplace_back(
-        "speeds are added where a limit may be broken between two of them; -sweep_refine 1e-2 finds every peak, 0 adds "
-        "none");
+        "speeds are added where a limit may be exceeded between two of them; -sweep_refine 1e-2 resolves every peak, "
+        "0 adds none");
   double motion = 0.0;
   for (const StudyRun& run : scenes.runs()) motion += first.duration(run.train, run.own.speed);
   const double part = static_cast<double>(study.runs() - known) / static_cast<double>(study.runs());
   const double seconds = part * first.cost() * motion / ranks;
-  const bool told = model.modes > 0 || model.time_step > 0.0;
-  notes.push_back(fmt::format("the {} is {}{}", study.sweep ? "sweep" : "study", results::method_of(model),
-                              told ? ", which will take about " + results::duration_text(seconds) : ""));
+  const bool has_cost = model.modes > 0 || model.time_step > 0.0;
+  notes.push_back(fmt::format("the {} is computed {}{}", study.sweep ? "sweep" : "study", results::method_of(model),
+                              has_cost ? "; estimated time " + results::duration_text(seconds) : ""));
   if (ranks > 1) notes.push_back(fmt::format("{} ranks share the runs by a common queue", ranks));
-  if (study.sweep && told && seconds >= worth_a_word) suggest_modes(scene, seconds, ranks, model.accuracy > 0.0, notes);
+  if (study.sweep && has_cost && seconds >= long_duration)
+    suggest_modes(scene, seconds, ranks, model.accuracy > 0.0, notes);
 }
 
 bool has_wheels(const Scene& scene) {
   return std::any_of(scene.vehicles.begin(), scene.vehicles.end(), [](const Vehicle& v) { return !v.wheels.empty(); });
 }
 
-std::size_t most_speeds_of(const Study& study, std::size_t given) {
-  return study.refine < 0.0 ? most_speeds_unasked(given) : most_speeds(given);
+std::size_t max_speeds_of(const Study& study, std::size_t given) {
+  return study.refine < 0.0 ? max_speeds_by_default(given) : max_speeds(given);
 }
 
-/// Rounds of runs, each at the speeds of those before and some more.
+/// Rounds of runs; each round has the speeds of the round before and added ones.
 class Rounds {
  public:
-  /// width: of resonances, relative to the speed.
+  /// width: of a resonance, relative to the speed.
   Rounds(MPI_Comm comm, const Scene& scene, StudyScenes& scenes, const results::RunModel& model, double width,
          results::StoredStudy stored, const std::vector<std::string>& notes)
       : comm_(comm),
@@ -135,12 +140,12 @@ class Rounds {
   void add(const std::vector<double>& speeds) {
     if (!speeds.empty()) begin(with_speeds(scenes_.study(), speeds));
   }
-  /// Collective. Takes over what the file has of earlier runs; how many of these there are.
-  std::size_t take_stored() {
-    known_ = take_known(comm_, stored_, *table_);
+  /// Collective. Copies the results of earlier runs from the file and returns their number.
+  std::size_t copy_stored() {
+    known_ = copy_known(comm_, stored_, *table_);
     return static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 1));
   }
-  /// Collective. All rounds; their file is left open.
+  /// Collective. Computes all rounds and leaves their file open.
   RunFailure run(results::Place place, StudyCourse& course) {
     course.known = std::count(known_.begin(), known_.end(), 1);
     while (true) {
@@ -157,8 +162,8 @@ class Rounds {
       }
       const results::StoredStudy last = stored_of(*table_);
       begin(with_speeds(scenes_.study(), more));
-      const std::vector<char> before = take_known(comm_, last, *table_);
-      known_ = take_known(comm_, stored_, *table_);
+      const std::vector<char> before = copy_known(comm_, last, *table_);
+      known_ = copy_known(comm_, stored_, *table_);
       course.known += std::count(known_.begin(), known_.end(), 1) - std::count(before.begin(), before.end(), 1);
       file_.reset();
       place = results::claim_place(comm_, scene_.output.file);
@@ -173,7 +178,8 @@ class Rounds {
     table_.emplace(scenes_.study(), scene_.output.probes.size(), has_wheels(scene_), scene_.limits);
     known_.assign(table_->runs(), 0);
   }
-  /// Collective. The next speeds, as rank 0 knows the peaks; none: they are known well enough, or these are too many.
+  /// Collective. The speeds to be added, by the peaks on rank 0. Empty: the peaks are known well enough, or the number
+  /// of speeds would exceed its limit.
   std::vector<double> next() {
     const Study& study = scenes_.study();
     refined_.wanted = std::max(study.refine, 0.0);
@@ -184,7 +190,7 @@ class Rounds {
       const Refinement found = next_speeds(*table_, width_);
       refined_.uncertainty = found.uncertainty;
       refined_.curve = found.curve;
-      if (speeds_of(study).size() + found.speeds.size() <= most_speeds_of(study, given_.size())) speeds = found.speeds;
+      if (speeds_of(study).size() + found.speeds.size() <= max_speeds_of(study, given_.size())) speeds = found.speeds;
     }
     int size = static_cast<int>(speeds.size());
     MPI_Bcast(&size, 1, MPI_INT, 0, comm_);
@@ -198,16 +204,16 @@ class Rounds {
   StudyScenes& scenes_;
   const results::RunModel& model_;
   double width_;
-  results::StoredStudy stored_;  // by a run before this one
+  results::StoredStudy stored_;  // runs of an earlier, interrupted study
   const std::vector<std::string>& notes_;
-  std::vector<double> given_;  // m/s, ascending
+  std::vector<double> given_;  // m/s, ascending, of the user
   std::optional<results::StudyTable> table_;
-  std::vector<char> known_;  // of each run: whether it need not be run
+  std::vector<char> known_;  // 1 for each run whose results are known
   std::optional<StudyFile> file_;
   results::Refined refined_;
 };
 
-/// The largest deflection of all runs, m, on every rank.
+/// Collective. The largest deflection of all runs, m.
 double largest_deflection(MPI_Comm comm, const results::StudyTable& table) {
   double deflection = 0.0;
   if (results::StudyPlace largest; find_extreme(table, "peak_deflection", true, largest)) deflection = largest.value;
@@ -222,13 +228,14 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
   StudyScenes scenes(given);
-  for (const std::size_t base : scenes.extreme_bases()) scenes.base(base);  // all input is checked first
+  for (const std::size_t base : scenes.extreme_bases())
+    scenes.base(base);  // checks all input before the first computation
   std::vector<std::string> notes;
   Choice choice;
-  ChoiceCache kept(comm, given);
-  if (!kept.read(given, notes, choice)) {
+  ChoiceCache cache(comm, given);
+  if (!cache.read(given, notes, choice)) {
     choice = choose_for_study(scenes, notes);
-    if (choice.accuracy.measured) kept.write(notes, choice);
+    if (choice.accuracy.measured) cache.write(notes, choice);
   }
   scenes.choose(choice.model);
   const Scene scene = with(scenes.base(scenes.extreme_bases().front()), choice.model);
@@ -241,17 +248,17 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   SweepFindings* const found = findings ? &*findings : nullptr;
   Rounds rounds(comm, findings ? scene : given, scenes, model, findings ? findings->width_of_resonance() : 0.0,
                 stored_of(comm, given, model), notes);
-  announce(scene, scenes, model, rounds.take_stored(), ranks, notes);
+  describe(scene, scenes, model, rounds.copy_stored(), ranks, notes);
   print_notes(comm, notes);
-  if (findings && scenes.study().refine > 0.0) rounds.add(findings->unseen_speeds());
+  if (findings && scenes.study().refine > 0.0) rounds.add(findings->unresolved_speeds());
 
-  const SignalsNoted noted;
+  const DeferredSignals noted;
   const auto begin = std::chrono::steady_clock::now();
   StudyCourse course;
   const RunFailure failure = rounds.run(std::move(place), course);
   const int signal = signal_on_any(comm);
-  course.left_group = scenes.alone();
-  MPI_Allreduce(MPI_IN_PLACE, &course.left_group, 1, MPI_LONG, MPI_SUM, comm);
+  course.separate_runs = scenes.separate_runs();
+  MPI_Allreduce(MPI_IN_PLACE, &course.separate_runs, 1, MPI_LONG, MPI_SUM, comm);
   course.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   course.ended = failure.failed() ? failure.message
                  : signal != 0    ? fmt::format("ended by signal {}", signal)

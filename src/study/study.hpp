@@ -1,4 +1,4 @@
-// Studies and sweeps: one scene with any of its numbers varied, or many trains at many speeds, the runs shared among
+// Studies and sweeps: one scene with varied options, or many trains at many speeds. The runs are distributed over
 // the ranks.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace traverse::app {
 
-/// Collective. Of a scene with a study or a sweep: computes every run on one rank, writes their numbers to `place` as
-/// they come, and prints extremes, statistics and verdicts. The same results on any number of ranks. A run that fails
-/// is named, what was computed until then is in the file, and the error thrown. Returns the exit status as `run` does.
+/// Collective. For a scene with a study or a sweep: computes every run on one rank, writes the results to `place` as
+/// runs end, and prints extremes, statistics and verdicts. The results are the same on any number of ranks. If a run
+/// fails, the error with the run's name is thrown, and the file contains the earlier results. Returns the exit status.
 int run_study(MPI_Comm comm, const Scene& scene, results::Place place);
 
 }  // namespace traverse::app

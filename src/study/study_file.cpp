@@ -1,5 +1,5 @@
-// Writes the table of runs at intervals that keep the cost small, checks whether an earlier file belongs to the same
-// study, and copies its finished runs by their coordinates.
+// Writes the table of runs at limited cost, checks whether an earlier file belongs to the same study, and copies its
+// finished runs.
 #include "study/study_file.hpp"
 
 #include <fmt/format.h>
@@ -19,10 +19,11 @@
 namespace traverse::app {
 namespace {
 
-constexpr double write_every = 5.0, cost_factor = 20.0;  // s, and times what writing takes
+constexpr double write_every = 5.0,
+                 cost_factor = 20.0;  // s between two writes; ratio of this interval to the duration of a write
 
-/// Options that change no run.
-bool of_study_alone(const std::string& name, const Study& study) {
+/// Whether an option changes no run.
+bool changes_no_run(const std::string& name, const Study& study) {
   if (name.starts_with("study_") || name.starts_with("sweep_") || name == "scene_name" || name == "output_file" ||
       name == "output_quiet" || name == "options_file")
     return true;
@@ -31,16 +32,16 @@ bool of_study_alone(const std::string& name, const Study& study) {
   });
 }
 
-/// Why runs of the file are not those of this study; empty: they are.
+/// Why the file's runs do not belong to this study; empty if they do.
 std::string contradiction(const results::StoredStudy& stored, const Scene& scene, const results::RunModel& model) {
   std::map<std::string, std::string> now(scene.options.begin(), scene.options.end());
   for (const auto& [name, value] : stored.options) {
-    if (of_study_alone(name, *scene.study)) continue;
+    if (changes_no_run(name, *scene.study)) continue;
     if (!now.contains(name)) return fmt::format("it was computed with {} = {}", name, value);
     if (now[name] != value) return fmt::format("it was computed with {} = {}, not {}", name, value, now[name]);
   }
   for (const auto& [name, value] : now)
-    if (!of_study_alone(name, *scene.study) && !stored.options.contains(name))
+    if (!changes_no_run(name, *scene.study) && !stored.options.contains(name))
       return fmt::format("it was computed without {} = {}", name, value);
   for (const StudyDimension& d : scene.study->dimensions)
     if (!stored.datasets.contains(d.name())) return fmt::format("{} was not varied in it", d.name());
@@ -60,8 +61,8 @@ std::string contradiction(const results::StoredStudy& stored, const Scene& scene
   return "";
 }
 
-/// The finished runs of a file, by their coordinates.
-void take_over(const results::StoredStudy& stored, results::StudyTable& table) {
+/// Copies the finished runs of a file into the table, by their coordinates.
+void copy_finished(const results::StoredStudy& stored, results::StudyTable& table) {
   const Study& study = table.study();
   const auto finished = stored.datasets.find("finished");
   if (finished == stored.datasets.end()) return;
@@ -108,13 +109,14 @@ results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results:
   why.resize(static_cast<std::size_t>(size));
   MPI_Bcast(why.data(), size, MPI_CHAR, 0, comm);
   if (!why.empty())
-    throw InputError(fmt::format("study_resume: {} holds other runs: {}; leave study_resume out to begin anew",
-                                 scene.output.file, why));
+    throw InputError(
+        fmt::format("study_resume: {} contains other runs: {}; without study_resume all runs are computed again",
+                    scene.output.file, why));
   return stored;
 }
 
-std::vector<char> take_known(MPI_Comm comm, const results::StoredStudy& stored, results::StudyTable& table) {
-  take_over(stored, table);
+std::vector<char> copy_known(MPI_Comm comm, const results::StoredStudy& stored, results::StudyTable& table) {
+  copy_finished(stored, table);
   std::vector<char> known(table.runs());
   for (std::size_t run = 0; run < table.runs(); ++run) known[run] = table.finished(run) ? 1 : 0;
   MPI_Bcast(known.data(), static_cast<int>(known.size()), MPI_CHAR, 0, comm);
@@ -149,22 +151,23 @@ results::Recorder::Dataset digests_of(const results::StudyTable& table) {
           "1"};
 }
 
-/// A copy of an interrupted study, as long as the file that replaces it is not on the disk.
+/// A copy of the file of an interrupted study. It exists until the new file is complete on the disk.
 class Copy {
  public:
-  Copy(const results::Place& place, bool wanted) : of_(wanted ? place.path() : "") {
+  Copy(const results::Place& place, bool wanted) : original_(wanted ? place.path() : "") {
     std::error_code failed;
-    if (of_.empty()) return;
-    std::filesystem::copy_file(of_, of_ + ".before", std::filesystem::copy_options::overwrite_existing, failed);
-    if (failed) throw FileError(fmt::format("cannot copy the results file {}: {}", of_, failed.message()));
+    if (original_.empty()) return;
+    std::filesystem::copy_file(original_, original_ + ".before", std::filesystem::copy_options::overwrite_existing,
+                               failed);
+    if (failed) throw FileError(fmt::format("cannot copy the results file {}: {}", original_, failed.message()));
   }
   void remove() const {
     std::error_code ignored;
-    if (!of_.empty()) std::filesystem::remove(of_ + ".before", ignored);
+    if (!original_.empty()) std::filesystem::remove(original_ + ".before", ignored);
   }
 
  private:
-  std::string of_;
+  std::string original_;
 };
 
 }  // namespace
@@ -193,7 +196,7 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
     recorder_.attributes(folder, {{"dimensions", dimensions}, {"axes", axes}});
   }
   recorder_.attributes(folder, results::attributes_of(model));
-  recorder_.rewrite({results().back()});  // on the disk, with all that stands above
+  recorder_.rewrite({results().back()});  // on the disk, with all datasets above
 }
 
 std::vector<results::Recorder::Dataset> StudyFile::results() const {
@@ -210,7 +213,7 @@ void StudyFile::write() {
   const results::Recorder::Dataset last = std::move(sets.back());
   sets.pop_back();
   recorder_.rewrite(sets);
-  recorder_.rewrite({last});  // once the rest is on the disk
+  recorder_.rewrite({last});  // after all others are on the disk
   written_ = std::chrono::steady_clock::now();
   cost_ = std::chrono::duration<double>(written_ - begin).count();
 }
@@ -258,9 +261,9 @@ void print_study_course(const results::StudyTable& table, const results::RunMode
     results::StudyStatistics(table).print();
     results::print_verdicts(verdicts, scene.unusual);
   }
-  if (const std::string said = results::not_promised(model, table.find("unseen")->values); !said.empty())
-    fmt::print("  note: {}\n", said);
-  fmt::print("{}", results::computed_alone(course.left_group));
+  if (const std::string warning = results::extrapolation_note(model, table.find("unseen")->values); !warning.empty())
+    fmt::print("  note: {}\n", warning);
+  fmt::print("{}", results::separate_runs_note(course.separate_runs));
   const long done = static_cast<long>(table.finished_runs()) - course.known;
   fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each{}\n  {:<22}{}\nresults  {}\n", done,
              static_cast<long>(table.runs()) - course.known, results::method_of(model), course.wall_seconds,

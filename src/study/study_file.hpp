@@ -1,4 +1,4 @@
-// The results file of a study or a sweep: written as runs end, gone on with after a kill.
+// The results file of a study or a sweep. It is written as runs end; an interrupted study can be continued.
 #pragma once
 
 #include <mpi.h>
@@ -17,39 +17,39 @@
 
 namespace traverse::app {
 
-/// Collective. With study_resume: what the results file at the scene's place holds of this study, on rank 0; else
-/// nothing. InputError where the file is of another scene, or was computed by another model.
+/// Collective. With study_resume: on rank 0 the content of the scene's results file that belongs to this study;
+/// otherwise empty. InputError if the file belongs to another scene or was computed by another model.
 results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results::RunModel& model);
 
-/// Collective. Puts the finished runs that are known into the table of rank 0; returns for every run, on every rank,
-/// whether it is finished.
-std::vector<char> take_known(MPI_Comm comm, const results::StoredStudy& stored, results::StudyTable& table);
+/// Collective. Copies known finished runs into the table of rank 0. Returns on each rank a flag for each run: 1 if it
+/// is finished.
+std::vector<char> copy_known(MPI_Comm comm, const results::StoredStudy& stored, results::StudyTable& table);
 
-/// The runs of a table as a file holds them.
+/// The runs of a table in the form of a file.
 results::StoredStudy stored_of(const results::StudyTable& table);
 
-/// How the study went.
+/// Course of the study.
 struct StudyCourse {
-  long known = 0, left_group = 0;  // runs that were in the file; that had to leave those beside them
+  long known = 0, separate_runs = 0;  // runs read from the file; runs computed outside their batch
   double wall_seconds = 0.0;
   std::string ended;                          // "reached its end", or why it stopped
-  std::optional<results::Refined> refined{};  // where speeds were to be added
+  std::optional<results::Refined> refined{};  // empty: speeds were not to be added
 };
 
 class StudyFile {
  public:
-  /// Collective. Begins the file, with the coordinates of all runs and what is known of them.
+  /// Collective. Creates the file with the coordinates of all runs and the known results.
   StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::RunModel& model,
             const results::StudyTable& table, const std::vector<std::string>& notes);
-  /// Writes what is new in the table, the first run at once, later ones every few seconds. On rank 0, which leaves with
-  /// all others where the disk is full.
+  /// Writes new rows of the table: the first run at once, later ones every few seconds. Only on rank 0. If the disk is
+  /// full, all ranks end with FileError.
   void update();
-  /// Writes all, with summary, statistics and verdicts, and what a sweep has found. FileError.
+  /// Writes the complete table, summary, statistics, verdicts and the findings of a sweep. FileError.
   void finish(const StudyCourse& course, const std::vector<results::Verdict>& verdicts, const SweepFindings* findings);
 
  private:
   void write();
-  /// The table's, that of finished runs last.
+  /// The result datasets of the table; the flags of finished runs are the last one.
   std::vector<results::Recorder::Dataset> results() const;
 
   MPI_Comm comm_;
@@ -57,10 +57,10 @@ class StudyFile {
   results::RunModel model_;
   results::Recorder recorder_;
   std::chrono::steady_clock::time_point written_;
-  double cost_ = 0.0;  // s, of the last writing; 0: there was none
+  double cost_ = 0.0;  // s, duration of the last write; 0: none yet
 };
 
-/// What the terminal shows at the end.
+/// Prints the results at the end of the study.
 void print_study_course(const results::StudyTable& table, const results::RunModel& model, const StudyCourse& course,
                         const std::vector<results::Verdict>& verdicts, const SweepFindings* findings,
                         const Scene& scene);

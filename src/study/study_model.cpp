@@ -1,5 +1,5 @@
-// Chooses the model at the scenes with the extreme values of every varied option, and combines the choices into the
-// finest of each.
+// Chooses the model at the scenes with the extreme values of every varied option, and combines the finest mesh, step
+// and number of modes.
 #include "study/study_model.hpp"
 
 #include <fmt/format.h>
@@ -13,11 +13,11 @@ namespace {
 
 using Choose = std::optional<Choice> (*)(const Scene& scene, std::vector<std::string>& notes);
 
-std::optional<Choice> one_by_one(const Scene& scene, std::vector<std::string>& notes) {
-  return choose_one_by_one(scene, notes);
+std::optional<Choice> unbatched(const Scene& scene, std::vector<std::string>& notes) {
+  return choose_unbatched(scene, notes);
 }
 
-/// At all of the study's extreme scenes; nothing where one of them refuses.
+/// The combined choice for the study's extreme scenes; empty if `choose` is not applicable to one of them.
 std::optional<Choice> choose_at_extremes(const StudyScenes& scenes, Choose choose, std::vector<std::string>& notes) {
   const std::vector<std::size_t> bases = scenes.extreme_bases();
   std::optional<Choice> all;
@@ -40,8 +40,8 @@ std::optional<Choice> choose_at_extremes(const StudyScenes& scenes, Choose choos
 }  // namespace
 
 Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes) {
-  if (std::optional<Choice> choice = choose_at_extremes(scenes, choose_side_by_side, notes)) return *choice;
-  return *choose_at_extremes(scenes, one_by_one, notes);
+  if (std::optional<Choice> choice = choose_at_extremes(scenes, choose_batched, notes)) return *choice;
+  return *choose_at_extremes(scenes, unbatched, notes);
 }
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// What all runs of a study are computed with: mesh, step and modes, as far as the scene leaves them open.
+// Chooses the model of all runs of a study: mesh, step and modes, as far as the scene leaves them open.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace traverse::app {
 
-/// The finest that the study's extreme scenes need, each as a sweep over all speeds of the study; the same on every
-/// rank.
+/// The finest model that the study's extreme scenes need, each computed as a sweep over all speeds of the study. The
+/// result is the same on every rank.
 Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -22,25 +22,25 @@ using results::StudyTable;
 
 constexpr std::array peaks = {"peak_deflection", "peak_acceleration", "peak_moment", "greatest_wheel_force"};
 
-/// A run's largest number of a column, or one of its numbers; NaN where it has not ended.
+/// The largest of a run's values in a column; NaN if the run has not ended.
 double number_of(const StudyTable::Column& column, std::size_t run) {
   const auto begin = column.values.begin() + static_cast<std::ptrdiff_t>(run * column.width);
   return *std::max_element(begin, begin + static_cast<std::ptrdiff_t>(column.width));
 }
 
-/// Which curve a run belongs to, and where it stands in it.
+/// The curve of each run and its position on it.
 struct Curves {
   std::vector<std::string> names;
-  std::vector<std::size_t> curve, place;  // of each run
+  std::vector<std::size_t> curve, place;  // for each run
 };
 
-/// Whether runs at different places of an axis belong to different curves.
-bool tells_apart(const Study& study, std::size_t axis) {
+/// Whether runs with different values on an axis belong to different curves.
+bool separates_curves(const Study& study, std::size_t axis) {
   return axis != study.dimensions[study.speeds].axis &&
          std::find(study.over.begin(), study.over.end(), axis) == study.over.end();
 }
 
-/// " of A3" of a sweep, " at track_seed 5" of a study.
+/// " of A3" for a sweep, " at track_seed 5" for a study.
 std::string name_of(const Study& study, std::size_t run) {
   std::string name;
   if (study.sweep) {
@@ -48,12 +48,12 @@ std::string name_of(const Study& study, std::size_t run) {
     return name.empty() ? name : " of " + name;
   }
   for (const options::StudyDimension& d : study.dimensions)
-    if (tells_apart(study, d.axis))
+    if (separates_curves(study, d.axis))
       name += fmt::format("{} {} {:.6g}", name.empty() ? " at" : ",", d.name(), study.value(run, d));
   return name;
 }
 
-Curves sorted(const Study& study) {
+Curves sort_runs(const Study& study) {
   Curves curves;
   const options::StudyDimension& speeds = study.dimensions[study.speeds];
   const std::vector<double> ascending = speeds_of(study);
@@ -61,7 +61,7 @@ Curves sorted(const Study& study) {
   for (std::size_t run = 0; run < study.runs(); ++run) {
     std::vector<std::size_t> at;
     for (std::size_t axis = 0; axis < study.axes.size(); ++axis)
-      if (tells_apart(study, axis)) at.push_back(study.place(run, axis));
+      if (separates_curves(study, axis)) at.push_back(study.place(run, axis));
     const auto [found, is_new] = known.try_emplace(at, curves.names.size());
     if (is_new) curves.names.push_back(name_of(study, run));
     curves.curve.push_back(found->second);
@@ -72,10 +72,10 @@ Curves sorted(const Study& study) {
   return curves;
 }
 
-/// Of a quantity, the greatest number(run) of the runs of each curve at each speed.
+/// The curves of a quantity over the speed. Each value is the greatest number(run) of the runs of that curve and speed.
 template <class Number>
 std::vector<SpeedCurve> curves_of_quantity(const Study& study, std::string quantity, Number number) {
-  const Curves runs = sorted(study);
+  const Curves runs = sort_runs(study);
   std::vector<SpeedCurve> curves;
   std::replace(quantity.begin(), quantity.end(), '_', ' ');
   const std::size_t speeds = study.dimensions[study.speeds].values.size();
@@ -88,11 +88,11 @@ std::vector<SpeedCurve> curves_of_quantity(const Study& study, std::string quant
   return curves;
 }
 
-/// Of what limit number `l` is on.
-std::vector<SpeedCurve> judged_curves(const StudyTable& table, std::size_t l) {
-  const StudyTable::Column& judged = *table.find("judged");
+/// The curves of the quantity that limit number `l` is for.
+std::vector<SpeedCurve> limited_curves(const StudyTable& table, std::size_t l) {
+  const StudyTable::Column& limited = *table.find("judged");
   return curves_of_quantity(table.study(), table.limits()[l].quantity,
-                            [&](std::size_t run) { return judged.values[run * judged.width + l]; });
+                            [&](std::size_t run) { return limited.values[run * limited.width + l]; });
 }
 
 }  // namespace
@@ -115,29 +115,29 @@ std::vector<SpeedCurve> curves_of(const StudyTable& table) {
   std::set<std::string> known;
   for (std::size_t l = 0; l < table.limits().size(); ++l) {
     const std::string& quantity = table.limits()[l].quantity;
-    if (quantity != "contact_loss" && known.insert(quantity).second) add(judged_curves(table, l));
+    if (quantity != "contact_loss" && known.insert(quantity).second) add(limited_curves(table, l));
   }
   return curves;
 }
 
-std::vector<LimitedCurve> curves_in_doubt(const StudyTable& table) {
-  std::vector<LimitedCurve> in_doubt;
+std::vector<LimitedCurve> curves_below_limits(const StudyTable& table) {
+  std::vector<LimitedCurve> below_limits;
   for (std::size_t l = 0; l < table.limits().size(); ++l) {
     const options::VerdictLimit& limit = table.limits()[l];
     if (limit.quantity == "contact_loss") continue;
-    const std::vector<SpeedCurve> curves = judged_curves(table, l);
-    const auto breaks = [&](double value) { return value > limit.value; };
+    const std::vector<SpeedCurve> curves = limited_curves(table, l);
+    const auto exceeds = [&](double value) { return value > limit.value; };
     if (std::any_of(curves.begin(), curves.end(),
-                    [&](const SpeedCurve& curve) { return std::ranges::any_of(curve.value, breaks); }))
+                    [&](const SpeedCurve& curve) { return std::ranges::any_of(curve.value, exceeds); }))
       continue;
-    for (const SpeedCurve& curve : curves) in_doubt.push_back({curve, limit.value});
+    for (const SpeedCurve& curve : curves) below_limits.push_back({curve, limit.value});
   }
-  return in_doubt;
+  return below_limits;
 }
 
 Refinement next_speeds(const StudyTable& table, double width) {
   const std::vector<double> speeds = speeds_of(table.study());
-  return table.study().refine < 0.0 ? refine_for_limits(speeds, curves_in_doubt(table), width)
+  return table.study().refine < 0.0 ? refine_for_limits(speeds, curves_below_limits(table), width)
                                     : refine(speeds, curves_of(table), table.study().refine);
 }
 

@@ -1,4 +1,4 @@
-// Speeds that a study or a sweep adds by itself near its peaks.
+// Arranges the results of a study or a sweep as curves over the speed and adds speeds near their peaks.
 #pragma once
 
 #include <vector>
@@ -8,19 +8,21 @@
 
 namespace traverse::app {
 
-/// Of every combination of the options that neither are speeds nor have statistics over them: the peaks at the worst
-/// probe, the greatest wheel force and what limits are of, the greatest of what statistics go over. At the speeds in
-/// ascending order. For a study whose speeds are refined.
+/// The curves of the peaks at the governing probe, of the greatest wheel force and of the limited quantities, over the
+/// speeds in ascending order. There is one curve for each combination of the options that neither are speeds nor have
+/// statistics over them; its values are the greatest over the options that statistics are computed over. For a study
+/// whose speeds are refined.
 std::vector<SpeedCurve> curves_of(const results::StudyTable& table);
 
-/// Those of the limited quantities that are kept at all speeds so far, each with its limit.
-std::vector<LimitedCurve> curves_in_doubt(const results::StudyTable& table);
+/// The curves of the limited quantities that are below their limits at all speeds so far, each with its limit.
+std::vector<LimitedCurve> curves_below_limits(const results::StudyTable& table);
 
-/// The next speeds of a table's study, until the peaks over the speed are known to `refine` of it or, where that is
-/// below 0, no limit may be broken between two speeds. width: of a resonance, as refine_for_limits has it.
+/// The next speeds of a table's study: until the peaks over the speed are known to `refine`, relative to their values,
+/// or, if `refine` is below 0, until no limit can be exceeded between two speeds. width: of a resonance, see
+/// refine_for_limits.
 Refinement next_speeds(const results::StudyTable& table, double width);
 
-/// The study with these speeds (m/s) as well, all in ascending order.
+/// The study with these speeds (m/s) added, in ascending order.
 options::Study with_speeds(options::Study study, const std::vector<double>& added);
 
 /// The speeds of a study, ascending.

@@ -1,4 +1,4 @@
-// Deals groups of runs, computes each side by side as far as it can be, and hands their numbers in.
+// Distributes groups of runs over the ranks, computes compatible runs in batches and stores their results.
 #include "study/study_runs.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 
 using Groups = std::vector<std::vector<std::size_t>>;
 
-/// A run's numbers in the order of the table, with its index before them.
+/// A run's results in the order of the table, preceded by its index.
 std::vector<double> row_of(std::size_t run, const CaseResult& result, const std::vector<double>& probes, bool wheels) {
   std::vector<double> row = {static_cast<double>(run)};
   const auto add = [&](auto get) {
@@ -34,13 +34,13 @@ std::vector<double> row_of(std::size_t run, const CaseResult& result, const std:
   if (wheels)
     row.insert(row.end(),
                {result.least_wheel_force, result.greatest_wheel_force, result.contact_losses, result.longest_loss});
-  row.push_back(result.unseen ? 1.0 : 0.0);
-  for (const results::EvaluatedQuantity& finding : result.findings) row.push_back(finding.value);
-  for (const results::EvaluatedQuantity& finding : result.findings) row.push_back(finding.x);
+  row.push_back(result.outside_trials ? 1.0 : 0.0);
+  for (const results::EvaluatedQuantity& quantity : result.evaluated) row.push_back(quantity.value);
+  for (const results::EvaluatedQuantity& quantity : result.evaluated) row.push_back(quantity.x);
   return row;
 }
 
-/// Of a sweep: "one of the runs of train A3 at 50 to 60 m/s (180 to 216 km/h)".
+/// The name of a group of a sweep, as "one of the runs of train A3 at 50 to 60 m/s (180 to 216 km/h)".
 std::string name_in_sweep(const Study& study, const std::vector<std::size_t>& group) {
   const auto speed = [&](std::size_t run) { return study.value(run, study.dimensions[study.speeds]); };
   const double from = speed(group.front()), to = speed(group.back());
@@ -58,10 +58,10 @@ std::string name_of(const Study& study, const std::vector<std::size_t>& group) {
                      results::point_text(study, group.back()));
 }
 
-/// The runs of a group: side by side as far as they can be, the others by themselves.
+/// Computes the runs of a group: compatible ones together, the others separately.
 void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const std::function<void(double)>& reached,
                const std::function<void(std::size_t, const CaseResult&, const CaseRunner&)>& ended) {
-  std::vector<StudyScenes::Runner> runners;  // which stay as long as their runs
+  std::vector<StudyScenes::Runner> runners;  // keeps the runners alive
   for (const std::size_t run : group) runners.push_back(scenes.runner(scenes.runs()[run].base));
   std::vector<char> done(group.size(), 0);
   for (std::size_t i = 0; i < group.size(); ++i) {
@@ -69,7 +69,7 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
     std::vector<CaseRunner::Member> members;
     std::vector<std::size_t> places;
     for (std::size_t j = i; j < group.size(); ++j) {
-      if (done[j] != 0 || !scenes.beside(runners[j], runners[i])) continue;
+      if (done[j] != 0 || !scenes.compatible(runners[j], runners[i])) continue;
       members.push_back({runners[j].runs.get(), scenes.runs()[group[j]].own});
       places.push_back(j);
       done[j] = 1;
@@ -79,9 +79,9 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
   }
 }
 
-/// Groups of runs that are not known. A study that goes on computes whole groups again, so that its last digits are
-/// those of one that was not stopped. A sweep's groups have new runs only, the longest first, so that no rank ends long
-/// after the others.
+/// The groups that contain unknown runs. A continued study computes whole groups again, so that its last digits equal
+/// those of an uninterrupted one. A sweep's groups contain unknown runs only, the longest first, so that all ranks end
+/// at about the same time.
 Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   const bool sweep = scenes.study().sweep;
   Groups groups = scenes.groups(scenes.runner(0).runs->width(), sweep ? known : std::vector<char>());
@@ -94,24 +94,24 @@ Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   return groups;
 }
 
-SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTable& table, ResultGather& returns) {
+SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTable& table, ResultGather& gather) {
   SharedWork work;
   for (const std::vector<std::size_t>& group : groups) work.pieces.push_back({group.size(), scenes.duration(group)});
   const bool wheels = table.find("least_wheel_force") != nullptr;
-  work.take = [&, wheels](std::size_t piece, const std::function<void(double)>& reached) {
+  work.compute = [&, wheels](std::size_t piece, const std::function<void(double)>& reached) {
     run_group(
         scenes, groups[piece],
         [&](double t) {
           reached(t);
-          returns.collect();
+          gather.collect();
         },
         [&](std::size_t run, const CaseResult& result, const CaseRunner& runner) {
           if (!result.ended) return;
-          for (std::size_t l = 0; l < result.findings.size(); ++l)
-            if (std::isnan(result.findings[l].value)) table.give_reason(l, result.findings[l].why);
-          returns.send(row_of(run, result, runner.probes(), wheels));
+          for (std::size_t l = 0; l < result.evaluated.size(); ++l)
+            if (std::isnan(result.evaluated[l].value)) table.set_reason(l, result.evaluated[l].why);
+          gather.send(row_of(run, result, runner.probes(), wheels));
         });
-    returns.collect();
+    gather.collect();
   };
   work.name = [&](std::size_t piece) { return name_of(scenes.study(), groups[piece]); };
   return work;
@@ -122,13 +122,13 @@ SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTabl
 RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,
                         StudyFile& file) {
   const results::Stage stage(scenes.study().sweep ? "runs of the sweep" : "runs of the study");
-  ResultGather returns(comm, [&](const std::vector<double>& row) {
+  ResultGather gather(comm, [&](const std::vector<double>& row) {
     table.put(static_cast<std::size_t>(row.front()), row.data() + 1);
     file.update();
   });
   const Groups groups = groups_of(scenes, known);
-  RunFailure failure = run_cases_in_parallel(comm, work_of(scenes, groups, table, returns), scenes.quiet());
-  returns.finish();
+  RunFailure failure = run_cases_in_parallel(comm, work_of(scenes, groups, table, gather), scenes.quiet());
+  gather.finish();
   return first_of(comm, std::move(failure));
 }
 

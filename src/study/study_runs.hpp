@@ -1,4 +1,4 @@
-// The runs of a study or a sweep, shared among the ranks; their numbers go into its table as they come.
+// Computes the runs of a study or a sweep on all ranks and stores their results in its table as they arrive.
 #pragma once
 
 #include <mpi.h>
@@ -12,8 +12,8 @@
 
 namespace traverse::app {
 
-/// Collective. Computes the runs that are not `known`, as far as nothing fails, and stores their numbers in the table
-/// of rank 0. The failure of the earliest one.
+/// Collective. Computes the runs that are not `known` until the end or a failure, and stores their results in the table
+/// of rank 0. Returns the failure of the earliest run.
 RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,
                         StudyFile& file);
 

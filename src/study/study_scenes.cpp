@@ -1,4 +1,4 @@
-// Groups runs by scene or bridge, train, seed and speed class, and keeps a limited number of assembled models for them.
+// Groups runs by scene or bridge, train, seed and speed, and stores a limited number of assembled models for them.
 #include "study/study_scenes.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t most_runners = 12, some_seeds = 8;
+constexpr std::size_t max_runners = 12, max_seeds = 8;
 
 bool names(const StudyDimension& dimension, const char* option) {
   return std::find(dimension.options.begin(), dimension.options.end(), option) != dimension.options.end();
@@ -38,18 +38,19 @@ Study study_of_sweep(const Scene& scene) {
   return study;
 }
 
-/// Train and forces that run together have one speed.
+/// A train and forces in one scene must have one speed.
 void check_speeds(const Scene& scene) {
   if (scene.vehicles.empty() || scene.load.forces.empty()) return;
-  if (!scene.train.courses.empty() || !scene.load.courses.empty()) return;  // each has its own
+  if (!scene.train.courses.empty() || !scene.load.courses.empty()) return;  // each course has its own speed
   for (const StudyDimension& d : scene.study->dimensions)
     if (is_speed(d) && !(names(d, "train_speed") && names(d, "load_speed")))
-      throw InputError(fmt::format("study_vary_{}: the train and the forces beside it run at one speed; add also: {}",
-                                   d.name(), names(d, "train_speed") ? "load_speed" : "train_speed"));
+      throw InputError(
+          fmt::format("study_vary_{}: the train and the additional forces have the same speed; vary also {}", d.name(),
+                      names(d, "train_speed") ? "load_speed" : "train_speed"));
   if (scene.train.speed != scene.load.speed)
     throw InputError(
-        "study_vary: train_speed and load_speed differ; in a study the train and the forces beside it run "
-        "at one speed");
+        "study_vary: train_speed and load_speed differ; in a study the train and the additional forces have the same "
+        "speed");
 }
 
 }  // namespace
@@ -65,11 +66,12 @@ void StudyScenes::enumerate(const Study& study) {
   first_run_.clear();
   first_of_bridge_.clear();
   const double speed = scene_.vehicles.empty() ? scene_.load.speed : scene_.train.speed;
-  std::map<std::vector<double>, std::size_t> known, bridges;  // bases and bridges by what tells them apart
+  std::map<std::vector<double>, std::size_t> known,
+      bridges;  // indices of bases and bridges by the values that define them
   std::set<double> speeds;
   for (std::size_t run = 0; run < study.runs(); ++run) {
     StudyRun one{0, study.sweep ? study.place(run, 0) : 0, 0, {speed, {}}};
-    std::vector<double> rest, of_bridge;
+    std::vector<double> of_base, of_bridge;
     for (const StudyDimension& d : study.dimensions) {
       const double value = study.value(run, d);
       if (is_speed(d))
@@ -77,19 +79,19 @@ void StudyScenes::enumerate(const Study& study) {
       else if (is_seed(d))
         one.own.seed = static_cast<std::uint64_t>(value);
       else if (!study.sweep)
-        rest.push_back(value);
+        of_base.push_back(value);
       if (!study.sweep && !is_speed(d) && !is_seed(d) && !is_of_vehicles(d)) of_bridge.push_back(value);
     }
     if (!(one.own.speed > 0.0))
       throw InputError(fmt::format("study_vary: run {} has the speed {:g} m/s; allowed: above 0", run, one.own.speed));
-    const auto [base, is_new] = known.try_emplace(rest, first_run_.size());
+    const auto [base, is_new] = known.try_emplace(of_base, first_run_.size());
     if (is_new) first_run_.push_back(run);
     one.base = base->second;
     const auto [bridge, new_bridge] = bridges.try_emplace(of_bridge, first_of_bridge_.size());
     if (new_bridge) first_of_bridge_.push_back(one.base);
     one.bridge = bridge->second;
     runs_.push_back(one);
-    if (one.own.seed && seeds_.size() < some_seeds &&
+    if (one.own.seed && seeds_.size() < max_seeds &&
         std::find(seeds_.begin(), seeds_.end(), *one.own.seed) == seeds_.end())
       seeds_.push_back(*one.own.seed);
     speeds.insert(one.own.speed);
@@ -128,51 +130,51 @@ std::vector<std::size_t> StudyScenes::extreme_bases() const {
   return {found.begin(), found.end()};
 }
 
-bool StudyScenes::beside(const Runner& a, const Runner& b) const {
+bool StudyScenes::compatible(const Runner& a, const Runner& b) const {
   const auto bridge = [&](const Runner& one) { return runs_[first_run_[one.base]].bridge; };
-  return a.base == b.base || (a.joined && b.joined && bridge(a) == bridge(b));
+  return a.base == b.base || (a.merged && b.merged && bridge(a) == bridge(b));
 }
 
 StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::string>* notes) {
   for (const Runner& known : runners_)
     if (known.base == wanted) return known;
-  // Every base of a bridge stands on the first one's, and goes beside it.
+  // All bases of a bridge use the model of its first base and can be computed in one batch with it.
   const std::size_t first = first_of_bridge_[runs_[first_run_[wanted]].bridge];
   const std::shared_ptr<CaseRunner> model = wanted == first ? nullptr : runner(first).runs;
   const Scene scene = chosen_ ? completed(base(wanted), *chosen_) : base(wanted);
-  if (runners_.size() == most_runners) {
+  if (runners_.size() == max_runners) {
     const auto oldest = std::find_if(runners_.begin(), runners_.end(), [&](const Runner& one) {
-      return one.base != 0 && one.base != first;  // the first of all tells what runs take
+      return one.base != 0 && one.base != first;  // the cost of runs is estimated with the first base
     });
-    alone_ += oldest->runs->alone();
+    separate_runs_ += oldest->runs->separate_runs();
     runners_.erase(oldest);
   }
   std::vector<std::string> ignored;
   const bool same_beam = model != nullptr && scene.beam->axial == model->axial();
   auto made =
       std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored, same_beam ? model->beam() : nullptr);
-  const bool joined = model == nullptr || (same_beam && made->merge(*model));
-  return runners_.emplace_back(Runner{wanted, joined, std::move(made)});
+  const bool merged = model == nullptr || (same_beam && made->merge(*model));
+  return runners_.emplace_back(Runner{wanted, merged, std::move(made)});
 }
 
-long StudyScenes::alone() const {
-  long sum = alone_;
-  for (const Runner& one : runners_) sum += one.runs->alone();
+long StudyScenes::separate_runs() const {
+  long sum = separate_runs_;
+  for (const Runner& one : runners_) sum += one.runs->separate_runs();
   return sum;
 }
 
-bool StudyScenes::mixes(std::size_t width) const {
+bool StudyScenes::mixes_vehicles(std::size_t width) const {
   return width > 1 && bases() > first_of_bridge_.size() && runs_.size() < width * bases();
 }
 
-std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width, const std::vector<char>& left_out) const {
-  // So many tracks go together, so that each is made once and those in use fit into memory.
+std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width, const std::vector<char>& excluded) const {
+  // Blocks of `width` seeds are computed together: each track is generated once, and the tracks in use fit into memory.
   using Block = std::array<std::size_t, 3>;  // scene, train, block of seeds
   std::map<Block, std::vector<std::size_t>> blocks;
   std::map<std::uint64_t, std::size_t> seeds;
-  const bool mixed = mixes(width);
+  const bool mixed = mixes_vehicles(width);
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    if (!left_out.empty() && left_out[i] != 0) continue;
+    if (!excluded.empty() && excluded[i] != 0) continue;
     const StudyRun& run = runs_[i];
     const std::size_t seed = run.own.seed ? seeds.try_emplace(*run.own.seed, seeds.size()).first->second : 0;
     blocks[{mixed ? run.bridge : run.base, run.train, seed / width}].push_back(i);

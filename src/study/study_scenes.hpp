@@ -1,4 +1,5 @@
-// The scenes behind the runs of a study or a sweep: which runs share a bridge and a train, and what computes them.
+// The scenes of the runs of a study or a sweep, which runs share a bridge and a train, and the objects that compute
+// them.
 #pragma once
 
 #include <deque>
@@ -13,18 +14,18 @@ namespace traverse::app {
 
 /// A run of a study.
 struct StudyRun {
-  std::size_t base = 0;    // the scene that it is a run of
-  std::size_t train = 0;   // of forces, of a sweep
-  std::size_t bridge = 0;  // scenes with the same one differ in their vehicles' numbers alone
-  CaseRun own;             // its speed and the seed of its track
+  std::size_t base = 0;    // index of its scene
+  std::size_t train = 0;   // index of the force train in a sweep
+  std::size_t bridge = 0;  // scenes with the same index differ in vehicle parameters only
+  CaseRun own;             // speed and track seed
 };
 
-/// Runs that differ in speed and in the track's seed alone are runs of one scene, a base; bases differ in all else.
+/// A base is a scene of a study. Runs of one base differ in speed and track seed only; bases differ in other options.
 class StudyScenes {
  public:
-  /// Of a scene with a study or a sweep, which must outlive it. InputError where speeds contradict one another.
+  /// For a scene with a study or a sweep, which must outlive this object. InputError if speeds contradict each other.
   explicit StudyScenes(const Scene& scene);
-  /// The same with more speeds between its slowest and its fastest.
+  /// Replaces the study by one with more speeds between its slowest and its fastest.
   void enumerate(const Study& study);
 
   const Study& study() const { return study_; }
@@ -33,43 +34,44 @@ class StudyScenes {
   std::size_t bases() const { return first_run_.size(); }
   /// A base as the user describes it, with all speeds of the study in its sweep.
   Scene base(std::size_t base) const;
-  /// The bases whose model may have to be the finest: of the first run, and of the least and the greatest values.
+  /// The bases that may need the finest model: those of the first run, and of the least and the greatest value of each
+  /// option.
   std::vector<std::size_t> extreme_bases() const;
 
-  /// What was chosen for the study: mesh, step, modes and so on, as far as a base leaves them open.
+  /// Sets the model chosen for the study, for mesh, step, modes and others that a base leaves open.
   void choose(const NumericalModel& chosen) { chosen_ = chosen; }
-  /// Ready to compute the runs of a base.
+  /// The object that computes the runs of a base.
   struct Runner {
     std::size_t base = 0;
-    bool joined = false;  // its runs go beside those of all other joined ones on its bridge
+    bool merged = false;  // its runs are compatible with those of the other merged bases on its bridge
     std::shared_ptr<CaseRunner> runs;
   };
-  /// The bases used last are kept.
+  /// The last used runners are stored.
   Runner runner(std::size_t base, std::vector<std::string>* notes = nullptr);
-  /// Whether runs of two bases go side by side.
-  bool beside(const Runner& a, const Runner& b) const;
+  /// Whether runs of two bases can be computed in one batch.
+  bool compatible(const Runner& a, const Runner& b) const;
 
-  /// Whether runs of vehicles with different numbers go beside each other.
-  bool mixes(std::size_t width) const;
-  /// Indices of runs that go together, those of a bridge one after another.
-  /// Those in `left_out` (one flag a run; empty: none) are in no group.
-  std::vector<std::vector<std::size_t>> groups(std::size_t width, const std::vector<char>& left_out = {}) const;
-  /// s of motion, of all runs of a group, by the first base.
+  /// Whether one batch may contain runs of vehicles with different parameters.
+  bool mixes_vehicles(std::size_t width) const;
+  /// Indices of the runs of each batch, sorted by bridge. Runs with a nonzero flag in `excluded` (one flag for each
+  /// run; empty: none) are in no group.
+  std::vector<std::vector<std::size_t>> groups(std::size_t width, const std::vector<char>& excluded = {}) const;
+  /// Simulated time of all runs of a group, s, by the first base.
   double duration(const std::vector<std::size_t>& group);
-  long alone() const;  // runs that had to leave their group, on this rank
+  long separate_runs() const;  // on this rank, runs computed outside their batch
 
  private:
   const Scene& scene_;
   Study study_;
   std::optional<NumericalModel> chosen_;
-  std::vector<double> speeds_;        // of all runs, ascending
-  std::vector<std::uint64_t> seeds_;  // of some tracks
+  std::vector<double> speeds_;        // speeds of all runs, ascending, m/s
+  std::vector<std::uint64_t> seeds_;  // seeds of some tracks
   std::vector<StudyRun> runs_;
-  std::vector<std::size_t> first_run_;  // of each base
-  /// The first base, which all are compared with, then those used last.
+  std::vector<std::size_t> first_run_;  // the first run of each base
+  /// The first base, with which all others are compared, then those used last.
   std::deque<Runner> runners_;
   std::vector<std::size_t> first_of_bridge_;  // the first base of each bridge
-  long alone_ = 0;                            // of runners that are gone
+  long separate_runs_ = 0;                    // separate runs of deleted runners
 };
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// Finds resonances in the table of a sweep, and passes its peaks on to the rules of EN 1991-2.
+// Computes resonance speeds for a sweep, their peaks in its table, and the comparison with the rules of EN 1991-2.
 #include "study/sweep_findings.hpp"
 
 #include <algorithm>
@@ -12,25 +12,25 @@
 namespace traverse::app {
 namespace {
 
-constexpr double least_width = 0.01;  // of the speed: no train is so long that a resonance of it is narrower
+constexpr double least_width = 0.01;  // relative to the speed: the smallest resonance width that is considered
 
-/// Static effects and the verdict of EN 1991-2 where the scene wants them.
+/// Static effects and the verdict of EN 1991-2, if the scene has a norm.
 std::optional<norm::NormCheck> check_by_norm(const Scene& scene, const CaseRunner& runner,
                                              const results::StudyTable& table) {
   if (!scene.norm) return {};
-  norm::NormCheck check = norm_check(scene, trains_at_rest(scene, *runner.beam()));
+  norm::NormCheck check = norm_check(scene, static_trains(scene, *runner.beam()));
   if (!compares_with_lm71(scene)) return check;
   const std::vector<double>& speeds = results::speeds_of_sweep(table.study());
-  norm::Passed passed{speeds, runner.probes(), {}};
+  norm::ComputedPeaks computed{speeds, runner.probes(), {}};
   const std::size_t trains = results::trains_of(table.study()), size = speeds.size() * table.probes();
   for (std::size_t train = 0; train < trains; ++train) {
     const auto of_train = [&](const char* column) {
       const auto from = table.find(column)->values.begin() + static_cast<std::ptrdiff_t>(train * size);
       return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(size));
     };
-    passed.trains.push_back({of_train("peak_deflection"), of_train("peak_moment")});
+    computed.trains.push_back({of_train("peak_deflection"), of_train("peak_moment")});
   }
-  check.judge(passed);
+  check.compare(computed);
   return check;
 }
 
@@ -43,7 +43,7 @@ SweepFindings::SweepFindings(const Scene& scene, const CaseRunner& runner)
   cancellations_ = cancellations_of(*scene.beam, frequencies_, slowest, fastest);
 }
 
-std::vector<double> SweepFindings::unseen_speeds() const { return unseen(resonances_, runner_.speeds()); }
+std::vector<double> SweepFindings::unresolved_speeds() const { return unresolved(resonances_, runner_.speeds()); }
 
 double SweepFindings::width_of_resonance() const {
   const SharedBeam& shared = *runner_.beam();

@@ -1,5 +1,5 @@
-// What a sweep has besides the table of its runs: speeds of resonance and of cancellation, and the verdict of
-// EN 1991-2 on its trains.
+// Results of a sweep in addition to the table of its runs: resonance and cancellation speeds, and the verdict of EN
+// 1991-2.
 #pragma once
 
 #include <optional>
@@ -17,13 +17,13 @@ class SweepFindings {
   /// Both must outlive it.
   SweepFindings(const Scene& scene, const CaseRunner& runner);
 
-  /// m/s, speeds of resonance whose peaks would lie unseen between those of the runner.
-  std::vector<double> unseen_speeds() const;
-  /// The width of the first mode's resonances at half their power, relative to the speed.
+  /// Resonance speeds (m/s) whose peaks are not resolved by the runner's speeds.
+  std::vector<double> unresolved_speeds() const;
+  /// The width of the first mode's resonances at half power, relative to the speed.
   double width_of_resonance() const;
-  /// Finds the peaks near resonances; where all runs have ended, judges by EN 1991-2.
+  /// Computes the peaks near resonances and, if all runs have ended, the verdict of EN 1991-2.
   void finish(const results::StudyTable& table);
-  /// Adds what EN 1991-2 says to the verdicts on limits.
+  /// Appends the results of EN 1991-2 to the verdicts on limits.
   void add_to(std::vector<results::Verdict>& verdicts) const;
   void record(results::Recorder& recorder) const;
   void print() const;

@@ -1,4 +1,4 @@
-// Heights of a track as cubics between equidistant stations: what many runs look up in place of the profile itself.
+// Heights of a track as cubics between equidistant stations, which many runs evaluate in place of the profile.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,9 @@ struct HeightTable {
   std::vector<double> values;          // [station][height, slope*distance], m; empty: level
 };
 
-/// m: so far apart stations from `from` to `to` may be that the cubics between them are off by no more than a wheel on
-/// steel feels; of a level track any. None: so many stations do not fit into memory, as where the track has corners.
+/// The largest distance of stations from `from` to `to`, m, for which the cubics between them are accurate enough for a
+/// wheel on steel; arbitrary for a level track. Empty if so many stations do not fit into memory, as for a track with
+/// corners.
 std::optional<double> table_distance(const Profile& profile, double from, double to);
 HeightTable height_table(const Profile& profile, double from, double to, double distance);
 

@@ -15,15 +15,15 @@
 namespace traverse::track {
 namespace {
 
-constexpr double least_fade = 20.0;    // m
-constexpr double least_corner = 5e-3;  // of slope: below it a wheel of 0.5 m bridges the corner by a micrometre
-constexpr double stations_a_wave = 16.0;
+constexpr double min_fade = 20.0;    // m
+constexpr double min_corner = 5e-3;  // jump of slope: a wheel of 0.5 m bridges a smaller one to within a micrometre
+constexpr double stations_per_wave = 16.0;
 constexpr int stations_between_lines = 8;
-constexpr double rounded = 0.25;        // m on either side of a corner: what a tyre or a rail bridges
-constexpr double apart = 1e-9;          // of the distance of two rows: stations closer than that are one
-constexpr double most_overshoot = 0.3;  // of a table's range of heights: three lines a wave make a tenth
-constexpr int waves_in_all = 240;
-static_assert(waves_in_all % Waves::lanes == 0);
+constexpr double corner_reach = 0.25;  // m on either side of a corner, which a tyre or a rail bridges
+constexpr double same_station = 1e-9;  // of the distance of two rows: closer stations are equal
+constexpr double max_overshoot = 0.3;  // of a table's range of heights; three rows per wave cause a tenth
+constexpr int wave_count = 240;
+static_assert(wave_count % Waves::lanes == 0);
 
 /// Slopes of the natural cubic spline at its knots, from its second derivatives (Thomas algorithm).
 std::vector<double> natural_spline(const std::vector<double>& x, const std::vector<double>& h) {
@@ -45,23 +45,23 @@ std::vector<double> natural_spline(const std::vector<double>& x, const std::vect
   return slope;
 }
 
-/// The corners of straight lines through a table's rows. At a distance s from its row, within `reach`, a corner's curve
-/// lies beside the lines by -turn/2 s (1 - s/reach)^2: it passes through the row with the mean of both slopes and joins
-/// the lines smoothly. Neighbours that overlap add up: of equal distances they make the cubic Hermite spline whose
-/// slopes are central differences.
+/// The corners of straight lines through a table's rows. At a distance s from its row, within `reach`, the curve of a
+/// corner deviates from the lines by -turn/2 s (1 - s/reach)^2: it passes through the row with the mean of both slopes
+/// and joins the lines smoothly. Overlapping deviations of neighbours are added: for equal distances the result is the
+/// cubic Hermite spline whose slopes are central differences.
 struct Corner {
-  double turn, reach;  // of the slope, m
+  double turn, reach;  // change of the slope; m
   double value(double s) const { return s < reach ? -0.5 * turn * s * std::pow(1.0 - s / reach, 2) : 0.0; }
   double slope(double s) const { return s < reach ? -0.5 * turn * (1.0 - s / reach) * (1.0 - 3.0 * s / reach) : 0.0; }
 };
 
 std::vector<Corner> corners_of(const std::vector<double>& x, const std::vector<double>& h) {
   std::vector<Corner> corners;
-  double before = 0.0, left = rounded;  // level ground
+  double before = 0.0, left = corner_reach;  // level ground
   for (std::size_t i = 0; i < x.size(); ++i) {
     const bool last = i + 1 == x.size();
-    const double gap = last ? rounded : x[i + 1] - x[i], after = last ? 0.0 : (h[i + 1] - h[i]) / gap;
-    corners.push_back({after - before, std::min({rounded, left, gap})});
+    const double gap = last ? corner_reach : x[i + 1] - x[i], after = last ? 0.0 : (h[i + 1] - h[i]) / gap;
+    corners.push_back({after - before, std::min({corner_reach, left, gap})});
     before = after;
     left = gap;
   }
@@ -82,7 +82,7 @@ void check_table(const std::vector<double>& x, const std::vector<double>& h, con
   }
 }
 
-/// From 0 to 1 over s in [0, 1], with slope and curvature 0 at both ends; derivatives by s.
+/// A step from 0 to 1 over s in [0, 1], with slope and curvature 0 at both ends; derivatives with respect to s.
 Height smooth_step(double s) {
   return {s * s * s * (10.0 + s * (-15.0 + 6.0 * s)), 30.0 * s * s * (1.0 - s) * (1.0 - s),
           60.0 * s * (1.0 - s) * (1.0 - 2.0 * s)};
@@ -101,8 +101,9 @@ Profile Profile::bump(double start, double length, double height) {
   p.height_ = height;
   p.kinks_ = {start, start + length};
   p.greatest_slope_ = 0.5 * std::abs(height) * two_pi / length;
-  p.greatest_valley_ = p.greatest_slope_ * two_pi / length;  // level there: at both ends, or in the middle of a dip
-  p.resolution_ = length / stations_a_wave;
+  p.greatest_valley_ =
+      p.greatest_slope_ * two_pi / length;  // the slope is zero there: at both ends, or in the middle of a dip
+  p.resolution_ = length / stations_per_wave;
   return p;
 }
 
@@ -116,25 +117,25 @@ Profile Profile::lines(std::vector<double> x, std::vector<double> h, const std::
     p.h_.push_back(height);
     p.slope_.push_back(slope);
   };
-  double nearest = rounded;
+  double nearest = corner_reach;
   add(x.front() - corners.front().reach, h.front(), 0.0);
   for (std::size_t i = 0; i + 1 < x.size(); ++i) {
     const Corner &a = corners[i], &b = corners[i + 1];
     const double d = x[i + 1] - x[i], mean = (h[i + 1] - h[i]) / d;
-    const auto add_between = [&](double s) {  // behind row i
+    const auto add_between = [&](double s) {  // at the distance s behind row i
       add(x[i] + s, h[i] + mean * s + a.value(s) + b.value(d - s), mean + a.slope(s) - b.slope(d - s));
     };
     add_between(0.0);
     const auto [first, second] = std::minmax({a.reach, d - b.reach});
-    if (first > apart * d && first < (1.0 - apart) * d) add_between(first);
-    if (second > first + apart * d && second < (1.0 - apart) * d) add_between(second);
+    if (first > same_station * d && first < (1.0 - same_station) * d) add_between(first);
+    if (second > first + same_station * d && second < (1.0 - same_station) * d) add_between(second);
     nearest = std::min(nearest, d);
   }
   add(x.back(), h.back(), -0.5 * corners.back().turn);
   add(x.back() + corners.back().reach, h.back(), 0.0);
   p.kinks_ = {p.x_.front(), p.x_.back()};
   p.bound_table();
-  p.resolution_ = 4.0 * nearest / stations_a_wave;
+  p.resolution_ = 4.0 * nearest / stations_per_wave;
   return p;
 }
 
@@ -146,19 +147,19 @@ Profile Profile::spline(std::vector<double> x, std::vector<double> h, const std:
   p.kinks_ = {x.front(), x.back()};
   p.x_ = std::move(x);
   p.h_ = std::move(h);
-  p.check_swing(name);
+  p.check_overshoot(name);
   p.bound_table();
   return p;
 }
 
-// A spline swings out beside a jump, the farther the longer the lines are apart there.
-void Profile::check_swing(const std::string& name) const {
+// A spline overshoots beside a jump, the more the longer the intervals are there.
+void Profile::check_overshoot(const std::string& name) const {
   const auto [low, high] = std::minmax_element(h_.begin(), h_.end());
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
     const double a = std::min(h_[i], h_[i + 1]), b = std::max(h_[i], h_[i + 1]);
     for (int part = 1; part < stations_between_lines; ++part) {
       const double x = x_[i] + part * (x_[i + 1] - x_[i]) / stations_between_lines, h = at(x).value;
-      if (std::max(a - h, h - b) > most_overshoot * (*high - *low))
+      if (std::max(a - h, h - b) > max_overshoot * (*high - *low))
         throw InputError(name + ": the smooth curve through the lines leaves them by " +
                          std::to_string(std::max(a - h, h - b)) + " m at x = " + std::to_string(x) +
                          ", beside a jump of height; give lines as close together around the jump as in it");
@@ -166,7 +167,7 @@ void Profile::check_swing(const std::string& name) const {
   }
 }
 
-// Slopes are parabolas between the stations of a table: greatest at an end or where the curvature vanishes.
+// Slopes are parabolas between the stations of a table: they are extreme at an end or where the curvature vanishes.
 void Profile::bound_table() {
   resolution_ = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
@@ -174,16 +175,16 @@ void Profile::bound_table() {
     const auto [a, b] = curvatures(i);
     double low = std::min(left, right), high = std::max(left, right);
     if (a * b < 0.0) {
-      const double turn = left + 0.5 * d * a * a / (a - b);
-      low = std::min(low, turn);
-      high = std::max(high, turn);
+      const double extreme = left + 0.5 * d * a * a / (a - b);
+      low = std::min(low, extreme);
+      high = std::max(high, extreme);
     }
     const double flattest = low * high <= 0.0 ? 0.0 : std::min(std::abs(low), std::abs(high));
     greatest_slope_ = std::max({greatest_slope_, std::abs(low), std::abs(high)});
     greatest_valley_ = std::max(greatest_valley_, std::max(a, b) / std::pow(1.0 + flattest * flattest, 1.5));
-    resolution_ = std::min(resolution_, 4.0 * d / stations_a_wave);
-    const bool first = i == 0, last = i + 2 == x_.size();  // where the level ground beyond turns upward
-    if ((first && left > least_corner) || (last && right < -least_corner))
+    resolution_ = std::min(resolution_, 4.0 * d / stations_per_wave);
+    const bool first = i == 0, last = i + 2 == x_.size();  // whether the surface turns upward to the level ground there
+    if ((first && left > min_corner) || (last && right < -min_corner))
       greatest_valley_ = std::numeric_limits<double>::infinity();
   }
 }
@@ -195,13 +196,13 @@ Profile Profile::rough(const Spectrum& spectrum, double shortest, double longest
   Profile p;
   p.kind_ = Kind::waves;
   p.start_ = start;
-  p.length_ = std::max(least_fade, longest / 5.0);
+  p.length_ = std::max(min_fade, longest / 5.0);
   std::mt19937_64 random(seed);
   std::vector<double> amplitude, frequency, phase;
   double of_slope = 0.0, of_curvature = 0.0;  // variances
-  for (int i = 0; i < waves_in_all; ++i) {
-    const double a = lowest * std::pow(highest / lowest, double(i) / waves_in_all);
-    const double b = lowest * std::pow(highest / lowest, double(i + 1) / waves_in_all);
+  for (int i = 0; i < wave_count; ++i) {
+    const double a = lowest * std::pow(highest / lowest, double(i) / wave_count);
+    const double b = lowest * std::pow(highest / lowest, double(i + 1) / wave_count);
     const double power = spectrum.power(a, b);
     const double k = std::sqrt(a * b);
     amplitude.push_back(std::sqrt(2.0 * power));
@@ -213,7 +214,7 @@ Profile Profile::rough(const Spectrum& spectrum, double shortest, double longest
   p.waves_ = Waves(std::move(amplitude), std::move(frequency), std::move(phase));
   p.greatest_slope_ = 6.0 * std::sqrt(of_slope);
   p.greatest_valley_ = 6.0 * std::sqrt(of_curvature);
-  p.resolution_ = shortest / stations_a_wave;
+  p.resolution_ = shortest / stations_per_wave;
   return p;
 }
 
@@ -226,7 +227,7 @@ Height bump_at(double s, double length, double height) {
   return {half * (1.0 - c), half * k * std::sin(k * s), half * k * k * c};
 }
 
-/// Of the cubics with these values and slopes at the stations x.
+/// The height of the cubics with these values and slopes at the stations x.
 Height cubics_at(const std::vector<double>& x, const std::vector<double>& h, const std::vector<double>& slope,
                  double at) {
   if (at < x.front()) return {h.front(), 0.0, 0.0};
@@ -241,7 +242,7 @@ Height cubics_at(const std::vector<double>& x, const std::vector<double>& h, con
           ((6.0 * b - 4.0) * left + (6.0 * b - 2.0) * right) / d};
 }
 
-/// The waves at s, which is counted in m from the start.
+/// The waves at the distance s (m) from the start, multiplied by the transition over `fade`.
 Height faded(const Height& w, double s, double fade) {
   if (s >= fade) return w;
   Height f = smooth_step(s / fade);
@@ -264,10 +265,10 @@ double Profile::sharpest_place(double from, double to) const {
   double place = from, sharpest = 0.0;
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
     const auto [left, right] = curvatures(i);
-    for (const auto& [x, bend] : {std::pair(x_[i], left), std::pair(x_[i + 1], right)}) {
-      if (x < from || x > to || std::abs(bend) <= sharpest) continue;
+    for (const auto& [x, curvature] : {std::pair(x_[i], left), std::pair(x_[i + 1], right)}) {
+      if (x < from || x > to || std::abs(curvature) <= sharpest) continue;
       place = x;
-      sharpest = std::abs(bend);
+      sharpest = std::abs(curvature);
     }
   }
   return place;
@@ -280,7 +281,7 @@ double Profile::next_station(double x, double curvature) const {
   if (after == x_.end()) return std::numeric_limits<double>::infinity();
   if (after == x_.begin()) return *after;
   const auto [a, b] = curvatures(static_cast<std::size_t>(after - x_.begin()) - 1);
-  const double part = 4.0 * (*after - *std::prev(after)) / stations_a_wave;
+  const double part = 4.0 * (*after - *std::prev(after)) / stations_per_wave;
   return std::max(std::abs(a), std::abs(b)) < curvature ? *after : std::min(*after, x + part);
 }
 
@@ -288,7 +289,7 @@ double Profile::shortest_wave() const {
   double wave = std::numeric_limits<double>::infinity();
   for (const Dip& dip : dips_) wave = std::min(wave, dip.length);
   if (kind_ == Kind::bump) wave = std::min(wave, length_);
-  if (kind_ == Kind::waves) wave = std::min(wave, stations_a_wave * resolution_);
+  if (kind_ == Kind::waves) wave = std::min(wave, stations_per_wave * resolution_);
   return wave;
 }
 
@@ -318,8 +319,8 @@ Profile Profile::with(const Dip& dip) const {
   const double slope = corner ? 4.0 * depth / length : 0.5 * std::abs(depth) * two_pi / length;
   const double valley = corner ? 0.0 : slope * two_pi / length;
   p.greatest_slope_ += slope;
-  p.greatest_valley_ += corner && 2.0 * slope > least_corner ? std::numeric_limits<double>::infinity() : valley;
-  p.resolution_ = level() ? length / stations_a_wave : std::min(p.resolution_, length / stations_a_wave);
+  p.greatest_valley_ += corner && 2.0 * slope > min_corner ? std::numeric_limits<double>::infinity() : valley;
+  p.resolution_ = level() ? length / stations_per_wave : std::min(p.resolution_, length / stations_per_wave);
   return p;
 }
 
@@ -339,23 +340,23 @@ Profile Profile::reversed() const {
 }
 
 Height Profile::at(double x) const {
-  if (!reversed_) return ahead(x);
-  Height h = ahead(-x);
+  if (!reversed_) return unmirrored_at(x);
+  Height h = unmirrored_at(-x);
   h.slope = -h.slope;
   return h;
 }
 
-// Before it is turned round.
-Height Profile::ahead(double x) const { return with_dips(x, base_at(x)); }
+// The height before mirroring.
+Height Profile::unmirrored_at(double x) const { return with_dips(x, base_at(x)); }
 
 Height Profile::with_dips(double x, Height height) const {
   auto dip = std::lower_bound(dips_.begin(), dips_.end(), x - 0.5 * longest_dip_,
                               [](const Dip& d, double place) { return d.middle < place; });
   for (; dip != dips_.end() && dip->middle <= x + 0.5 * longest_dip_; ++dip) {
-    const Height more = dip->at(x);
-    height.value += more.value;
-    height.slope += more.slope;
-    height.curvature += more.curvature;
+    const Height added = dip->at(x);
+    height.value += added.value;
+    height.slope += added.slope;
+    height.curvature += added.curvature;
   }
   return height;
 }

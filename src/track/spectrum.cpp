@@ -19,7 +19,7 @@ double Spectrum::density(double wavenumber) const {
 
 // 1/((x^2 + r^2)(1 + x^2/c^2)) is c^2/(c^2 - r^2) (1/(x^2 + r^2) - 1/(x^2 + c^2)).
 double Spectrum::power(double low, double high) const {
-  // Integral of 1/(x^2 + a^2); the difference of two arctangents as one.
+  // Integral of 1/(x^2 + a^2); one arctangent in place of the difference of two.
   const auto part = [&](double a) {
     if (std::isinf(a)) return 0.0;
     if (a == 0.0) return 1.0 / low - 1.0 / high;

@@ -10,11 +10,11 @@
 namespace traverse::track {
 namespace {
 
-constexpr double slack = 1.01;                               // of the reach
-constexpr double whole = 0.999;                              // of the radius: the reach of a wheel on a wall
+constexpr double margin = 1.01;                              // of the reach
+constexpr double wall_reach = 0.999;                         // of the radius: the reach of a wheel at a wall
 constexpr double least_stations = 4.0, most_stations = 1e4;  // of a scan
 
-// g and its slope.
+// A station with g and its slope.
 struct Sample {
   double station, value, slope;
 };
@@ -23,21 +23,21 @@ double crossing(const Sample& a, const Sample& b) {
   return a.station + (b.station - a.station) * a.value / (a.value - b.value);
 }
 
-// Among the deepest, in place of the least deep where there are enough.
-void keep(TouchingPoints& all, const TouchingPoint& point) {
+// Adds a point; if there are most_points, it replaces the least deep one.
+void insert(TouchingPoints& all, const TouchingPoint& point) {
   if (all.count < most_points) {
     all.points[static_cast<std::size_t>(all.count++)] = point;
     return;
   }
   const auto least = std::min_element(all.points.begin(), all.points.end(),
                                       [](const auto& a, const auto& b) { return a.depth < b.depth; });
-  all.left_out = std::max(all.left_out, std::min(least->depth, point.depth));
+  all.deepest_omitted = std::max(all.deepest_omitted, std::min(least->depth, point.depth));
   if (point.depth <= least->depth) return;
   std::move(std::next(least), all.points.end(), least);
   all.points.back() = point;
 }
 
-// From left to right over the stations in reach.
+// Scans the stations in reach from left to right.
 class Scan {
  public:
   Scan(const Profile& profile, double radius, double x, std::span<const double> steps)
@@ -48,7 +48,7 @@ class Scan {
         steps_(steps) {}
 
   TouchingPoints run() {
-    all_.left_out = -std::numeric_limits<double>::infinity();
+    all_.deepest_omitted = -std::numeric_limits<double>::infinity();
     all_.height = height();
     point_.low = x_ - half_;
     auto step = steps_.begin();
@@ -74,7 +74,7 @@ class Scan {
   void over_stations(Visit&& visit) const {
     const double first = x_ - half_, last = x_ + half_;
     const double shortest = (last - first) / most_stations, longest = (last - first) / least_stations;
-    const double gentle = 0.5 / radius_;  // bent less, the surface has one point closest to the centre
+    const double gentle = 0.5 / radius_;  // with less curvature the surface has one point closest to the centre
     const std::vector<double>& kinks = profile_.kinks();
     auto kink = std::upper_bound(kinks.begin(), kinks.end(), first);
     visit(first);
@@ -90,7 +90,7 @@ class Scan {
     }
   }
 
-  // The greatest e = h + sqrt(R^2 - (s - x)^2): of the stations, and of the tops between them.
+  // The largest e = h + sqrt(R^2 - (s - x)^2): at the stations, and at the maxima between them.
   double height() const {
     double highest = -std::numeric_limits<double>::infinity();
     std::array<double, 3> s{}, e{};  // the latest stations
@@ -99,17 +99,19 @@ class Scan {
       std::rotate(s.begin(), s.begin() + 1, s.end());
       std::rotate(e.begin(), e.begin() + 1, e.end());
       s[2] = next;
-      e[2] = raised(next);
+      e[2] = circle_height(next);
       highest = std::max(highest, e[2]);
-      if (++count > 2 && e[1] >= e[0] && e[1] >= e[2]) highest = std::max(highest, top(s[1], s[0], s[2]));
+      if (++count > 2 && e[1] >= e[0] && e[1] >= e[2]) highest = std::max(highest, maximum_near(s[1], s[0], s[2]));
     });
     return highest;
   }
 
-  double raised(double s) const { return profile_.at(s).value + std::sqrt(radius_ * radius_ - (s - x_) * (s - x_)); }
+  double circle_height(double s) const {
+    return profile_.at(s).value + std::sqrt(radius_ * radius_ - (s - x_) * (s - x_));
+  }
 
-  // The greatest e near a station, between those beside it, by Newton.
-  double top(double s, double left, double right) const {
+  // The largest e near a station, between its neighbours, by Newton's method.
+  double maximum_near(double s, double left, double right) const {
     double highest = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < 4; ++i) {
       const Height h = profile_.at(s);
@@ -118,7 +120,7 @@ class Scan {
       const double curvature = h.curvature - radius_ * radius_ / (below * below * below);
       if (curvature >= 0.0) break;
       s = std::clamp(s - slope / curvature, left, right);
-      highest = std::max(highest, raised(s));
+      highest = std::max(highest, circle_height(s));
     }
     return highest;
   }
@@ -134,19 +136,19 @@ class Scan {
     before_ = here;
   }
 
-  // Where the slope of g changes its sign g is greatest or least: it may vanish on either side.
+  // g has an extremum where its slope changes its sign, and may have a zero on either side of it.
   void advance(const Sample& here) {
     if (before_.slope * here.slope < 0.0 && before_.value * here.value > 0.0)
-      take(at(before_.station + (here.station - before_.station) * before_.slope / (before_.slope - here.slope)));
-    take(here);
+      process(at(before_.station + (here.station - before_.station) * before_.slope / (before_.slope - here.slope)));
+    process(here);
   }
 
-  void take(const Sample& here) {
+  void process(const Sample& here) {
     if (falling_ && here.value <= 0.0) {
       found(crossing(before_, here));
     } else if (!falling_ && here.value > 0.0) {
       point_.high = crossing(before_, here);
-      keep(all_, point_);
+      insert(all_, point_);
       point_.low = point_.high;
       ++point_.number;
       falling_ = true;
@@ -154,11 +156,11 @@ class Scan {
     before_ = here;
   }
 
-  // Of a step, or of the reach. What follows lies beyond it.
+  // Ends the side of a step, or the reach; the next stations are on the other side.
   void end_side(double station) {
     if (falling_) found(station);
     point_.high = station;
-    keep(all_, point_);
+    insert(all_, point_);
     point_.low = station;
     ++point_.number;
     falling_ = true;
@@ -176,17 +178,17 @@ class Scan {
   TouchingPoints all_;
   TouchingPoint point_;
   Sample before_{};
-  bool falling_ = true;  // the distance does
+  bool falling_ = true;  // whether the distance decreases
 };
 
 }  // namespace
 
 double reach(const Profile& profile, double radius) {
   const double slope = profile.greatest_slope();
-  return std::min(whole, slack * slope / std::hypot(1.0, slope)) * radius;
+  return std::min(wall_reach, margin * slope / std::hypot(1.0, slope)) * radius;
 }
 
-double reach_of_steps(double radius) { return whole * radius; }
+double reach_of_steps(double radius) { return wall_reach * radius; }
 
 bool too_rough(const Profile& profile, double radius) {
   return profile.is_rough() && is_sharp(profile, radius) &&

@@ -14,21 +14,21 @@
 namespace traverse::track {
 namespace {
 
-constexpr double table_stations_a_wave = 96.0;
-constexpr double farthest = 1e15;       // stations, beyond which there is nothing between two of them
-constexpr std::size_t kept = 4096;      // stations, a power of two
-constexpr std::size_t turned_on = 256;  // times that a wave is turned on before it is looked at anew
-constexpr int places_at_once = 8;
+constexpr double rotation_stations_per_wave = 96.0;
+constexpr double max_station = 1e15;                // stations; farther ones are equal in double precision
+constexpr std::size_t cached_stations = 4096;       // number of stations, a power of two
+constexpr std::size_t rotations_per_restart = 256;  // number of rotations of a wave before its phase is evaluated again
+constexpr int places_per_step = 8;
 
 using Lanes = Eigen::Array<double, Waves::lanes, 1>;
-using Places = Eigen::Array<double, places_at_once, 1>;
+using Places = Eigen::Array<double, places_per_step, 1>;
 
-/// What turns a wave on from some places to the next ones, and its wavenumber with its square.
-struct KinkPassage {
+/// The rotation of a wave from some places to the next ones, and its wavenumber with its square.
+struct WaveRotation {
   double cosine, sine, k, kk;
 };
-/// A wave at neighbouring places, times its amplitude.
-struct Turned {
+/// Cosine and sine of a wave at neighbouring places, times its amplitude.
+struct WaveValues {
   Places cosine, sine;
 };
 
@@ -45,7 +45,7 @@ constexpr std::array<double, terms> series(double first, int odd) {
 constexpr auto sine_series = series<11>(std::numbers::pi, 1);
 constexpr auto cosine_series = series<11>(1.0, 0);
 
-/// sin and cos of 2 pi u for |u| <= 1/2, by their series at half the angle: good to 1e-15 and without branches.
+/// sin and cos of 2 pi u for |u| <= 1/2, by their series at half the angle: accurate to 1e-15 and without branches.
 template <class Array>
 void sine_cosine(const Array& u, Array& sine, Array& cosine) {
   const Array y = u * u;
@@ -65,8 +65,8 @@ Waves::Waves(std::vector<double> amplitude, std::vector<double> frequency, std::
     : amplitude_(std::move(amplitude)),
       frequency_(std::move(frequency)),
       phase_(std::move(phase)),
-      spacing_(1.0 / (table_stations_a_wave * *std::max_element(frequency_.begin(), frequency_.end()))),
-      stations_(kept) {}
+      spacing_(1.0 / (rotation_stations_per_wave * *std::max_element(frequency_.begin(), frequency_.end()))),
+      stations_(cached_stations) {}
 
 Height Waves::sum(double s) const {
   Lanes value = Lanes::Zero(), slope = Lanes::Zero(), curvature = Lanes::Zero(), sine, cosine;
@@ -85,36 +85,36 @@ Height Waves::sum(double s) const {
 std::vector<Height> Waves::sums(double s, double distance, std::size_t count) const {
   std::vector<Height> heights(count);
   const std::size_t waves = amplitude_.size();
-  std::vector<KinkPassage> turns;
+  std::vector<WaveRotation> rotations;
   for (const double f : frequency_) {
-    const double cycles = f * static_cast<double>(places_at_once) * distance, k = two_pi * f;
+    const double cycles = f * static_cast<double>(places_per_step) * distance, k = two_pi * f;
     const double angle = two_pi * (cycles - std::rint(cycles));
-    turns.push_back({std::cos(angle), std::sin(angle), k, k * k});
+    rotations.push_back({std::cos(angle), std::sin(angle), k, k * k});
   }
-  std::vector<Turned> turned(waves);
-  for (std::size_t first = 0; first < count; first += places_at_once) {
-    if (first % (turned_on * places_at_once) == 0) {
-      const Places along = s + distance * (static_cast<double>(first) + Places::LinSpaced(0.0, places_at_once - 1.0));
+  std::vector<WaveValues> values(waves);
+  for (std::size_t first = 0; first < count; first += places_per_step) {
+    if (first % (rotations_per_restart * places_per_step) == 0) {
+      const Places along = s + distance * (static_cast<double>(first) + Places::LinSpaced(0.0, places_per_step - 1.0));
       Places sine, cosine;
       for (std::size_t i = 0; i < waves; ++i) {
         const Places cycles = frequency_[i] * along + phase_[i];
         sine_cosine(Places(cycles - cycles.rint()), sine, cosine);
-        turned[i].sine = amplitude_[i] * sine;
-        turned[i].cosine = amplitude_[i] * cosine;
+        values[i].sine = amplitude_[i] * sine;
+        values[i].cosine = amplitude_[i] * cosine;
       }
     }
     Places value = Places::Zero(), slope = Places::Zero(), curvature = Places::Zero();
     for (std::size_t i = 0; i < waves; ++i) {
-      const KinkPassage& turn = turns[i];
-      Turned& wave = turned[i];
+      const WaveRotation& rotation = rotations[i];
+      WaveValues& wave = values[i];
       value += wave.cosine;
-      slope -= turn.k * wave.sine;
-      curvature -= turn.kk * wave.cosine;
-      const Places next(wave.cosine * turn.cosine - wave.sine * turn.sine);
-      wave.sine = wave.sine * turn.cosine + wave.cosine * turn.sine;
+      slope -= rotation.k * wave.sine;
+      curvature -= rotation.kk * wave.cosine;
+      const Places next(wave.cosine * rotation.cosine - wave.sine * rotation.sine);
+      wave.sine = wave.sine * rotation.cosine + wave.cosine * rotation.sine;
       wave.cosine = next;
     }
-    for (std::size_t n = 0; n < std::min<std::size_t>(places_at_once, count - first); ++n) {
+    for (std::size_t n = 0; n < std::min<std::size_t>(places_per_step, count - first); ++n) {
       const auto at = static_cast<Eigen::Index>(n);
       heights[first + n] = {value[at], slope[at], curvature[at]};
     }
@@ -123,17 +123,17 @@ std::vector<Height> Waves::sums(double s, double distance, std::size_t count) co
 }
 
 const Height& Waves::station(std::int64_t number) const {
-  Station& s = stations_[static_cast<std::size_t>(number) % kept];
+  Station& s = stations_[static_cast<std::size_t>(number) % cached_stations];
   if (s.number != number) s = {number, sum(static_cast<double>(number) * spacing_)};
   return s.height;
 }
 
 Height Waves::at(double s) const {
-  const double place = std::clamp(s / spacing_, -farthest, farthest), left = std::floor(place);
+  const double place = std::clamp(s / spacing_, -max_station, max_station), left = std::floor(place);
   const double t = place - left, h = spacing_;
   const auto number = static_cast<std::int64_t>(left);
   const Height a = station(number), b = station(number + 1);
-  // a.value + c1 t + c2 t^2 + ... + c5 t^5 with b's value and derivatives at t = 1
+  // The polynomial a.value + c1 t + c2 t^2 + ... + c5 t^5 has b's value and derivatives at t = 1.
   const double c1 = h * a.slope, c2 = 0.5 * h * h * a.curvature;
   const double rise = b.value - a.value - c1 - c2, turn = h * b.slope - c1 - 2.0 * c2,
                bend = 0.5 * h * h * (b.curvature - a.curvature);

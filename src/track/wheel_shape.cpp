@@ -1,5 +1,5 @@
-// Deviation of the radius by polygonal harmonics and by a flat of cosine shape, with derivatives by the angle, and the
-// angles at which a flat begins and ends.
+// Deviation of the radius by polygonal harmonics and by a flat of cosine shape, with derivatives with respect to the
+// angle, and the angles at which a flat begins and ends.
 #include "traverse/track/wheel_shape.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace traverse::track {
 namespace {
 
-constexpr double most_turns = 1e6;  // of a wheel with a flat: each is an event of the run
+constexpr double max_turns = 1e6;  // of a wheel with a flat, each of which is an event of the run
 
 }  // namespace
 
@@ -43,9 +43,9 @@ RadiusGain radius_gain(const WheelShape& shape, double radius, double angle) {
 std::vector<double> flat_ends(const WheelShape& shape, double radius, double last) {
   std::vector<double> angles;
   if (!(shape.flat_length > 0.0)) return angles;
-  if (last / two_pi > most_turns)
+  if (last / two_pi > max_turns)
     throw InputError("a wheel with a flat and a radius of " + std::to_string(radius) + " m turns " +
-                     std::to_string(last / two_pi) + " times in this run; allowed: " + std::to_string(most_turns) +
+                     std::to_string(last / two_pi) + " times in this run; allowed: " + std::to_string(max_turns) +
                      ", with a shorter run or a larger radius");
   const double half = 0.5 * shape.flat_length / radius;
   for (double end : {shape.flat_angle - half, shape.flat_angle + half})

@@ -27,8 +27,12 @@ MovingVehicle::MovingVehicle(Unit unit)
 }
 
 Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
-             const track::Profile* profile, double surface_height, bool yields_inside)
-    : mesh_(mesh), profile_(profile), frozen_(frozen), surface_height_(surface_height), yields_inside_(yields_inside) {
+             const track::Profile* profile, double surface_height, bool uses_local_compliance)
+    : mesh_(mesh),
+      profile_(profile),
+      frozen_(frozen),
+      surface_height_(surface_height),
+      uses_local_compliance_(uses_local_compliance) {
   AssembledTrain assembled = assemble(types, train, gravity, frozen);
   members = std::move(assembled.members);
   speeds_.assign(assembled.units.size(), 0.0);
@@ -51,7 +55,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       c.wheel = static_cast<int>(i);
       c.body = vehicle.wheels[i].body;
       c.law = vehicle.wheels[i].law;
-      c.kinematics.penetration = contact::penetration_at_rest(vehicle.wheels[i].law, share);
+      c.kinematics.penetration = contact::static_penetration(vehicle.wheels[i].law, share);
       wheels.push_back(c);
     }
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
@@ -63,7 +67,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       c.body = vehicle.wheels[i].body;
       c.law = vehicle.wheels[i].law;
       c.is_further = true;
-      take_away(c);
+      reset_contact(c);
       WheelContact& first = wheels[static_cast<std::size_t>(vehicle.first_wheel) + i];
       first.further = static_cast<int>(wheels.size());
       first.sharp = c.sharp;
@@ -79,12 +83,13 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       if (contact(i).vehicle == static_cast<int>(k)) vehicle.touching.push_back(i);
   }
   for (const MovingVehicle& vehicle : vehicles)
-    for (const multibody::Driver& driver : vehicle.mechanism.model().drivers) jumps_ = jumps_ || driver.value.jumps();
-  take(0, static_cast<int>(vehicles.size()));
+    for (const multibody::Driver& driver : vehicle.mechanism.model().drivers)
+      accelerations_jump_ = accelerations_jump_ || driver.value.jumps();
+  set_own(0, static_cast<int>(vehicles.size()));
   start_rolling();
 }
 
-void Fleet::take(int first, int past) {
+void Fleet::set_own(int first, int past) {
   first_own_ = first;
   past_own_ = past;
   is_set_ = false;
@@ -112,10 +117,10 @@ void Fleet::add_pairs(int k) {
 
 int Fleet::member(int i) const {
   const Contact& c = contact(i);
-  const auto begins_behind = [](const std::pair<int, int>& place, const Member& member) {
+  const auto begins_after = [](const std::pair<int, int>& place, const Member& member) {
     return place < std::pair(member.unit, member.first_body);
   };
-  const auto next = std::upper_bound(members.begin(), members.end(), std::pair(c.vehicle, c.body), begins_behind);
+  const auto next = std::upper_bound(members.begin(), members.end(), std::pair(c.vehicle, c.body), begins_after);
   return static_cast<int>(next - members.begin()) - 1;
 }
 
@@ -135,23 +140,24 @@ Eigen::Vector3d Fleet::velocities(const Contact& c) const {
   return vehicles[c.vehicle].state.qd.segment<3>(3 * c.body);
 }
 
-bool Fleet::held(const WheelContact& c) const {
+bool Fleet::rotation_constrained(const WheelContact& c) const {
   const Eigen::MatrixXd& Phi_q = vehicles[c.vehicle].state.Phi_q;
   return Phi_q.rows() > 0 && Phi_q.col(3 * c.body + 2).lpNorm<Eigen::Infinity>() > free_to_turn;
 }
 
 void Fleet::start_rolling() {
   for (WheelContact& c : wheels) {
-    c.turns = !frozen_ && !held(c) && (wheel(c).law.friction > 0.0 || velocities(c).z() != 0.0);
-    c.home = c.turns ? coordinates(c).z() : coordinates(c).x();
+    c.turns = !frozen_ && !rotation_constrained(c) && (wheel(c).law.friction > 0.0 || velocities(c).z() != 0.0);
+    c.roll_origin = c.turns ? coordinates(c).z() : coordinates(c).x();
   }
 }
 
 double Fleet::rolled_angle(const WheelContact& c) const {
-  return c.turns ? c.home - coordinates(c).z() : (coordinates(c).x() - c.home) / wheel(c).radius;
+  return c.turns ? c.roll_origin - coordinates(c).z() : (coordinates(c).x() - c.roll_origin) / wheel(c).radius;
 }
 
-// What a wheel out of round adds to its contact: alpha = R + dr(a) - distance, with a of the body's angle or of x.
+// Adds the contribution of a wheel out of round: alpha = R + dr(a) - distance, where a follows from the body's angle or
+// x.
 void Fleet::add_shape(WheelContact& c) const {
   const Wheel& w = wheel(c);
   if (w.shape.round()) return;
@@ -164,12 +170,12 @@ void Fleet::add_shape(WheelContact& c) const {
 }
 
 std::vector<std::string> Fleet::partition(double t) {
-  std::vector<std::string> notes;
+  std::vector<std::string> messages;
   for (MovingVehicle& vehicle : vehicles)
     for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
-      notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
+      messages.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
   number(t);
-  return notes;
+  return messages;
 }
 
 bool Fleet::worn() const {
@@ -187,8 +193,8 @@ bool Fleet::accept() {
 }
 
 void Fleet::number(double t) {
-  home_.clear();
-  cruise_.clear();
+  origin_.clear();
+  steady_rate_.clear();
   freedom_ = 0;
   for (std::size_t k = 0; k < vehicles.size(); ++k) {
     MovingVehicle& vehicle = vehicles[k];
@@ -196,37 +202,40 @@ void Fleet::number(double t) {
     freedom_ += vehicle.mechanism.freedom();
     for (int i : vehicle.mechanism.partition().independent) {
       const bool rolls = i % 3 == 2 && !frozen_;
-      cruise_.push_back(vehicle.wheels.empty() ? 0.0 : i % 3 == 0 ? speeds_[k] : rolls ? vehicle.state.qd[i] : 0.0);
-      home_.push_back(vehicle.state.q[i] - cruise_.back() * t);
+      steady_rate_.push_back(vehicle.wheels.empty() ? 0.0
+                             : i % 3 == 0           ? speeds_[k]
+                             : rolls                ? vehicle.state.qd[i]
+                                                    : 0.0);
+      origin_.push_back(vehicle.state.q[i] - steady_rate_.back() * t);
     }
   }
-  position_.resize(home_.size());
-  velocity_.resize(home_.size());
+  position_.resize(origin_.size());
+  velocity_.resize(origin_.size());
   is_set_ = false;
 }
 
 bool Fleet::set(double t, const double* p, const double* pd) {
-  bool there = is_set_ && t == time_;
+  bool unchanged = is_set_ && t == time_;
   const auto [first, past] = own_coordinates();
   for (int i = first; i < past; ++i) {
-    const double position = home_[i] + cruise_[i] * t + p[i], velocity = cruise_[i] + pd[i];
-    there = there && position == position_[i] && velocity == velocity_[i];
+    const double position = origin_[i] + steady_rate_[i] * t + p[i], velocity = steady_rate_[i] + pd[i];
+    unchanged = unchanged && position == position_[i] && velocity == velocity_[i];
     position_[i] = position;
     velocity_[i] = velocity;
   }
-  if (there) return true;
+  if (unchanged) return true;
   time_ = t;
   is_set_ = false;
   bool all = true;
   for (MovingVehicle& vehicle : own()) {
-    all = all && !vehicle.rests;
-    if (vehicle.rests) continue;
+    all = all && !vehicle.converged;
+    if (vehicle.converged) continue;
     if (!vehicle.dynamics->set(vehicle, t, position_.data() + vehicle.offset, velocity_.data() + vehicle.offset)) {
-      stuck_ = static_cast<int>(&vehicle - vehicles.data());
+      failed_ = static_cast<int>(&vehicle - vehicles.data());
       return false;
     }
   }
-  stuck_ = -1;
+  failed_ = -1;
   is_set_ = all;
   return true;
 }
@@ -249,8 +258,8 @@ void Fleet::coordinates_of_state(double t, double* p, double* pd) const {
   for (const MovingVehicle& vehicle : vehicles) {
     int at = vehicle.offset;
     for (int i : vehicle.mechanism.partition().independent) {
-      p[at] = vehicle.state.q[i] - home_[at] - cruise_[at] * t;
-      pd[at] = vehicle.state.qd[i] - cruise_[at];
+      p[at] = vehicle.state.q[i] - origin_[at] - steady_rate_[at] * t;
+      pd[at] = vehicle.state.qd[i] - steady_rate_[at];
       ++at;
     }
   }

@@ -1,5 +1,5 @@
-// All vehicles of a train with their wheels, on every rank: where they are, which piece of running surface each wheel
-// is on, and the contact forces. A rank moves and evaluates its own vehicles, which are all unless ranks share them.
+// All vehicles of a train with their wheels, on every rank: their positions, the piece of running surface under each
+// wheel, and the contact forces. A rank moves and evaluates its own vehicles: all, unless ranks share them.
 #pragma once
 
 #include <Eigen/Dense>
@@ -20,27 +20,27 @@
 
 namespace traverse::train {
 
-/// One vehicle of the train, or several that couplers join.
+/// One vehicle of the train, or several vehicles joined by couplers.
 struct MovingVehicle {
   explicit MovingVehicle(Unit unit);
   const std::string& name() const { return mechanism.model().name; }
   int freedom() const { return mechanism.freedom(); }
-  /// From an error of p'' at the end of a step and p'' itself (freedom values each): the root of the mean square of its
-  /// masses' accelerations' errors, over gravity and what these are.
-  double step_error(const double* off, const double* pdd) const;
+  /// From an error of p'' at the end of a step and p'' itself (freedom values each): the root mean square of the errors
+  /// of its masses' accelerations, over gravity plus these accelerations.
+  double step_error(const double* error_of_pdd, const double* pdd) const;
   multibody::Mechanism mechanism;
   multibody::MechanismState state;
   AnyDynamics dynamics;
   std::vector<Wheel> wheels;
   std::vector<contact::BodyContact> contacts;
   double weight = 0.0;        // N
-  double scale = 0.0;         // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
+  double scale = 0.0;         // N: scale of forces; the weight, or without gravity the mass times 1 m/s2
   int offset = 0;             // of its independent coordinates in p
-  int first_wheel = 0;        // in Fleet::wheels: one a wheel, then the further ones of its wheels
+  int first_wheel = 0;        // in Fleet::wheels: one for each wheel, then the further ones of its wheels
   int first_pair = 0;         // in Fleet::pairs
-  std::vector<int> touching;  // its wheels and pairs, numbered as Fleet::contact does
+  std::vector<int> touching;  // its wheels and pairs, by the indices of Fleet::contact
   Eigen::VectorXd Q;          // generalized forces of the wheels, n
-  bool rests = false;         // converged: Fleet::set and touch skip it
+  bool converged = false;     // Fleet::set and touch skip it
 
   void keep(base::Bytes& bytes) {
     bytes(mechanism, state, Q);
@@ -48,7 +48,7 @@ struct MovingVehicle {
   }
 };
 
-/// A contact at the state last evaluated.
+/// A contact at the state evaluated last.
 struct Contact {
   int vehicle = 0;
   int body = 0;
@@ -57,15 +57,15 @@ struct Contact {
   Touch touch;
   contact::Kinematics kinematics;
   contact::Force force;
-  double approach_speed = 0.0;          // of the impact now going on or to come, m/s
-  bool touched = false;                 // in some stage of the step as it was last taken
-  bool released = false;                // its damper let go of a surface not yet back, whose energy is lost
-  std::array<int, 2> slots = {-1, -1};  // of the patches' elements in Fleet::elements(); -1: ground
+  double approach_speed = 0.0;          // of the present or next impact, m/s
+  bool touched = false;                 // with a force in some stage of the last step
+  bool released = false;                // opened by its damper while compressed; the elastic energy is lost
+  std::array<int, 2> slots = {-1, -1};  // indices of the patches' elements in Fleet::elements(); -1: ground
   double sign = 1.0;                    // of its force
   int active = 0;                       // the patch with the deepest penetration
   int slot() const { return slots[active]; }
   void keep(base::Bytes& bytes) {
-    bytes(law, touch, kinematics, force, approach_speed, touched, released, slots, sign, active);
+    bytes(law.local_compliance, touch, kinematics, force, approach_speed, touched, released, slots, sign, active);
   }
 };
 
@@ -74,25 +74,25 @@ struct PairContact : Contact {
   contact::PairGeometry geometry;
 };
 
-/// A wheel on the track. A wheel sharper than the track's valleys, or one at a step of the surface, may touch at
-/// several points (track::TouchingPoints): it has further entries for the other points, from left to right, and then
-/// for what neighbouring points share, with the sign -1. Where it touches at fewer, the others have no candidates, a
-/// negative penetration and no force. Nor has a wheel where there is no surface.
+/// A wheel on the track. A wheel with a radius larger than that of the track's valleys, or one at a step of the
+/// surface, may touch at several points (track::TouchingPoints). It has further entries: the other points from left to
+/// right, then with the sign -1 the overlaps that neighbouring points share. Unused entries have no candidates, a
+/// negative penetration and no force; so has a wheel without a surface under it.
 struct WheelContact : Contact {
   int wheel = 0;                 // of its vehicle
-  std::array<Patch, 2> patches;  // the surface under the wheel, and the neighbour across a near kink
+  std::array<Patch, 2> patches;  // the surface under the wheel, and beyond a near kink
   int candidates = 1;
-  bool turns = false;  // its body turns with it; else it has rolled by the distance gone over its radius
-  double home = 0.0;   // angle (rad) or x (m) where it starts to roll
-  int further = 0;     // index of the first further entry of this wheel; 0: none
+  bool turns = false;        // it turns with its body; otherwise its angle is the distance over its radius
+  double roll_origin = 0.0;  // initial angle (rad) or x (m) of the rolling
+  int further = 0;           // index of the first further entry of this wheel; 0: none
   bool is_further = false;
-  bool sharp = false;    // sharper than the track's valleys
-  double divide = 0.0;   // sign -1: station of the minimum between the points, as it was found, m
-  bool at_step = false;  // sign -1: there the surface steps; the patches are its two sides
+  bool sharp = false;            // its radius is larger than that of the track's valleys
+  double minimum_station = 0.0;  // sign -1: station of the minimum between the points, m
+  bool at_step = false;          // sign -1: the surface has a step there; the patches are its two sides
 
   void keep(base::Bytes& bytes) {
     Contact::keep(bytes);
-    bytes(patches, candidates, home, divide, at_step);
+    bytes(patches, candidates, roll_origin, minimum_station, at_step);
   }
 };
 
@@ -104,11 +104,11 @@ struct WheelLoad {
 class Fleet {
  public:
   Fleet() = default;
-  /// mesh: of the beam that wheels run on, null for rigid ground alone, its surface at a height above its axis.
-  /// yields_inside: whether what its elements yield between their nodes under wheels counts.
-  /// frozen: every drive stands still at its place at t = 0, and a free train is held: for the static start.
+  /// mesh: of the beam that wheels run on, null for rigid ground only; surface_height: of its surface above its axis.
+  /// uses_local_compliance: whether wheels deflect elements between their nodes. frozen: for the static start, every
+  /// drive remains at its position at t = 0, and a free train is fixed.
   Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
-        const track::Profile* profile, double surface_height, bool yields_inside = false);
+        const track::Profile* profile, double surface_height, bool uses_local_compliance = false);
 
   std::vector<MovingVehicle> vehicles;
   std::vector<Member> members;  // the vehicles of the train
@@ -124,27 +124,27 @@ class Fleet {
     return k < wheels.size() ? static_cast<const Contact&>(wheels[k]) : pairs[k - wheels.size()];
   }
   const std::string& name(int contact) const;
-  /// Whether a wheel has surface under it; bodies always may touch.
+  /// Whether a wheel has a surface under it; bodies may always touch.
   bool may_touch(int contact) const {
     const auto k = static_cast<std::size_t>(contact);
     return k >= wheels.size() || wheels[k].candidates > 0;
   }
-  /// The number of its vehicle in the train.
+  /// The index of the contact's vehicle in the train.
   int member(int contact) const;
 
-  /// Makes the vehicles [first, past) this rank's own.
-  void take(int first, int past);
+  /// Makes the vehicles [first, past) those of this rank.
+  void set_own(int first, int past);
   int first_own() const { return first_own_; }
   int past_own() const { return past_own_; }
   bool owns(const Contact& c) const { return c.vehicle >= first_own_ && c.vehicle < past_own_; }
   std::span<MovingVehicle> own() { return std::span(vehicles).subspan(first_own_, past_own_ - first_own_); }
   std::span<const MovingVehicle> own() const { return std::span(vehicles).subspan(first_own_, past_own_ - first_own_); }
-  /// Of p: [first, past).
+  /// The range of this rank's coordinates in p: [first, past).
   std::pair<int, int> own_coordinates() const;
 
   int freedom() const { return freedom_; }
   const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
-  /// The surface that it runs on.
+  /// The surface under the contact's vehicle.
   const track::Profile& profile(const Contact& c) const {
     const int course = course_[static_cast<std::size_t>(c.vehicle)];
     return course < 0 || !profiles_[static_cast<std::size_t>(course)] ? *profile_
@@ -152,106 +152,106 @@ class Fleet {
   }
   Eigen::Vector3d coordinates(const Contact& c) const;
   Eigen::Vector3d velocities(const Contact& c) const;
-  /// x of a contact's body and its rate, to be written where another rank tells them.
+  /// x of a contact's body and its rate, writable for values from another rank.
   double& x(const Contact& c) { return vehicles[c.vehicle].state.q[3 * static_cast<Eigen::Index>(c.body)]; }
   double& x_rate(const Contact& c) { return vehicles[c.vehicle].state.qd[3 * static_cast<Eigen::Index>(c.body)]; }
-  /// Of a wheel's first entry: what all its points add up to, and the deepest penetration.
+  /// For a wheel's first entry: the sum of the forces of all its points, and the deepest penetration.
   WheelLoad load(const WheelContact& c) const;
-  /// The first wheel (by its first entry) that has overlapped the track at more points than are modelled, and where.
-  struct Crowded {
+  /// The first wheel (by its first entry) that has overlapped the track at more points than the model has, and its
+  /// position.
+  struct UnmodelledContact {
     int contact = -1;  // none
     double x = 0.0;
   };
-  const Crowded& crowded() const { return crowded_; }
-  /// Does a joint or driver hold the angle of the wheel's body? With a partition chosen.
-  bool held(const WheelContact& c) const;
-  /// All bodies and contacts to where they are in another fleet of the same train.
-  void rest_where(const Fleet& other);
-  /// All bodies to the velocities that the scene gives them.
+  const UnmodelledContact& unmodelled_contact() const { return unmodelled_contact_; }
+  /// Whether a joint or driver constrains the angle of the wheel's body. Requires a partition.
+  bool rotation_constrained(const WheelContact& c) const;
+  /// Copies the positions of all bodies and contacts from another fleet of the same train.
+  void copy_positions(const Fleet& other);
+  /// Sets the velocities of all bodies to those of the scene.
   void start_moving();
-  /// Lets wheels with friction that can turn freely begin without sliding, but for those whose turning speed is given.
-  void let_wheels_roll();
-  /// The body that has gone farther than anything held would since `start`, in words; empty: none.
-  std::string lost_since(const Fleet& start) const;
-  /// Mechanism::apply for a body of a vehicle of the train. InputError where that vehicle is taken as linear.
+  /// Lets wheels with friction that can turn freely start without sliding, except those with a given turning speed.
+  void set_rolling_speeds();
+  /// The unsupported body with the largest displacement since `start`, in words; empty: none.
+  std::string unsupported_body(const Fleet& start) const;
+  /// Mechanism::apply for a body of a vehicle of the train. InputError if that vehicle is linearised.
   void apply(int member, int body, const Eigen::Vector3d& action);
-  /// A step is about to be taken, whose middle this is: where prescribed accelerations jump, they are those of this
-  /// step. True when one has jumped.
+  /// Called before a step, with the time of its middle: selects the prescribed accelerations of this step if they jump.
+  /// True if one has jumped.
   bool begin_step(double middle);
-  /// Times at which actuators' tables have kinks, or prescribed accelerations jump, s.
+  /// Times at which actuators' tables have kinks or prescribed accelerations jump, s.
   std::vector<double> kinks_of_actions() const;
-  /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free
-  /// to turn, and does (by friction, or as its given speed says), is where its body's angle says; any other one rolls
-  /// without sliding, however its body is held.
+  /// Starts to count the rolling angles of wheels out of round. If a wheel's body is free to turn and turns (by
+  /// friction, or with a given speed), the angle is that of the body; any other wheel rolls without sliding.
   void start_rolling();
   double rolled_angle(const WheelContact& c) const;
 
-  /// Takes this rank's vehicles as linear about the state they are in at t = 0, evaluated, with the contact forces in
-  /// Q: those that can be. Returns a line on that, and one for each kind of vehicle that cannot be, and why.
+  /// Linearises this rank's vehicles about their evaluated state at t = 0, with the contact forces in Q, if possible.
+  /// Returns a line on that, and one for each kind of vehicle that cannot be linearised, with the reason.
   std::vector<std::string> linearise();
-  /// The state of this rank's vehicles as observers see it, with p'' (freedom values).
+  /// Computes the observed state of this rank's vehicles, with p'' (freedom values).
   void observe(const double* pdd);
-  /// VehicleDynamics::defect, the largest of this rank's vehicles.
-  double defect() const;
+  /// The largest VehicleDynamics::linearisation_residual of this rank's vehicles.
+  double linearisation_residual() const;
 
-  /// Chooses every vehicle's independent coordinates at t and numbers them. From then on p counts from where the
-  /// vehicles are now, moving on with the train and rolling on: small numbers, so that velocities found as shift times
-  /// p keep their digits. Returns lines on redundant joints.
+  /// Selects every vehicle's independent coordinates at t and numbers them. From then on p is the difference from a
+  /// steady motion that starts at the present state, with the train and rolling: small numbers, so that velocities
+  /// computed as shift times p keep their digits. Returns lines on redundant joints.
   std::vector<std::string> partition(double t);
 
-  /// Whether the independent coordinates of a vehicle of this rank may have worn out.
+  /// Whether the independent coordinates of a vehicle of this rank may be badly conditioned.
   bool worn() const;
-  /// Notes the states of this rank's vehicles, just evaluated, as accepted. Where independent coordinates have worn out
-  /// others take their place: true then, and number() has to follow.
+  /// Accepts the states of this rank's vehicles, which were just evaluated. Replaces badly conditioned independent
+  /// coordinates: then the result is true, and number() has to follow.
   bool accept();
-  /// Numbers the vehicles' independent coordinates, as they are at t: see partition().
+  /// Numbers the vehicles' independent coordinates with their state at t: see partition().
   void number(double t);
 
-  /// Positions, velocities and forces of this rank's vehicles from p and p' (freedom values each), unless they are
-  /// there. False where a mechanism cannot be assembled, which is stuck() then.
+  /// Sets positions, velocities and forces of this rank's vehicles from p and p' (freedom values each), unless they are
+  /// set already. False if a mechanism cannot be assembled.
   bool set(double t, const double* p, const double* pd);
-  /// Moves this rank's vehicles on by a small change of p (freedom values), and rate times it of p'.
+  /// Moves this rank's vehicles by a small change of p (freedom values), and rate times it of p'.
   void shift(const double* change, double rate);
-  /// Why the last evaluation of this rank's vehicles failed; empty where it did not: a joint jams, or one cannot be
-  /// assembled.
-  std::string trouble() const;
-  /// p and p' (freedom values each) of the vehicles' q and q' at t.
+  /// The reason why the last evaluation of this rank's vehicles failed: a jammed joint or a mechanism that cannot be
+  /// assembled; empty if it did not fail.
+  std::string failure_reason() const;
+  /// p and p' (freedom values each) for the vehicles' q and q' at t.
   void coordinates_of_state(double t, double* p, double* pd) const;
 
-  /// Arcs that have gone round the end of a line are on its other side from then on.
+  /// Records on which side of a line arcs are, after they may have moved around its end.
   void record_sides();
 
-  /// Finds the patches under the wheels and the list of beam elements in touch.
+  /// Determines the patches under the wheels and the list of beam elements under wheels.
   void place_wheels();
-  /// Whether the wheels of this rank's vehicles are still on these patches.
+  /// Whether the wheels of this rank's vehicles are on these patches.
   bool wheels_in_place() const;
   const std::vector<int>& elements() const { return elements_; }
 
-  /// Contact geometry of this rank's vehicles from the elements' unknowns v and rates w (2*per_node an element of
-  /// elements()). False where a contact is driven through.
+  /// Contact geometry of this rank's vehicles from the elements' unknowns v and rates w (2*per_node for each element of
+  /// elements()). False if a body has passed through a surface.
   bool touch(int per_node, const double* v, const double* w);
-  /// Forces from the kinematics held in the contacts.
+  /// Forces from the kinematics stored in the contacts.
   void contact_forces();
   /// Q of this rank's vehicles from the contact forces.
   void contact_loads();
   /// Adds a contact's forces to its vehicle's Q.
   static void add_load(const Contact& contact, double normal, double tangential, Eigen::VectorXd& Q);
-  /// Contact forces as nodal values of the elements in touch, 2*per_node each, on the beam.
+  /// Contact forces as nodal values of the elements under wheels, 2*per_node each, on the beam.
   void element_loads(int per_node, std::vector<double>& loads) const;
-  /// The same from the wheels' normal forces and x alone, before the geometry is known: straight down.
+  /// The same from the wheels' normal forces and x only, before the geometry is known: vertical.
   void expected_loads(int per_node, std::vector<double>& loads) const;
-  /// Whether a contact carries force, and its penetration; of a wheel with several points all of them and the deepest.
-  /// The further points of a wheel count with their first.
+  /// Whether a contact has a force, and its penetration; for a wheel with several points the sum and the deepest one.
+  /// The further points of a wheel belong to its first entry.
   bool touches(int contact) const;
   const contact::Kinematics& kinematics(int contact) const;
-  /// Whether it is one of several points at which a wheel may touch where it is.
+  /// Whether the contact is one of several possible points of a wheel at its position.
   bool has_points(int contact) const;
   bool has_points(const WheelContact& c) const;
-  /// How far from its centre a wheel may touch the beam, m.
+  /// The largest distance from its centre at which a wheel may touch the beam, m.
   double reach(const WheelContact& c) const;
-  /// Ascending stations, m: while a wheel is between two of them its patches are found in the same way.
+  /// Ascending stations, m: between two of them the rule for a wheel's patches is the same.
   std::vector<double> borders_of_patches(const WheelContact& c) const;
-  /// How long the impact lasts that a contact now begins, the bodies of its vehicle alone taking part, s.
+  /// Duration of the impact that begins at a contact, with the bodies of its vehicle only, s.
   double impact_duration(int contact);
   /// Power lost in contact damping and friction at this rank's vehicles, W.
   double contact_dissipation() const;
@@ -262,7 +262,7 @@ class Fleet {
   /// Energies of all vehicles, J.
   multibody::MechanismEnergy energy() const;
 
-  /// Collective. What changes with time; owners: the rank of each vehicle where they are dealt out.
+  /// Collective. Writes or reads the time-dependent state; owners: the rank of each vehicle if ranks share them.
   void keep(base::Archive& archive, const std::vector<int>& owners);
 
  private:
@@ -272,15 +272,17 @@ class Fleet {
   void add_ground(WheelContact& c, bool before, double x, double low, double high);
   std::span<const double> steps_near(const WheelContact& c) const;
   void find_points(WheelContact& c);
-  void take_away(WheelContact& c);
+  void reset_contact(WheelContact& c);
   bool touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find);
   bool touch_points(WheelContact& c, int per_node, const double* v, const double* w);
-  void lose(WheelContact& c) const;
+  void clear_touch(WheelContact& c) const;
   WheelContact& point(const WheelContact& first, int i) {
-    return i == 0 ? wheels[index(first)] : further(first, i - 1);
+    return i == 0 ? wheels[index(first)] : further_entry(first, i - 1);
   }
-  WheelContact& between(const WheelContact& first, int i) { return further(first, track::most_points - 1 + i); }
-  WheelContact& further(const WheelContact& first, int i) {
+  WheelContact& shared_entry(const WheelContact& first, int i) {
+    return further_entry(first, track::most_points - 1 + i);
+  }
+  WheelContact& further_entry(const WheelContact& first, int i) {
     return wheels[static_cast<std::size_t>(first.further + i)];
   }
   std::size_t index(const WheelContact& c) const { return static_cast<std::size_t>(&c - wheels.data()); }
@@ -295,16 +297,16 @@ class Fleet {
   std::vector<double> speeds_;                                   // of each of `vehicles` at t = 0, m/s
   std::vector<int> course_;                                      // of each; -1: none
   std::vector<std::shared_ptr<const track::Profile>> profiles_;  // of the courses; null: profile_
-  bool jumps_ = false;                                           // prescribed accelerations do
+  bool accelerations_jump_ = false;                              // prescribed ones
   bool frozen_ = false;
-  int stuck_ = -1;
+  int failed_ = -1;
   double surface_height_ = 0.0;
-  bool yields_inside_ = false;
-  Crowded crowded_;
+  bool uses_local_compliance_ = false;
+  UnmodelledContact unmodelled_contact_;
   std::vector<int> elements_;
-  std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p
-  std::vector<double> position_, velocity_;  // independent ones of all vehicles, as they were set last
-  double time_ = 0.0;                        // when
+  std::vector<double> origin_, steady_rate_;  // coordinates = origin + steady rate*t + p
+  std::vector<double> position_, velocity_;   // independent coordinates of all vehicles, as set last
+  double time_ = 0.0;                         // of position_ and velocity_
   bool is_set_ = false;
 };
 

@@ -13,7 +13,7 @@ constexpr double at_end = 1e-10;  // m: of a patch
 
 }  // namespace
 
-// The deepest of a contact's candidates; of the sides of a step the least deep one.
+// Selects the candidate with the deepest penetration; for the two sides of a step the one with the least.
 bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find) {
   const std::ptrdiff_t m = 2 * static_cast<std::ptrdiff_t>(per_node);
   const Eigen::Vector3d q = coordinates(c);
@@ -32,30 +32,31 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
     c.active = i;
     c.touch = candidate;
   }
-  c.law.seat = c.touch.seat;
+  c.law.local_compliance = c.touch.local_compliance;
   add_shape(c);
   return true;
 }
 
-// Points first, then what neighbours share. Where the less deep one of two points has met the minimum between them,
-// both are lost.
+// Points first, then the overlaps that neighbours share. If the less deep one of two points has reached the minimum
+// between them, both this point and the overlap are removed.
 bool Fleet::touch_points(WheelContact& c, int per_node, const double* v, const double* w) {
   WheelContact* left = nullptr;
   for (int i = 0; i < track::most_points; ++i) {
     WheelContact& p = point(c, i);
     if (p.candidates == 0) continue;
     if (!touch_patches(p, per_node, v, w, Find::closest_within)) return false;
-    WheelContact* shared = i > 0 && between(c, i - 1).candidates > 0 ? &between(c, i - 1) : nullptr;
+    WheelContact* shared = i > 0 && shared_entry(c, i - 1).candidates > 0 ? &shared_entry(c, i - 1) : nullptr;
     if (shared != nullptr) {
       const bool keep_left = left->touch.kinematics.penetration >= p.touch.kinematics.penetration;
-      bool met = left->touch.station > shared->divide - at_end || p.touch.station < shared->divide + at_end;
+      bool merged =
+          left->touch.station > shared->minimum_station - at_end || p.touch.station < shared->minimum_station + at_end;
       if (shared->at_step) {
         if (!touch_patches(*shared, per_node, v, w, Find::closest)) return false;
-        met = shared->touch.kinematics.penetration >= (keep_left ? p : *left).touch.kinematics.penetration;
+        merged = shared->touch.kinematics.penetration >= (keep_left ? p : *left).touch.kinematics.penetration;
       }
-      if (met) {
-        lose(*shared);
-        lose(keep_left ? p : *left);
+      if (merged) {
+        clear_touch(*shared);
+        clear_touch(keep_left ? p : *left);
         if (keep_left) continue;
       } else if (!shared->at_step) {
         shared->patches[0].low = left->touch.station;
@@ -83,21 +84,21 @@ bool Fleet::touch(PairContact& c) const {
 
 bool Fleet::touch(int per_node, const double* v, const double* w) {
   for (WheelContact& c : wheels) {
-    if (c.is_further || !owns(c) || vehicles[c.vehicle].rests) continue;
+    if (c.is_further || !owns(c) || vehicles[c.vehicle].converged) continue;
     if (!(has_points(c) ? touch_points(c, per_node, v, w) : touch_patches(c, per_node, v, w, Find::closest)))
       return false;
   }
   return std::all_of(pairs.begin(), pairs.end(),
-                     [this](PairContact& pair) { return vehicles[pair.vehicle].rests || touch(pair); });
+                     [this](PairContact& pair) { return vehicles[pair.vehicle].converged || touch(pair); });
 }
 
 WheelLoad Fleet::load(const WheelContact& c) const {
-  WheelLoad sum{c.force.normal, c.force.tangential, contact::own_penetration(c.law, c.kinematics.penetration)};
+  WheelLoad sum{c.force.normal, c.force.tangential, contact::surface_penetration(c.law, c.kinematics.penetration)};
   for (int i = 0; c.further > 0 && i < 2 * (track::most_points - 1); ++i) {
     const WheelContact& more = wheels[static_cast<std::size_t>(c.further + i)];
     sum.normal += more.force.normal;
     sum.tangential += more.force.tangential;
-    sum.penetration = std::max(sum.penetration, contact::own_penetration(more.law, more.kinematics.penetration));
+    sum.penetration = std::max(sum.penetration, contact::surface_penetration(more.law, more.kinematics.penetration));
   }
   return sum;
 }
@@ -111,7 +112,7 @@ void Fleet::record_sides() {
 
 void Fleet::add_load(const Contact& c, double normal, double tangential, Eigen::VectorXd& Q) {
   Q.segment<3>(3 * c.body) -= normal * c.touch.normal_on_body + tangential * c.touch.tangent_on_body;
-  Q[3 * c.body] += 0.5 * c.sign * c.touch.seat_by_x * normal * normal;
+  Q[3 * c.body] += 0.5 * c.sign * c.touch.local_compliance_by_x * normal * normal;
   if (c.other_body == multibody::ground) return;
   Q.segment<3>(3 * c.other_body) -= normal * c.touch.normal_on_other + tangential * c.touch.tangent_on_other;
 }
@@ -119,7 +120,7 @@ void Fleet::add_load(const Contact& c, double normal, double tangential, Eigen::
 void Fleet::contact_forces() {
   for (int i = 0; i < contacts(); ++i) {
     Contact& c = contact(i);
-    c.force = contact::force(c.law, c.kinematics, c.approach_speed);
+    c.force = may_touch(i) ? contact::force(c.law, c.kinematics, c.approach_speed) : contact::Force{};
     if (c.sign < 0.0) c.force = -c.force;
   }
 }
@@ -161,15 +162,16 @@ void Fleet::expected_loads(int per_node, std::vector<double>& loads) const {
 
 bool Fleet::touches(int i) const {
   const std::size_t k = static_cast<std::size_t>(i);
+  if (contact(i).law.kind == contact::LawKind::two_sided) return may_touch(i);
   if (k >= wheels.size()) return contact(i).force.normal > 0.0;
   return wheels[k].is_further || load(wheels[k]).normal > 0.0;
 }
 
 bool Fleet::has_points(const WheelContact& c) const {
   if (c.is_further || c.sharp) return true;
-  const auto touches_too = [](const WheelContact& more) { return more.candidates > 0; };
+  const auto is_candidate = [](const WheelContact& more) { return more.candidates > 0; };
   return c.further > 0 &&
-         std::any_of(wheels.begin() + c.further, wheels.begin() + c.further + track::most_points - 1, touches_too);
+         std::any_of(wheels.begin() + c.further, wheels.begin() + c.further + track::most_points - 1, is_candidate);
 }
 
 bool Fleet::has_points(int i) const {

@@ -1,4 +1,4 @@
-// Where the contacts of a fleet are: the pieces of running surface under its wheels.
+// The positions of a fleet's contacts: the pieces of running surface under its wheels.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace traverse::train {
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
-// Within this part of its radius from a kink a wheel may touch on either side of it.
+// Within this part of its radius from a kink a wheel may touch either side of it.
 constexpr double nearby = 0.1;
 
 }  // namespace
@@ -27,7 +27,7 @@ void Fleet::add_patch(WheelContact& c, int element, double start, double low, do
   patch.x = e.x;
   patch.length = e.length;
   patch.shear = e.shear;
-  if (yields_inside_) patch.compliance = e.length * e.length * e.length / (3.0 * e.EI);
+  if (uses_local_compliance_) patch.compliance = e.length * e.length * e.length / (3.0 * e.EI);
 }
 
 void Fleet::add_ground(WheelContact& c, bool before, double x, double low, double high) {
@@ -35,8 +35,8 @@ void Fleet::add_ground(WheelContact& c, bool before, double x, double low, doubl
   add_patch(c, -1, x, before ? low : std::max(low, mesh_->end()), before ? std::min(high, mesh_->start()) : high);
 }
 
-// The patches within [low, high] under a contact at x: the one there, and its neighbour across a kink between `from`
-// and `to`. Where low or high is a step, x may be there: the patch is the one between.
+// Finds the patches within [low, high] under a contact at x: the patch at x, and its neighbour beyond a kink between
+// `from` and `to`. If low or high is a step and x is there, the patch is the one between low and high.
 void Fleet::find_patches(WheelContact& c, double x, double from, double to, double low, double high) {
   c.candidates = c.active = 0;
   if (mesh_ == nullptr) {
@@ -72,7 +72,7 @@ void Fleet::find_patches(WheelContact& c, double x, double from, double to, doub
   }
 }
 
-// The surface's ends on both sides of a step.
+// Sets the ends of the surface on both sides of a step.
 void Fleet::find_sides(WheelContact& c, double step) {
   c.candidates = c.active = 0;
   for (const bool from_left : {true, false}) {
@@ -107,21 +107,21 @@ std::vector<double> Fleet::borders_of_patches(const WheelContact& c) const {
   return borders;
 }
 
-// Apart, and far from touching.
-void Fleet::take_away(WheelContact& c) {
+// Sets the contact to an open one far from the surface.
+void Fleet::reset_contact(WheelContact& c) {
   c.candidates = c.active = 0;
   c.slots = {-1, -1};
-  lose(c);
+  clear_touch(c);
   c.kinematics = c.touch.kinematics;
 }
 
-void Fleet::lose(WheelContact& c) const {
+void Fleet::clear_touch(WheelContact& c) const {
   c.touch = Touch{};
   c.touch.kinematics.penetration = -wheel(c).radius;
 }
 
-// The entries of a wheel that may touch at several points. A point that there was before keeps its kinematics, from
-// which the solution starts.
+// Sets the entries of a wheel that may touch at several points. A point that existed before keeps its kinematics as the
+// initial guess of the solution.
 void Fleet::find_points(WheelContact& c) {
   const double x = coordinates(c).x(), radius = wheel(c).radius;
   const std::span<const double> steps = steps_near(c);
@@ -130,7 +130,7 @@ void Fleet::find_points(WheelContact& c) {
   if (single) {
     found.count = 1;
     found.points[0].station = x;
-    found.left_out = -unbounded;
+    found.deepest_omitted = -unbounded;
   } else {
     found = track::touching_points(profile(c), radius, x, steps);
   }
@@ -150,7 +150,7 @@ void Fleet::find_points(WheelContact& c) {
   }
   for (int i = 0; i < track::most_points; ++i) {
     WheelContact& p = point(c, i);
-    take_away(p);
+    reset_contact(p);
     if (i >= found.count) continue;
     const track::TouchingPoint& at = found.points[i];
     if (single)
@@ -160,9 +160,9 @@ void Fleet::find_points(WheelContact& c) {
     if (p.candidates > 0) p.kinematics = kinematics[i];
   }
   for (int i = 0; i + 1 < track::most_points; ++i) {
-    WheelContact& b = between(c, i);
+    WheelContact& b = shared_entry(c, i);
     const contact::Kinematics old = b.kinematics;
-    take_away(b);
+    reset_contact(b);
     if (i + 1 >= found.count || found.points[i + 1].number != found.points[i].number + 1) continue;
     const track::TouchingPoint &left = found.points[i], &right = found.points[i + 1];
     b.at_step = std::find(steps.begin(), steps.end(), left.high) != steps.end();
@@ -170,11 +170,11 @@ void Fleet::find_points(WheelContact& c) {
       find_sides(b, left.high);
     else
       find_patches(b, left.high, left.high, left.high, left.station, right.station);
-    b.divide = left.high;
+    b.minimum_station = left.high;
     b.kinematics = old;
   }
-  if (crowded_.contact < 0 && found.left_out + deepest > 0.0)
-    crowded_ = {static_cast<int>(index(c)), coordinates(c).x()};
+  if (unmodelled_contact_.contact < 0 && found.deepest_omitted + deepest > 0.0)
+    unmodelled_contact_ = {static_cast<int>(index(c)), coordinates(c).x()};
 }
 
 void Fleet::place_wheels() {
@@ -182,13 +182,13 @@ void Fleet::place_wheels() {
   const bool ends = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
   for (WheelContact& c : wheels) {
     const double x = coordinates(c).x(), radius = wheel(c).radius, near = nearby * radius;
-    if (ends && coordinates(c).y() < profile(c).at(x).value - radius)  // fallen off, and beside or beneath the beam
+    if (ends && coordinates(c).y() < profile(c).at(x).value - radius)  // fallen off the end: beside or below the beam
       c.candidates = 0;
     else if (c.further > 0)
       find_points(c);
     else if (!c.is_further)
       find_patches(c, x, x - near, x + near, -unbounded, unbounded);
-    if (c.candidates == 0) take_away(c);
+    if (c.candidates == 0) reset_contact(c);
   }
   for (const WheelContact& c : wheels)
     for (int i = 0; i < c.candidates; ++i)

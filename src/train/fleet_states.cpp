@@ -1,4 +1,4 @@
-// What the vehicles of a fleet are in, between steps: how they start, what they store, why they fail.
+// States of a fleet's vehicles between steps: start, energies, powers, archive, and reasons of failures.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,32 +10,32 @@
 namespace traverse::train {
 namespace {
 
-constexpr double farthest = 100.0;  // m: what goes farther is held by nothing
+constexpr double most_displacement = 100.0;  // m: bodies with larger displacements are not supported
 
 }  // namespace
 
-double MovingVehicle::step_error(const double* off, const double* pdd) const {
+double MovingVehicle::step_error(const double* error_of_pdd, const double* pdd) const {
   const Eigen::MatrixXd& B = state.B;
   const Eigen::VectorXd& mass = mechanism.mass_diagonal();
   double error = 0.0, motion = 0.0, total = 0.0;  // sums of masses times squares of accelerations; kg
   for (Eigen::Index i = 0; i < mass.size(); ++i) {
-    double a_off = 0.0, a = 0.0;
+    double a_error = 0.0, a = 0.0;
     for (Eigen::Index k = 0; k < B.cols(); ++k) {
-      a_off += B(i, k) * off[k];
+      a_error += B(i, k) * error_of_pdd[k];
       a += B(i, k) * pdd[k];
     }
-    error += mass[i] * a_off * a_off;
+    error += mass[i] * a_error * a_error;
     motion += mass[i] * a * a;
     if (i % 3 == 0) total += mass[i];
   }
   return std::sqrt(error * total) / (scale + std::sqrt(motion * total));
 }
 
-void Fleet::rest_where(const Fleet& other) {
+void Fleet::copy_positions(const Fleet& other) {
   for (std::size_t k = 0; k < vehicles.size(); ++k) vehicles[k].state.q = other.vehicles[k].state.q;
   for (int i = 0; i < contacts(); ++i) {
     contact(i).kinematics = other.contact(i).kinematics;
-    contact(i).law.seat = other.contact(i).law.seat;
+    contact(i).law.local_compliance = other.contact(i).law.local_compliance;
   }
 }
 
@@ -45,36 +45,36 @@ void Fleet::start_moving() {
       vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
 }
 
-void Fleet::let_wheels_roll() {
+void Fleet::set_rolling_speeds() {
   for (const WheelContact& c : wheels) {
     if (c.is_further) continue;
     double& turning = vehicles[c.vehicle].state.qd[3 * static_cast<Eigen::Index>(c.body) + 2];
-    if (held(c) || wheel(c).law.friction == 0.0 || turning != 0.0) continue;
+    if (rotation_constrained(c) || wheel(c).law.friction == 0.0 || turning != 0.0) continue;
     turning = -velocities(c).x() / (wheel(c).radius - c.kinematics.penetration);
   }
 }
 
-std::string Fleet::lost_since(const Fleet& start) const {
-  std::string lost;
-  double far = farthest;
+std::string Fleet::unsupported_body(const Fleet& start) const {
+  std::string text;
+  double largest = most_displacement;
   for (std::size_t k = 0; k < vehicles.size(); ++k) {
     const MovingVehicle& vehicle = vehicles[k];
     const multibody::MechanismModel& model = vehicle.mechanism.model();
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
       const auto at = 3 * static_cast<Eigen::Index>(b);
-      const double gone = (vehicle.state.q - start.vehicles[k].state.q).segment<2>(at).norm();
-      if (gone <= far) continue;
-      far = gone;
-      lost = fmt::format("nothing holds body '{}' of vehicle '{}'", model.bodies[b].name, model.name);
+      const double displacement = (vehicle.state.q - start.vehicles[k].state.q).segment<2>(at).norm();
+      if (displacement <= largest) continue;
+      largest = displacement;
+      text = fmt::format("nothing holds body '{}' of vehicle '{}'", model.bodies[b].name, model.name);
       for (std::size_t s = 0; s < model.springs.size(); ++s) {
         const multibody::Spring& spring = model.springs[s];
-        const bool on_it = spring.bodies[0] == static_cast<int>(b) || spring.bodies[1] == static_cast<int>(b);
-        if (on_it && vehicle.mechanism.spring_force(vehicle.state, static_cast<int>(s)) == 0.0)
-          lost += fmt::format(", its spring '{}' stays loose", spring.name);
+        const bool attached = spring.bodies[0] == static_cast<int>(b) || spring.bodies[1] == static_cast<int>(b);
+        if (attached && vehicle.mechanism.spring_force(vehicle.state, static_cast<int>(s)) == 0.0)
+          text += fmt::format(", its spring '{}' stays loose", spring.name);
       }
     }
   }
-  return lost;
+  return text;
 }
 
 std::vector<double> Fleet::kinks_of_actions() const {
@@ -91,30 +91,30 @@ std::vector<double> Fleet::kinks_of_actions() const {
 }
 
 bool Fleet::begin_step(double middle) {
-  if (!jumps_) return false;
+  if (!accelerations_jump_) return false;
   bool jumped = false;
-  for (MovingVehicle& vehicle : vehicles) jumped = vehicle.mechanism.take_pieces(middle) || jumped;
+  for (MovingVehicle& vehicle : vehicles) jumped = vehicle.mechanism.select_pieces(middle) || jumped;
   if (jumped) is_set_ = false;
   return jumped;
 }
 
 std::vector<std::string> Fleet::linearise() {
-  std::vector<std::string> notes;
-  std::size_t taken = 0;
+  std::vector<std::string> messages;
+  std::size_t linearised = 0;
   for (MovingVehicle& vehicle : own()) {
     const std::string obstacle = LinearDynamics::obstacle(vehicle);
     if (obstacle.empty()) {
-      ++taken;
-      vehicle.dynamics = AnyDynamics(std::make_unique<LinearDynamics>(vehicle, cruise_.data() + vehicle.offset));
-    } else if (std::string note = fmt::format("vehicle '{}' is not linearised: {}", vehicle.name(), obstacle);
-               std::find(notes.begin(), notes.end(), note) == notes.end()) {
-      notes.push_back(std::move(note));
+      ++linearised;
+      vehicle.dynamics = AnyDynamics(std::make_unique<LinearDynamics>(vehicle, steady_rate_.data() + vehicle.offset));
+    } else if (std::string message = fmt::format("vehicle '{}' is not linearised: {}", vehicle.name(), obstacle);
+               std::find(messages.begin(), messages.end(), message) == messages.end()) {
+      messages.push_back(std::move(message));
     }
   }
-  if (taken > 0)
-    notes.insert(notes.begin(), fmt::format("{} linearised about their initial state",
-                                            taken == own().size() ? "vehicles are" : "some vehicles are"));
-  return notes;
+  if (linearised > 0)
+    messages.insert(messages.begin(), fmt::format("{} linearised about their initial state",
+                                                  linearised == own().size() ? "vehicles are" : "some vehicles are"));
+  return messages;
 }
 
 void Fleet::observe(const double* pdd) {
@@ -122,9 +122,9 @@ void Fleet::observe(const double* pdd) {
     if (vehicle.dynamics->observe(vehicle, pdd + vehicle.offset)) is_set_ = false;
 }
 
-double Fleet::defect() const {
+double Fleet::linearisation_residual() const {
   double largest = 0.0;
-  for (const MovingVehicle& vehicle : own()) largest = std::max(largest, vehicle.dynamics->defect());
+  for (const MovingVehicle& vehicle : own()) largest = std::max(largest, vehicle.dynamics->linearisation_residual());
   return largest;
 }
 
@@ -149,12 +149,12 @@ multibody::MechanismEnergy Fleet::energy() const {
   return sum;
 }
 
-std::string Fleet::trouble() const {
+std::string Fleet::failure_reason() const {
   for (const MovingVehicle& vehicle : own())
-    if (vehicle.state.friction.jammed) return vehicle.mechanism.jam(vehicle.state);
-  if (stuck_ < 0) return {};
-  const MovingVehicle& stuck = vehicles[static_cast<std::size_t>(stuck_)];
-  return "vehicle '" + stuck.name() + "' is locked: " + stuck.mechanism.worst_row(stuck.state) +
+    if (vehicle.state.friction.jammed) return vehicle.mechanism.describe_jam(vehicle.state);
+  if (failed_ < 0) return {};
+  const MovingVehicle& failed = vehicles[static_cast<std::size_t>(failed_)];
+  return "vehicle '" + failed.name() + "' is locked: " + failed.mechanism.worst_row(failed.state) +
          ", wherever else its bodies go; a driver pulls it beyond its reach or through a dead point";
 }
 
@@ -166,9 +166,9 @@ void Fleet::keep(base::Archive& archive, const std::vector<int>& owners) {
     for (PairContact& pair : pairs)
       if (pair.vehicle == static_cast<int>(k)) archive.of(owners[k], pair);
   }
-  archive.same(elements_, crowded_, home_, cruise_, stuck_);
+  archive.same(elements_, unmodelled_contact_, origin_, steady_rate_, failed_);
   archive.cache(position_, velocity_, time_, is_set_);
-  is_set_ = is_set_ && archive.alike();
+  is_set_ = is_set_ && archive.same_ranks();
 }
 
 }  // namespace traverse::train

@@ -7,11 +7,11 @@
 namespace traverse::train {
 namespace {
 
-constexpr double long_stretch = 20.0;  // m: over which a slope lasts; spectra fade in over as much
+constexpr double long_stretch = 20.0;  // m: over which a slope lasts; the fade-in of spectra has this length
 
-/// p with the least p^T A p / 2 and G p = 1, by columns: A p + G^T lambda = 0. What neither A nor G holds stays at
-/// rest, and contacts that ask for the same are met as one.
-Eigen::MatrixXd least(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G) {
+/// p with the least p^T A p / 2 and G p = 1, by columns: A p + G^T lambda = 0. Coordinates that neither A nor G
+/// determines remain zero, and dependent contact conditions are satisfied together.
+Eigen::MatrixXd least_energy_motion(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G) {
   const Eigen::Index f = A.rows(), r = G.rows();
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(f + r, f + r), right = Eigen::MatrixXd::Zero(f + r, r);
   const double scale = A.diagonal().cwiseAbs().maxCoeff();
@@ -25,12 +25,12 @@ Eigen::MatrixXd least(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G) {
 }  // namespace
 
 Following::Following(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K, const Eigen::MatrixXd& G)
-    : lasting_(least(K, G)), sudden_(least(M, G)) {}
+    : lasting_(least_energy_motion(K, G)), sudden_(least_energy_motion(M, G)) {}
 
 double lasting_slope(const track::Profile& profile, double x, double slope) {
-  const double here = profile.at(x).value;
-  const double before = (here - profile.at(x - long_stretch).value) / long_stretch;
-  const double ahead = (profile.at(x + long_stretch).value - here) / long_stretch;
+  const double height = profile.at(x).value;
+  const double before = (height - profile.at(x - long_stretch).value) / long_stretch;
+  const double ahead = (profile.at(x + long_stretch).value - height) / long_stretch;
   return std::clamp(slope, std::min(before, ahead), std::max(before, ahead));
 }
 

@@ -1,11 +1,11 @@
-// The velocities of a vehicle that follows the surface it starts on. At rest its coordinates are p(s), s its place on
-// the track: where it goes on at the speed v in equilibrium, p' = v dp/ds. With the slopes h' under its wheels and
-// contacts that are stiff beside its springs, K dp/ds is balanced by the contacts and G dp/ds = h', where G says how
-// the wheels move up with p: the motion that stretches the springs least.
+// The initial velocities of a vehicle that follows the surface. In equilibrium its coordinates are p(s), with its
+// position s on the track; moving in equilibrium at the speed v it has p' = v dp/ds. With the slopes h' under its
+// wheels, and contacts that are stiff compared with its springs, the contact forces balance K dp/ds, and G dp/ds = h',
+// where G gives the upward displacements of the wheels for p: the motion with the least strain energy of the springs.
 //
-// Masses on springs follow a slope that lasts, as of a ramp, and not one that a measured track has for a metre. There
-// the wheels alone follow, as an impulse at the contacts would have them do: the motion of the least kinetic energy. So
-// p' = v (A h_lasting' + C (h' - h_lasting')), with G A = G C = 1.
+// Suspended masses follow a long slope, such as a ramp, but not a slope that a measured track has over a metre. There
+// only the wheels follow, as under an impulse at the contacts: the motion with the least kinetic energy. Therefore p' =
+// v (A h_lasting' + C (h' - h_lasting')), with G A = G C = 1.
 #pragma once
 
 #include <Eigen/Dense>
@@ -16,9 +16,9 @@ namespace traverse::train {
 
 class Following {
  public:
-  /// M and K (f x f, kg and N/m) and G (r x f): what the coordinates that follow and the contacts have.
+  /// M and K (f x f, kg and N/m) of the following coordinates, and G (r x f) of the contacts.
   Following(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K, const Eigen::MatrixXd& G);
-  /// From how fast the surface rises under each wheel, as it is and as it lasts, m/s.
+  /// From the rise of the surface under each wheel in time, actual and lasting, m/s.
   Eigen::VectorXd rates(const Eigen::VectorXd& rise, const Eigen::VectorXd& lasting) const {
     return lasting_ * lasting + sudden_ * (rise - lasting);
   }
@@ -27,7 +27,7 @@ class Following {
   Eigen::MatrixXd lasting_, sudden_;  // A and C
 };
 
-/// What lasts of a profile's slope at x: the middle one of this slope and the mean slopes before and behind.
+/// The lasting part of a profile's slope at x: the median of this slope and the mean slopes before and behind.
 double lasting_slope(const track::Profile& profile, double x, double slope);
 
 }  // namespace traverse::train

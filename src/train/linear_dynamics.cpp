@@ -1,5 +1,5 @@
 // Mass, damping and stiffness matrices of the projected equations of motion (equation 42 of the paper) by linearisation
-// about the initial state, and the residual of the non-linear mechanism as a measure of their error.
+// about the initial state, and the residual of the nonlinear mechanism as a measure of their error.
 #include "linear_dynamics.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace traverse::train {
 namespace {
 
-/// use(coordinate of q, action, action at t = 0): of all actuators, N or N m.
+/// Calls use(coordinate of q, action, action at t = 0) for all actuators, N or N m.
 template <class Use>
 void for_actions(const MovingVehicle& vehicle, double t, Use use) {
   for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)
@@ -29,7 +29,7 @@ void for_actions(const MovingVehicle& vehicle, double t, Use use) {
 std::string LinearDynamics::obstacle(const MovingVehicle& vehicle) {
   const multibody::MechanismModel& model = vehicle.mechanism.model();
   if (vehicle.wheels.empty()) return "it has no wheels";
-  if (vehicle.mechanism.rubs()) return "a joint slides with friction";
+  if (vehicle.mechanism.has_friction()) return "a joint slides with friction";
   if (!vehicle.contacts.empty()) return "bodies of it touch each other";
   for (const multibody::Driver& driver : model.drivers)
     if (!driver.value.straight()) return fmt::format("its driver '{}' changes its speed", driver.name);
@@ -45,11 +45,11 @@ std::string LinearDynamics::obstacle(const MovingVehicle& vehicle) {
       return fmt::format("its joint '{}' is held by the ground", joint.name);
   for (const Wheel& wheel : vehicle.wheels)
     for (const multibody::Joint& joint : model.joints) {
-      // A wheel that turns carries points of its joints round with it.
-      const bool on_it = joint.bodies[0] == wheel.body || joint.bodies[1] == wheel.body;
+      // A turning wheel moves the points of its joints around its centre.
+      const bool attached = joint.bodies[0] == wheel.body || joint.bodies[1] == wheel.body;
       const Eigen::Vector2d centre = model.bodies[static_cast<std::size_t>(wheel.body)].position.head<2>();
       const bool turns = wheel.law.friction > 0.0;
-      if (on_it && turns && joint.type == multibody::JointType::revolute && (joint.point - centre).norm() > 1e-9)
+      if (attached && turns && joint.type == multibody::JointType::revolute && (joint.point - centre).norm() > 1e-9)
         return fmt::format("its joint '{}' is beside the centre of a wheel that turns", joint.name);
     }
   return {};
@@ -69,21 +69,21 @@ LinearDynamics::LinearDynamics(MovingVehicle& vehicle, const double* cruise) {
   drives_ = !mechanism.model().drivers.empty();
   columns_ = state.columns;
 
-  mechanism.recover(state, vehicle.Q, x_.data());  // at rest in p: the reactions that turn
+  mechanism.recover(state, vehicle.Q, x_.data());  // with p at rest: the reactions for K
   M_ = B_.transpose() * mechanism.mass_diagonal().asDiagonal() * B_;
   Eigen::MatrixXd product;
   mechanism.multiply_tangent(state, -1.0, 0.0, 1.0, product);
   K_ = B_.transpose() * product;
   mechanism.multiply_tangent(state, 0.0, -1.0, 0.0, product);
   C_ = B_.transpose() * product;
-  // At the steady motion alone, of which the state's velocities may differ.
+  // r0 for the steady motion, from which the state's velocities may differ.
   r0_ = -B_.transpose() * state.g;
   for (int i = 0; i < f; ++i) xd_[i] = state.qd[mechanism.partition().independent[static_cast<std::size_t>(i)]] - c_[i];
   r0_ -= C_ * xd_;
   driven_ = B_.transpose() * mechanism.mass_diagonal().cwiseProduct(u_);
   mass_.compute(M_);
   const multibody::MechanismEnergy start = mechanism.energy(state);
-  stored_ = start.strain + start.potential;
+  initial_energy_ = start.strain + start.potential;
 }
 
 bool LinearDynamics::set(MovingVehicle& vehicle, double t, const double* p, const double* pd) {
@@ -108,7 +108,7 @@ void LinearDynamics::shift(MovingVehicle& vehicle, const double* change, double 
   vehicle.state.qd.noalias() += rate * (B_ * dx);
 }
 
-// B^T Q - C x' - K x - r0. Q has entries at the wheels alone.
+// B^T Q - C x' - K x - r0. Only the rows of wheels in Q are non-zero.
 void LinearDynamics::find_force(const MovingVehicle& vehicle) {
   force_ = -r0_;
   force_.noalias() -= C_ * xd_;
@@ -134,7 +134,7 @@ void LinearDynamics::recover(MovingVehicle&, const double* pdd) {
   xdd_ = Eigen::Map<const Eigen::VectorXd>(pdd, x_.size());
 }
 
-// What keeps the speed works u^T (N q'' - g - Q): springs inside do nothing there.
+// The drive has the power u^T (N q'' - g - Q); internal springs do not contribute to it.
 multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) const {
   double lost = 0.0;
   for (Eigen::Index i = 0; i < xd_.size(); ++i) lost += xd_[i] * C_.col(i).dot(xd_);
@@ -147,7 +147,7 @@ multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) 
 
 multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) const {
   const std::vector<int>& independent = vehicle.mechanism.partition().independent;
-  Eigen::VectorXd x(p0_.size()), xd(p0_.size());  // from the state, which another rank may have told
+  Eigen::VectorXd x(p0_.size()), xd(p0_.size());  // from the state, which may be another rank's
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const int coordinate = independent[static_cast<std::size_t>(i)];
     x[i] = vehicle.state.q[coordinate] - p0_[i] - vehicle.state.time * c_[i];
@@ -159,17 +159,17 @@ multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) 
   e.kinetic = 0.5 * qd.dot(mass.cwiseProduct(qd));
   for (Eigen::Index i = 1; i < q.size(); i += 3)
     e.potential += mass[i] * vehicle.mechanism.model().gravity * (q0_[i] + q[i]);
-  e.strain = stored_ + r0_.dot(x) + 0.5 * x.dot(K_ * x) - e.potential;
+  e.strain = initial_energy_ + r0_.dot(x) + 0.5 * x.dot(K_ * x) - e.potential;
   return e;
 }
 
-// The mechanism itself at the same coordinates.
+// Evaluates the mechanism at the same coordinates.
 bool LinearDynamics::observe(MovingVehicle& vehicle, const double* pdd) {
   position_ = p0_ + time_ * c_ + x_;
   velocity_ = c_ + xd_;
   multibody::MechanismState& state = vehicle.state;
   if (!vehicle.mechanism.set_positions(state, time_, position_.data())) {
-    defect_ = std::numeric_limits<double>::infinity();
+    linearisation_residual_ = std::numeric_limits<double>::infinity();
     return true;
   }
   vehicle.mechanism.set_velocities(state, time_, velocity_.data());
@@ -177,7 +177,8 @@ bool LinearDynamics::observe(MovingVehicle& vehicle, const double* pdd) {
   vehicle.mechanism.recover(state, vehicle.Q, pdd);
   r_ = vehicle.mechanism.mass_diagonal().cwiseProduct(state.qdd) - state.g - vehicle.Q;
   state.dependent_block.project(r_, R_);
-  if (R_.size() > 0) defect_ = std::max(defect_, R_.lpNorm<Eigen::Infinity>() / vehicle.scale);
+  if (R_.size() > 0)
+    linearisation_residual_ = std::max(linearisation_residual_, R_.lpNorm<Eigen::Infinity>() / vehicle.scale);
   return true;
 }
 
@@ -189,7 +190,7 @@ bool LinearDynamics::find_residual(MovingVehicle& vehicle, const double* pdd, Co
   return true;
 }
 
-bool LinearDynamics::serves(const MovingVehicle&, const StageShifts& shifts, bool) const {
+bool LinearDynamics::matrix_is_valid(const MovingVehicle&, const StageShifts& shifts, bool) const {
   return !shifts.statics() && shifts_.like(shifts);
 }
 

@@ -1,11 +1,11 @@
-// A vehicle with constant matrices about the state that it starts from: exact up to the squares of angles.
+// A vehicle with constant matrices about its initial state. The error is of second order in the angles.
 //
-// With the independent coordinates p = p0 + c t + x, where c is the steady motion along the track, all bodies are at
-// q = q0 + u t + B x with u = B c + b, and the mechanism's projected equations of motion become
+// With the independent coordinates p = p0 + c t + x, where c is the steady motion along the track, all bodies are at q
+// = q0 + u t + B x with u = B c + b, and the mechanism's projected equations of motion become
 //
 //   M x'' + C x' + K x + r0 = B^T Q,   M = B^T N B,   r0 = -B^T g0
 //
-// K holds the springs' stiffness and how the joints' reactions at the start turn with x.
+// K includes the springs' stiffness and the rotation with x of the joints' initial reactions.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@
 
 namespace traverse::train {
 
-/// About p0, moving on with c: M, C, K (f x f), r0 (f), B (n x f) as above; driven = B^T N u (f), which times x'' is
-/// the power that drives the masses on. q0, u (n): of all bodies' coordinates at the start, and their steady rates.
+/// About p0, moving with c: M, C, K (f x f), r0 (f), B (n x f) as above; driven = B^T N u (f): driven^T x'' is the
+/// power that drives the masses. q0, u (n): initial coordinates and steady rates of all bodies.
 struct LinearMatrices {
   const Eigen::MatrixXd &M, &C, &K, &B;
   const Eigen::VectorXd &r0, &p0, &c, &driven, &q0, &u;
@@ -24,10 +24,10 @@ struct LinearMatrices {
 
 class LinearDynamics : public VehicleDynamics {
  public:
-  /// Why a vehicle cannot be taken so, in words; empty: it can.
+  /// The reason why a vehicle cannot be linearised; empty: it can.
   static std::string obstacle(const MovingVehicle& vehicle);
 
-  /// About the vehicle's state at t = 0, evaluated, with its contact forces in Q. cruise: c of its coordinates.
+  /// About the vehicle's evaluated state at t = 0, with its contact forces in Q. cruise: c of its coordinates.
   LinearDynamics(MovingVehicle& vehicle, const double* cruise);
 
   LinearMatrices matrices() const { return {M_, C_, K_, B_, r0_, p0_, c_, driven_, q0_, u_}; }
@@ -41,18 +41,24 @@ class LinearDynamics : public VehicleDynamics {
   multibody::MechanismPowers powers(const MovingVehicle& vehicle) const override;
   multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const override;
   bool observe(MovingVehicle& vehicle, const double* pdd) override;
-  double defect() const override { return defect_; }
+  double linearisation_residual() const override { return linearisation_residual_; }
   bool worn(const MovingVehicle&) const override { return false; }
   bool accept(MovingVehicle&) override { return false; }
 
   bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;
-  bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
+  bool matrix_is_valid(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
   void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
              ContactCompliance& compliance) override;
-  void go_by_itself(ContactCompliance& compliance) override { newton_.go_by_itself(R_, compliance); }
-  void rest() override { R_.setZero(); }
-  const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override { return newton_.take(forces); }
-  void keep(base::Bytes& bytes) override { bytes(newton_, shifts_, time_, defect_, x_, xd_, xdd_, force_, R_); }
+  void compute_free_displacement(ContactCompliance& compliance) override {
+    newton_.compute_free_displacement(R_, compliance);
+  }
+  void clear_residual() override { R_.setZero(); }
+  const Eigen::VectorXd& coordinate_change(const Eigen::VectorXd& forces) override {
+    return newton_.coordinate_change(forces);
+  }
+  void keep(base::Bytes& bytes) override {
+    bytes(newton_, shifts_, time_, linearisation_residual_, x_, xd_, xdd_, force_, R_);
+  }
 
  private:
   void find_force(const MovingVehicle& vehicle);
@@ -63,13 +69,13 @@ class LinearDynamics : public VehicleDynamics {
   Eigen::MatrixXd M_, C_, K_;
   Eigen::LLT<Eigen::MatrixXd> mass_;
   Eigen::VectorXd r0_;      // f
-  Eigen::VectorXd driven_;  // f: N u projected, whose power a driver gives
+  Eigen::VectorXd driven_;  // f: N u projected, for the power of a driver
   bool drives_ = false;     // the train's speed is prescribed
   ColumnRanges columns_;
   VehicleNewton newton_;
   StageShifts shifts_;
-  double stored_ = 0.0;  // strain and potential energy at x = 0, J
-  double time_ = 0.0, defect_ = 0.0;
+  double initial_energy_ = 0.0;  // strain and potential energy at x = 0, J
+  double time_ = 0.0, linearisation_residual_ = 0.0;
   Eigen::VectorXd x_, xd_, xdd_;  // f
   Eigen::VectorXd force_;         // f: B^T Q - C x' - K x - r0
   Eigen::VectorXd R_, r_, position_, velocity_;

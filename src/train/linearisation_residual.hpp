@@ -1,5 +1,5 @@
-// What a vehicle's linear model leaves out: the mechanism's residual out of balance, which grows with the squares of
-// its coordinates from where it was linearised.
+// The error of a vehicle's linear model: the residual of the mechanism's equations, which is proportional to the
+// squares of its coordinates from the state of linearisation.
 #pragma once
 
 #include <vector>
@@ -9,10 +9,10 @@
 namespace traverse::train {
 
 /// The largest residual over the vehicle's weight with its coordinates at x from the start (m, rad). The vehicle is
-/// moved there.
+/// moved to this state.
 double linearisation_residual_at(MovingVehicle& vehicle, const double* x);
 
-/// Of every coordinate alone: the root of what its square adds to that residual, 1/m or 1/rad.
+/// For every coordinate alone: the square root of that residual per unit of the coordinate, 1/m or 1/rad.
 std::vector<double> residual_roots(MovingVehicle vehicle);
 
 }  // namespace traverse::train

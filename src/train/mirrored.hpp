@@ -1,11 +1,11 @@
-// A vehicle is described as it runs to the right. One that runs to the left is its mirror image.
+// Vehicles are described as running to the right. A vehicle that runs to the left is the mirror image.
 #pragma once
 
 #include "traverse/train/vehicle.hpp"
 
 namespace traverse::train {
 
-/// x, angles and moments, of tables too, with the other sign. The name stays.
+/// Reverses the signs of x, angles and moments, also in tables. The name remains.
 Vehicle mirrored(Vehicle vehicle);
 Coupler mirrored(Coupler coupler);
 

@@ -38,7 +38,7 @@ bool MultibodyDynamics::find_residual(MovingVehicle& vehicle, const double* pdd,
   r_ = state.d;
   state.dependent_block.expand(pdd, r_);
   r_ = mechanism.mass_diagonal().cwiseProduct(r_) - state.g - vehicle.Q;
-  if (mechanism.rubs()) {
+  if (mechanism.has_friction()) {
     mechanism.recover(state, vehicle.Q, pdd);
     for (int i = 0; i < state.friction.force.size(); ++i) r_ -= state.friction.force[i] * state.friction.A.col(i);
   }
@@ -48,17 +48,17 @@ bool MultibodyDynamics::find_residual(MovingVehicle& vehicle, const double* pdd,
   return !state.friction.jammed;
 }
 
-// Nothing is kept where bodies touch each other: their contacts turn with them.
-bool MultibodyDynamics::serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const {
-  return !shifts.statics() && !vehicle.mechanism.rubs() && vehicle.contacts.empty() &&
+// With contacts between bodies nothing is reused, because the contacts turn with the bodies.
+bool MultibodyDynamics::matrix_is_valid(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const {
+  return !shifts.statics() && !vehicle.mechanism.has_friction() && vehicle.contacts.empty() &&
          partition_version_ == vehicle.state.partition_version && (curved_ || !curved) && shifts_.like(shifts);
 }
 
-void MultibodyDynamics::find_J(MovingVehicle& vehicle, const StageShifts& shifts, bool curved) {
+void MultibodyDynamics::compute_J(MovingVehicle& vehicle, const StageShifts& shifts, bool curved) {
   multibody::MechanismState& state = vehicle.state;
   const multibody::Mechanism& mechanism = vehicle.mechanism;
   const int f = mechanism.freedom();
-  if (mechanism.rubs())
+  if (mechanism.has_friction())
     mechanism.friction_projector(state, projector_);
   else if (curved)
     mechanism.recover(state, vehicle.Q, pdd_.data());
@@ -71,7 +71,7 @@ void MultibodyDynamics::find_J(MovingVehicle& vehicle, const StageShifts& shifts
                                               state.B.block(row, first, 3, last - first);
   }
   J_.resize(f, f);
-  if (mechanism.rubs()) {  // whose slope changes too much to be kept
+  if (mechanism.has_friction()) {  // changes too much to be reused
     J_.noalias() = projector_.transpose() * NB_;
   } else {
     for (int j = 0; j < f; ++j) state.dependent_block.project(NB_.col(j), J_.col(j));
@@ -81,17 +81,17 @@ void MultibodyDynamics::find_J(MovingVehicle& vehicle, const StageShifts& shifts
 void MultibodyDynamics::renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
                               ContactCompliance& compliance) {
   const multibody::MechanismState& state = vehicle.state;
-  const bool rubs = vehicle.mechanism.rubs(), constrained = vehicle.mechanism.constraints() > 0;
-  find_J(vehicle, shifts, (curved || rubs) && constrained);
-  curved_ = curved || rubs || !constrained;
+  const bool has_friction = vehicle.mechanism.has_friction(), constrained = vehicle.mechanism.constraints() > 0;
+  compute_J(vehicle, shifts, (curved || has_friction) && constrained);
+  curved_ = curved || has_friction || !constrained;
   shifts_ = shifts;
   partition_version_ = state.partition_version;
 
-  if (rubs) {
-    everything_.assign(state.columns.size(), {0, vehicle.freedom()});
-    VehicleNewton::multiply_directions(rows, everything_, projector_, projected_);
+  if (has_friction) {
+    all_columns_.assign(state.columns.size(), {0, vehicle.freedom()});
+    VehicleNewton::multiply_directions(rows, all_columns_, projector_, projected_);
   }
-  newton_.renew(rows, state.columns, state.B, rubs ? &projected_ : nullptr, shifts.statics(), J_, compliance);
+  newton_.renew(rows, state.columns, state.B, has_friction ? &projected_ : nullptr, shifts.statics(), J_, compliance);
 }
 
 }  // namespace traverse::train

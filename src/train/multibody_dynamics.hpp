@@ -1,5 +1,5 @@
-// A vehicle as the mechanism that it is: generalized coordinate partitioning (the paper's section 5), all angles as
-// large as they come. J hardly changes: what follows from it is kept over stages and steps.
+// A vehicle as a mechanism with large rotations: generalized coordinate partitioning (the paper's section 5). J changes
+// little: the matrices derived from it are reused in later stages and steps.
 #pragma once
 
 #include "train/fleet.hpp"
@@ -26,29 +26,33 @@ class MultibodyDynamics : public VehicleDynamics {
   bool accept(MovingVehicle& vehicle) override;
 
   bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;
-  bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
+  bool matrix_is_valid(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
   void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
              ContactCompliance& compliance) override;
-  void go_by_itself(ContactCompliance& compliance) override { newton_.go_by_itself(R_, compliance); }
-  void rest() override { R_.setZero(); }
-  const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override { return newton_.take(forces); }
+  void compute_free_displacement(ContactCompliance& compliance) override {
+    newton_.compute_free_displacement(R_, compliance);
+  }
+  void clear_residual() override { R_.setZero(); }
+  const Eigen::VectorXd& coordinate_change(const Eigen::VectorXd& forces) override {
+    return newton_.coordinate_change(forces);
+  }
   void keep(base::Bytes& bytes) override { bytes(newton_, shifts_, partition_version_, curved_, R_, pdd_); }
 
  private:
-  void find_J(MovingVehicle& vehicle, const StageShifts& shifts, bool curved);
+  void compute_J(MovingVehicle& vehicle, const StageShifts& shifts, bool curved);
 
-  // kept
+  // reused in later stages and steps
   VehicleNewton newton_;
-  StageShifts shifts_;  // that it was computed for; 0: none
+  StageShifts shifts_;  // of the stage that J was computed for; 0: none
   int partition_version_ = 0;
   bool curved_ = false;
 
   Eigen::VectorXd R_, r_;
-  Eigen::VectorXd pdd_;  // as the residual was last asked for
+  Eigen::VectorXd pdd_;  // of the last residual
   Eigen::MatrixXd J_, NB_;
-  Eigen::MatrixXd projector_;           // in place of B where joints rub
+  Eigen::MatrixXd projector_;           // in place of B for joints with friction
   VehicleNewton::RowMatrix projected_;  // directions times projector
-  ColumnRanges everything_;
+  ColumnRanges all_columns_;
 };
 
 }  // namespace traverse::train

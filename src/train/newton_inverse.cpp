@@ -5,7 +5,7 @@
 namespace traverse::train {
 namespace {
 
-constexpr int small_vehicle = 24;  // degrees of freedom up to which its Newton matrix is inverted as a whole
+constexpr int small_vehicle = 24;  // degrees of freedom up to which the Newton matrix is inverted explicitly
 
 }  // namespace
 
@@ -13,14 +13,14 @@ void NewtonInverse::compute(const Eigen::MatrixXd& J, bool singular) {
   const int f = static_cast<int>(J.rows());
   form_ = Form::whole;
   if (f == 0) {
-    whole_.resize(0, 0);
+    inverse_.resize(0, 0);
   } else if (singular) {
-    whole_ = J.completeOrthogonalDecomposition().pseudoInverse();
+    inverse_ = J.completeOrthogonalDecomposition().pseudoInverse();
   } else if (f <= small_vehicle) {
     factors_.compute(J);
-    whole_ = factors_.permutationP();
-    factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(whole_);
-    factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(whole_);
+    inverse_ = factors_.permutationP();
+    factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(inverse_);
+    factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(inverse_);
   } else if (const int band = solve::half_bandwidth(J); 3 * band < f) {
     form_ = Form::band;
     band_.compute(J, band);
@@ -35,7 +35,7 @@ void NewtonInverse::compute(const Eigen::MatrixXd& J, bool singular) {
 void NewtonInverse::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
   switch (form_) {
     case Form::whole:
-      x.noalias() = whole_ * b;
+      x.noalias() = inverse_ * b;
       break;
     case Form::band:
       x = b;

@@ -1,4 +1,4 @@
-// The inverse of a vehicle's Newton matrix, in the form that suits its size.
+// The inverse of a vehicle's Newton matrix, in a form that depends on its size.
 #pragma once
 
 #include <Eigen/Dense>
@@ -9,18 +9,18 @@ namespace traverse::train {
 
 class NewtonInverse {
  public:
-  /// singular: some coordinates may be neutral.
+  /// singular: some coordinates may have no stiffness.
   void compute(const Eigen::MatrixXd& J, bool singular);
   void apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
-  void keep(base::Bytes& bytes) { bytes(form_, whole_, band_, lu_, order_); }
+  void keep(base::Bytes& bytes) { bytes(form_, inverse_, band_, lu_, order_); }
 
  private:
   enum class Form { whole, band, factors } form_ = Form::whole;
-  Eigen::MatrixXd whole_;
+  Eigen::MatrixXd inverse_;
   solve::BandLu band_;
-  Eigen::MatrixXd lu_;                            // L D^-1 and D U one above the other, of the rows in this order
-  Eigen::VectorXi order_;                         // where each row goes
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;  // at work
+  Eigen::MatrixXd lu_;                            // L D^-1 and D U in one matrix, of the permuted rows
+  Eigen::VectorXi order_;                         // new position of each row
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;  // work space
 };
 
 }  // namespace traverse::train

@@ -1,5 +1,5 @@
-// When contacts part and meet again: the changes of a step, found between its ends by the cubic through penetrations
-// and their rates, and the list of all separations.
+// Openings and closings of contacts: the changes in a step, located by the cubic through penetrations and their rates,
+// and the list of all separations.
 #pragma once
 
 #include <functional>
@@ -10,60 +10,60 @@
 
 namespace traverse::train {
 
-/// From the loss of a contact to the impact that ends it.
+/// From the opening of a contact to the impact that ends the separation.
 struct Separation {
-  int contact = 0;              // as Fleet::contact counts
-  bool from_start = false;      // apart since t = 0: no loss
-  double x = 0.0;               // m, of the body where it parts
+  int contact = 0;              // index of Fleet::contact
+  bool from_start = false;      // open since t = 0, without an opening
+  double x = 0.0;               // m, of the body at the opening
   double start = 0.0;           // s
-  double duration = -1.0;       // s; below 0: still apart at the end of the run
-  double approach_speed = 0.0;  // m/s, where it meets again
-  double impact_force = 0.0;    // N, the greatest of the compression that follows
+  double duration = -1.0;       // s; negative: open at the end of the run
+  double approach_speed = 0.0;  // m/s, at the closing
+  double impact_force = 0.0;    // N, the greatest of the following compression
 };
 
-/// A contact lost or gained between two instants.
+/// An opening or closing of a contact between two instants.
 struct Change {
   int contact;
-  double time;  // s, as the cubic has it
-  bool gain;    // surfaces meet: not those that a damper grips again before they have parted
-  bool hidden;  // parts and meets again, or the other way round, between the two instants
-  bool seen;    // a gain that a stage of the step met
+  double time;            // s, by the cubic
+  bool gain;              // a closing, except after an opening by a damper before the surfaces separated
+  bool hidden;            // the contact opens and closes, or closes and opens, between the two instants
+  bool touched_in_stage;  // a closing with a contact force in a stage of the step
 };
 
 class Separations {
  public:
-  /// The contacts as they are at an accepted instant; those apart at the first one are apart from the start.
+  /// Records the contacts at an accepted instant; contacts that are open at the first one are open from the start.
   void accept(const Fleet& fleet, double t);
 
-  /// The first change between the last accepted instant and the fleet as it is now at t, but for gains that `left_out`
-  /// names by their contact.
-  std::optional<Change> change(const Fleet& fleet, double t, const std::function<bool(int)>& left_out) const;
-  /// When a contact changes that is seen as `low` at t_low and as `high` at t_high.
+  /// The first change between the last accepted instant and the fleet's present state at t, without closings for which
+  /// `excluded` returns true.
+  std::optional<Change> change(const Fleet& fleet, double t, const std::function<bool(int)>& excluded) const;
+  /// The time at which a contact changes between the state `low` at t_low and the state `high` at t_high.
   double change_between(const Fleet& fleet, int contact, double t_low, const contact::Kinematics& low, double t_high,
                         const contact::Kinematics& high) const;
-  /// The gap at the last accepted instant over the speed of approach; infinite where they touch or recede, s.
+  /// The gap at the last accepted instant over the approach speed, s; infinite for a closed or receding contact.
   double time_to_touch(int contact) const;
   double time() const { return time_; }
-  const contact::Kinematics& kinematics(int contact) const { return seen_[contact].kinematics; }
-  /// Whether a contact, apart before the last accepted instant, was found touching at it.
-  bool met(int contact) const { return seen_[contact].met; }
-  bool touching(int contact) const { return seen_[contact].touching; }
+  const contact::Kinematics& kinematics(int contact) const { return states_[contact].kinematics; }
+  /// Whether a contact, open before the last accepted instant, was closed at it.
+  bool just_closed(int contact) const { return states_[contact].just_closed; }
+  bool touching(int contact) const { return states_[contact].touching; }
 
   const std::vector<Separation>& list() const { return list_; }
-  void keep(base::Bytes& bytes) { bytes(time_, seen_, list_); }
+  void keep(base::Bytes& bytes) { bytes(time_, states_, list_); }
 
  private:
-  struct Seen {
+  struct ContactState {
     bool touching = false;
-    bool met = false;
+    bool just_closed = false;
     contact::Kinematics kinematics;
-    int open = -1;           // entry of the list: apart since
-    int compressed_by = -1;  // entry of the list: the impact whose compression goes on
+    int open = -1;           // index of the present separation in the list
+    int compressed_by = -1;  // index of the separation whose impact is in compression
   };
-  void record_impact(const Fleet& fleet, int contact, double t, Seen& seen);
+  void record_impact(const Fleet& fleet, int contact, double t, ContactState& state);
 
   double time_ = 0.0;
-  std::vector<Seen> seen_;
+  std::vector<ContactState> states_;
   std::vector<Separation> list_;
 };
 

@@ -21,10 +21,10 @@ bool has_gap(const Coupler& coupler, int gap) {
   return std::find(coupler.gaps.begin(), coupler.gaps.end(), gap) != coupler.gaps.end();
 }
 
-/// Puts parts of a vehicle at x into a unit, their bodies counted from `first_body`.
-class Placing {
+/// Adds parts of a vehicle at x to a unit, with their bodies numbered from `first_body`.
+class Placement {
  public:
-  Placing(double x, int first_body, std::string prefix) : x_(x), first_(first_body), prefix_(std::move(prefix)) {}
+  Placement(double x, int first_body, std::string prefix) : x_(x), first_(first_body), prefix_(std::move(prefix)) {}
 
   void name(std::string& text) const { text = prefix_ + text; }
   void body(int& index) const {
@@ -43,7 +43,7 @@ class Placing {
   std::string prefix_;
 };
 
-void add_vehicle(const Vehicle& type, const Placing& to, double speed, Unit& unit) {
+void add_vehicle(const Vehicle& type, const Placement& to, double speed, Unit& unit) {
   MechanismModel& all = unit.mechanism;
   for (multibody::Body b : type.mechanism.bodies) {
     to.name(b.name);
@@ -95,8 +95,8 @@ void add_vehicle(const Vehicle& type, const Placing& to, double speed, Unit& uni
   }
 }
 
-/// The driving constraint of a train at prescribed speed: x of a vehicle's first body.
-void add_drive(const Placing& to, const base::SpeedLaw& speed, MechanismModel& model) {
+/// The driving constraint of a train with prescribed speed: x of a vehicle's first body.
+void add_drive(const Placement& to, const base::SpeedLaw& speed, MechanismModel& model) {
   multibody::Driver drive{"drive", 0, 0, {}};
   to.name(drive.name);
   to.body(drive.body);
@@ -123,7 +123,8 @@ int body_named(const Vehicle& type, const std::string& name) {
   return static_cast<int>(std::find_if(bodies.begin(), bodies.end(), same) - bodies.begin());
 }
 
-/// A coupler's part between two neighbours; its points count from the front one's origin, `to` from the rear one's.
+/// A coupler's part between two neighbours; its points refer to the front vehicle's origin, `to` to that of the rear
+/// one.
 template <class Part>
 Part placed(Part part, const Coupler& coupler, const std::array<const Member*, 2>& ends, double front, double rear) {
   for (std::size_t i = 0; i < 2; ++i)
@@ -141,24 +142,24 @@ AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, d
   const auto joined = [&](int gap) {
     return std::any_of(train.couplers.begin(), train.couplers.end(), [&](const Coupler& c) { return has_gap(c, gap); });
   };
-  const auto follows = [&](int k) {  // its place along the track is its neighbour's
+  const auto follows = [&](int k) {  // the neighbour determines its position along the track
     return std::any_of(train.couplers.begin(), train.couplers.end(),
                        [&](const Coupler& c) { return c.joint && has_gap(c, k - 1); });
   };
   for (int k = 0; k < count; ++k) {
     const Vehicle& type = types[static_cast<std::size_t>(train.vehicles[k])];
-    const bool begins = k == 0 || !joined(k - 1);
-    if (begins) {
+    const bool begins_unit = k == 0 || !joined(k - 1);
+    if (begins_unit) {
       Unit unit;
       unit.mechanism.name = type.mechanism.name;
       unit.mechanism.gravity = gravity;
       all.units.push_back(std::move(unit));
     }
     Unit& unit = all.units.back();
-    const bool alone = begins && (k + 1 == count || !joined(k));
-    if (!alone) unit.mechanism.name = "train";
+    const bool single = begins_unit && (k + 1 == count || !joined(k));
+    if (!single) unit.mechanism.name = "train";
     const Member member = next_member(type, static_cast<int>(all.units.size()) - 1, unit);
-    const Placing to(train.positions[k], member.first_body, alone ? "" : std::to_string(k) + ".");
+    const Placement to(train.positions[k], member.first_body, single ? "" : std::to_string(k) + ".");
     const auto number = static_cast<std::size_t>(k);
     const base::SpeedLaw speed = law_of(train, number);
     add_vehicle(type, to, speed.speed(0.0), unit);

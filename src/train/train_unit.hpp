@@ -1,4 +1,4 @@
-// The vehicles of a train put on the track. Vehicles that couplers join are one mechanism: a unit.
+// The vehicles of a train on the track. Vehicles joined by couplers are one mechanism: a unit.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace traverse::train {
 
-/// One mechanism with its wheels and contacts, points in the global frame at t = 0.
+/// One mechanism with its wheels and contacts; points in the global frame at t = 0.
 struct Unit {
   multibody::MechanismModel mechanism;
   std::vector<Wheel> wheels;
   std::vector<contact::BodyContact> contacts;
 };
 
-/// A vehicle of the train as part of its unit: where its parts begin there, in the order of its type.
+/// A vehicle of the train as part of its unit: the first indices of its parts there, in the order of its type.
 struct Member {
   const Vehicle* type = nullptr;
   int unit = 0;
@@ -24,19 +24,19 @@ struct Member {
 
 /// A coupler between two neighbours: a joint or a spring of their unit.
 struct CoupledGap {
-  int coupler = 0;  // of Train::couplers
+  int coupler = 0;  // index in Train::couplers
   int unit = 0;
-  int part = 0;  // of the unit's joints or springs
+  int part = 0;  // index in the unit's joints or springs
 };
 
 struct AssembledTrain {
   std::vector<Unit> units;
-  std::vector<Member> members;       // one a vehicle of the train
-  std::vector<CoupledGap> couplers;  // by coupler, then from the front backwards
+  std::vector<Member> members;       // one for each vehicle of the train
+  std::vector<CoupledGap> couplers;  // by coupler, then from front to rear
 };
 
-/// frozen: every drive stands still at its place at t = 0, and a free train is held: for the static start. `types` has
-/// to outlive the result.
+/// frozen: for the static start, every drive remains at its position at t = 0, and a free train is fixed. `types` must
+/// outlive the result.
 AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen);
 
 }  // namespace traverse::train

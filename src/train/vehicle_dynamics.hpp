@@ -1,5 +1,5 @@
-// How a vehicle moves under the forces at its contacts: the seam between a train and what it runs on. The coupling asks
-// for these functions alone; whether a mechanism with joints or a linear model answers is the kind's affair.
+// The motion of a vehicle under the forces at its contacts. The coupling calls only these functions, for mechanisms
+// with joints and for linear models.
 #pragma once
 
 #include <Eigen/Dense>
@@ -18,33 +18,33 @@ class LinearDynamics;
 struct Contact;
 struct MovingVehicle;
 
-/// An implicit stage: with a change x of p, p' changes by rate*x and p'' by acceleration*x. Both 0: statics.
+/// An implicit stage: a change x of p changes p' by rate*x and p'' by acceleration*x. Both 0: statics.
 struct StageShifts {
   double rate = 0.0;          // 1/s
   double acceleration = 0.0;  // 1/s2: rate*rate for Runge-Kutta types
   bool statics() const { return acceleration == 0.0; }
-  /// The same within what a Newton matrix notices.
+  /// Equal within the accuracy that a Newton matrix needs.
   bool like(const StageShifts& other) const {
     const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-6 * b; };
     return same(rate, other.rate) && same(acceleration, other.acceleration);
   }
 };
 
-/// A direction of a contact in the contacts' Newton iteration: its normal, or behind that its tangent.
+/// A direction of a contact in the contacts' Newton iteration: its normal, or in the next row its tangent.
 struct ContactRow {
   Contact* contact = nullptr;
-  double scale = 0.0;  // N: its vehicle's
+  double scale = 0.0;  // N: scale of its vehicle
   int vehicle = 0;
   bool normal = true;
-  int slot = -1;  // of the element that carries it, -1: none
+  int slot = -1;  // of its element; -1: none
 };
 using ContactRows = std::span<const ContactRow>;
 
-/// A law's tangent, one line a row: the derivative of its force by the displacement along the row before (of a
-/// tangential row), and by that along its own, N/m.
+/// A law's tangent with a line for each row: the derivative of its force by the displacement along the previous row
+/// (for a tangential row), and by that along the row itself, N/m.
 using RowTangent = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
-/// Numbers listed anew, to be compared with those listed before.
+/// A list of numbers that detects differences from the previous list.
 class NumberList {
  public:
   void begin() {
@@ -56,7 +56,7 @@ class NumberList {
     same_ = same_ && numbers_[count_] == number;
     numbers_[count_++] = number;
   }
-  /// Whether they are the same as before.
+  /// Whether the list is the same as before.
   bool end() {
     same_ = same_ && count_ == numbers_.size();
     numbers_.resize(count_);
@@ -70,74 +70,73 @@ class NumberList {
   bool same_ = true;
 };
 
-/// What a vehicle makes of its contact rows, r of them: a unit force on row j moves row i by -H(i, j), by itself the
-/// vehicle moves row i by c(i).
+/// The response of a vehicle at its contact rows, r of them: a unit force on row j moves row i by -H(i, j); without a
+/// change of contact forces row i moves by c(i).
 struct ContactCompliance {
   Eigen::MatrixXd H;      // r x r
   Eigen::MatrixXd P;      // r x r: 1 - H D, of size 0 where D is 0
-  RowTangent D;           // the tangent that H includes; of size 0 where it includes none, as in a step
+  RowTangent D;           // the tangent that H includes; of size 0 if none, as in a step
   Eigen::VectorXd c;      // r
   double residual = 0.0;  // largest entry of the equations of motion's residual over the vehicle's scale
   NumberList list;        // of the contacts with rows
-  bool known = false;     // H, for these rows
+  bool known = false;     // H is valid for these rows
   void keep(base::Bytes& bytes) { bytes(H, P, D, c, residual, list, known); }
 };
 
-/// One vehicle's equations of motion. All forces at its contacts are in MovingVehicle::Q as generalized forces.
+/// The equations of motion of one vehicle. The forces at its contacts are in MovingVehicle::Q as generalized forces.
 class VehicleDynamics {
  public:
   virtual ~VehicleDynamics() = default;
   virtual std::unique_ptr<VehicleDynamics> clone() const = 0;
-  /// Itself where it has constant matrices, else null.
+  /// This object if it has constant matrices, otherwise null.
   virtual const LinearDynamics* linear() const { return nullptr; }
 
-  /// Positions, velocities and forces but for Q, from the independent coordinates and their rates (freedom values
-  /// each). False where the vehicle cannot be assembled there.
+  /// Positions, velocities and all forces except Q, from the independent coordinates and their rates (freedom values
+  /// each). False if the vehicle cannot be assembled.
   virtual bool set(MovingVehicle& vehicle, double t, const double* p, const double* pd) = 0;
-  /// Moves on by a small change of p, and `rate` times it of p'.
+  /// Adds a small change to p, and `rate` times it to p'.
   virtual void shift(MovingVehicle& vehicle, const double* change, double rate) = 0;
-  /// p'' under Q. Throws SolverError where friction leaves it undetermined.
+  /// p'' under Q. Throws SolverError if it is undetermined because of friction.
   virtual void accelerations(MovingVehicle& vehicle, double* pdd) = 0;
-  /// What powers need, from p'' as a stage has found it, under Q.
+  /// Computes the quantities for the powers from p'' of a stage, under Q.
   virtual void recover(MovingVehicle& vehicle, const double* pdd) = 0;
   /// After accelerations or recover.
   virtual multibody::MechanismPowers powers(const MovingVehicle& vehicle) const = 0;
-  /// Of the state last observed, J.
+  /// For the state last observed, J.
   virtual multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const = 0;
-  /// The state of all bodies, springs and joints as observers see it, at what it was last set to with a given p'',
-  /// under Q.
+  /// Computes the observed state of all bodies, springs and joints at the state last set, with a given p'', under Q.
   virtual bool observe(MovingVehicle& vehicle, const double* pdd) = 0;
-  /// How far the mechanism itself has been from equilibrium in the states observed: the largest of its equations of
-  /// motion's residuals over the vehicle's scale.
-  virtual double defect() const { return 0.0; }
+  /// The largest residual of the mechanism's own equations of motion in the observed states, over the vehicle's scale.
+  virtual double linearisation_residual() const { return 0.0; }
 
-  /// Whether the independent coordinates may have worn out.
+  /// Whether the independent coordinates may be badly conditioned.
   virtual bool worn(const MovingVehicle& vehicle) const = 0;
-  /// Notes the state, just evaluated, as accepted. True where others take the place of worn coordinates.
+  /// Accepts the state, which was just evaluated. True if independent coordinates were replaced.
   virtual bool accept(MovingVehicle& vehicle) = 0;
 
-  // An iteration of a stage's Newton method, with J the derivative of the residual by p:
+  // One iteration of a stage's Newton method, with J the derivative of the residual by p:
 
-  /// The residual of the equations of motion under Q with a given p'', to yield.residual. False where friction jams.
+  /// Computes the residual of the equations of motion under Q with a given p'', in compliance.residual. False if
+  /// friction jams.
   virtual bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) = 0;
-  /// Whether J and what follows from it, as they are kept, belong to such a stage. `curved`: with the constraints'
-  /// curvature.
-  virtual bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const = 0;
-  /// Computes them anew at the state it is in, and yield.H with the contacts' tangent yield.D in J.
+  /// Whether the stored J and the matrices derived from it are valid for such a stage. `curved`: J with the
+  /// constraints' curvature.
+  virtual bool matrix_is_valid(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const = 0;
+  /// Computes J and these matrices at the present state, and compliance.H with the contacts' tangent compliance.D in J.
   virtual void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
                      ContactCompliance& compliance) = 0;
-  /// yield.c from the last residual.
-  virtual void go_by_itself(ContactCompliance& compliance) = 0;
-  /// No residual: the vehicle stays where the last iteration has put it.
-  virtual void rest() = 0;
-  /// The change of p (freedom values) by itself and under changes of the rows' forces.
-  virtual const Eigen::VectorXd& take(const Eigen::VectorXd& forces) = 0;
+  /// Computes compliance.c from the last residual.
+  virtual void compute_free_displacement(ContactCompliance& compliance) = 0;
+  /// Sets the residual to zero: the last iteration has moved the vehicle to its solution.
+  virtual void clear_residual() = 0;
+  /// The change of p (freedom values) from the residual and from changes of the rows' forces.
+  virtual const Eigen::VectorXd& coordinate_change(const Eigen::VectorXd& forces) = 0;
 
-  /// What changes with time.
+  /// Writes or reads the time-dependent state.
   virtual void keep(base::Bytes& bytes) = 0;
 };
 
-/// A kind of dynamics as a value: a copy of a vehicle has its own.
+/// A kind of dynamics with value semantics: each copy of a vehicle has its own object.
 class AnyDynamics {
  public:
   AnyDynamics(std::unique_ptr<VehicleDynamics> kind) : kind_(std::move(kind)) {}  // NOLINT: a kind is one of any

@@ -1,5 +1,5 @@
-// Flexibility H = G J^-1 G^T of a vehicle at its contacts, G the contact directions projected onto the independent
-// coordinates, and back-substitution of the contact forces.
+// Flexibility H = G J^-1 G^T of a vehicle at its contacts, where G are the contact directions projected onto the
+// independent coordinates, and back-substitution of the contact forces.
 #include "vehicle_newton.hpp"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ void VehicleNewton::add_contacts(const RowMatrix& left, const RowTangent& D, Eig
   J.noalias() += left.transpose() * DG_;
 }
 
-void VehicleNewton::go_by_itself(const Eigen::VectorXd& R, ContactCompliance& compliance) {
+void VehicleNewton::compute_free_displacement(const Eigen::VectorXd& R, ContactCompliance& compliance) {
   inverse_.apply(R, dx_);
   dx_ = -dx_;
   for (int i = 0; i < compliance.c.size(); ++i) {
@@ -74,7 +74,7 @@ void VehicleNewton::go_by_itself(const Eigen::VectorXd& R, ContactCompliance& co
   }
 }
 
-const Eigen::VectorXd& VehicleNewton::take(const Eigen::VectorXd& forces) {
+const Eigen::VectorXd& VehicleNewton::coordinate_change(const Eigen::VectorXd& forces) {
   for (int i = 0; i < forces.size(); ++i) dx_ -= forces[i] * Y_.col(i);
   return dx_;
 }

@@ -1,4 +1,4 @@
-// A vehicle's Newton matrix J condensed onto its contact rows: what every kind of dynamics does with its J.
+// The condensation of a vehicle's Newton matrix J onto its contact rows, for all kinds of dynamics.
 #pragma once
 
 #include <vector>
@@ -9,23 +9,24 @@
 
 namespace traverse::train {
 
-/// Columns that the rows of a body's three coordinates reach into, one range a body.
+/// For each body the columns that its three rows of coordinates extend over.
 using ColumnRanges = std::vector<multibody::ColumnRange>;
 
 class VehicleNewton {
  public:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// G = (contact directions) B, of r rows and f columns, and yield.H = G J^-1 left^T, where `left` is G too but where
-  /// joints rub. In statics J, of which some coordinates may be neutral, takes the contacts' tangent yield.D.
+  /// G = (contact directions) B, of r rows and f columns, and compliance.H = G J^-1 left^T, where `left` differs from G
+  /// only for joints with friction. In statics the contacts' tangent compliance.D is added to J, some of whose
+  /// coordinates may have no stiffness.
   void renew(ContactRows rows, const ColumnRanges& columns, const Eigen::MatrixXd& B, const RowMatrix* left,
              bool statics, Eigen::MatrixXd& J, ContactCompliance& compliance);
-  /// yield.c = -G J^-1 R.
-  void go_by_itself(const Eigen::VectorXd& R, ContactCompliance& compliance);
-  /// -J^-1 (R + left^T forces), with the R of the last go_by_itself.
-  const Eigen::VectorXd& take(const Eigen::VectorXd& forces);
+  /// compliance.c = -G J^-1 R.
+  void compute_free_displacement(const Eigen::VectorXd& R, ContactCompliance& compliance);
+  /// -J^-1 (R + left^T forces), with the R of the last call of compute_free_displacement.
+  const Eigen::VectorXd& coordinate_change(const Eigen::VectorXd& forces);
 
-  /// (contact directions) B into G.
+  /// Stores (contact directions) B in G.
   static void multiply_directions(ContactRows rows, const ColumnRanges& columns, const Eigen::MatrixXd& B,
                                   RowMatrix& G);
 

@@ -9,9 +9,9 @@
 namespace traverse::train {
 namespace {
 
-/// The numbers of a contact that observers see.
+/// The observed numbers of a contact.
 template <class C, class Visit>
-void visit_seen(C& c, Visit visit) {
+void visit_observed(C& c, Visit visit) {
   for (auto* k : {&c.touch.kinematics, &c.kinematics})
     for (auto* value : {&k->penetration, &k->penetration_rate, &k->sliding_speed}) visit(*value);
   visit(c.force.normal);
@@ -21,34 +21,34 @@ void visit_seen(C& c, Visit visit) {
   for (auto* direction : {&c.touch.normal_on_beam, &c.touch.tangent_on_beam})
     for (auto& value : *direction) visit(value);
   for (auto* value : {&c.touch.xi, &c.touch.station, &c.touch.ahead}) visit(*value);
-  visit(c.law.seat);
+  visit(c.law.local_compliance);
   visit(c.active);
 }
-constexpr int seen_numbers = 14 + 2 * most_element_unknowns + 3 + 2;
+constexpr int observed_numbers = 14 + 2 * most_element_unknowns + 3 + 2;
 
 }  // namespace
 
-void VehicleShare::deal(MPI_Comm comm, Fleet& fleet) {
+void VehicleShare::distribute(MPI_Comm comm, Fleet& fleet) {
   const auto sharp = [](const WheelContact& c) { return c.sharp; };
-  const bool apart = fleet.pairs.empty() && std::none_of(fleet.wheels.begin(), fleet.wheels.end(), sharp);
+  const bool separable = fleet.pairs.empty() && std::none_of(fleet.wheels.begin(), fleet.wheels.end(), sharp);
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   first_.clear();
-  if (ranks == 1 || fleet.vehicles.size() < 2 || !apart) return;
+  if (ranks == 1 || fleet.vehicles.size() < 2 || !separable) return;
   comm_ = comm;
   MPI_Comm_rank(comm, &rank_);
   for (std::vector<int>* v : {&begin_, &count_}) v->assign(static_cast<std::size_t>(ranks), 0);
   long total = 0;
   for (const MovingVehicle& vehicle : fleet.vehicles) total += vehicle.mechanism.coordinates();
-  long behind = 0;  // twice the coordinates up to a vehicle's middle
+  long before = 0;  // twice the number of coordinates up to a vehicle's middle
   for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
     const int size = fleet.vehicles[k].mechanism.coordinates();
-    while (static_cast<long>(first_.size()) * 2 * total <= (2 * behind + size) * ranks)
+    while (static_cast<long>(first_.size()) * 2 * total <= (2 * before + size) * ranks)
       first_.push_back(static_cast<int>(k));
-    behind += size;
+    before += size;
   }
   first_.resize(static_cast<std::size_t>(ranks) + 1, static_cast<int>(fleet.vehicles.size()));
-  fleet.take(first_[rank_], first_[rank_ + 1]);
+  fleet.set_own(first_[rank_], first_[rank_ + 1]);
 }
 
 std::vector<int> VehicleShare::owners(std::size_t vehicles) const {
@@ -62,7 +62,7 @@ void VehicleShare::send() {
   MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, buffer_.data(), count_.data(), begin_.data(), MPI_DOUBLE, comm_);
 }
 
-unsigned VehicleShare::places(Fleet& fleet, unsigned signs) {
+unsigned VehicleShare::wheel_positions(Fleet& fleet, unsigned flags) {
   const auto each = [&](int k, auto&& visit) {
     MovingVehicle& vehicle = fleet.vehicles[k];
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
@@ -72,31 +72,33 @@ unsigned VehicleShare::places(Fleet& fleet, unsigned signs) {
     }
   };
   return exchange(
-      signs, [&](int k) { return 2 * static_cast<int>(fleet.vehicles[k].wheels.size()); },
+      flags, [&](int k) { return 2 * static_cast<int>(fleet.vehicles[k].wheels.size()); },
       [&](int k, double* to) { each(k, [to](double& value, std::size_t i) { to[i] = value; }); },
       [&](int k, const double* from) { each(k, [from](double& value, std::size_t i) { value = from[i]; }); });
 }
 
 void VehicleShare::states(Fleet& fleet) {
-  const auto mechanism_numbers = [&](int k) { return fleet.vehicles[k].mechanism.seen_numbers(); };
+  const auto mechanism_numbers = [&](int k) { return fleet.vehicles[k].mechanism.observed_size(); };
   (void)exchange(
       0,
-      [&](int k) { return mechanism_numbers(k) + seen_numbers * static_cast<int>(fleet.vehicles[k].touching.size()); },
+      [&](int k) {
+        return mechanism_numbers(k) + observed_numbers * static_cast<int>(fleet.vehicles[k].touching.size());
+      },
       [&](int k, double* to) {
         const MovingVehicle& vehicle = fleet.vehicles[k];
-        vehicle.mechanism.write_seen(vehicle.state, to);
+        vehicle.mechanism.write_observed(vehicle.state, to);
         to += mechanism_numbers(k);
         for (const int i : vehicle.touching) {
-          visit_seen(std::as_const(fleet).contact(i), [&to](auto value) { *to++ = static_cast<double>(value); });
+          visit_observed(std::as_const(fleet).contact(i), [&to](auto value) { *to++ = static_cast<double>(value); });
         }
       },
       [&](int k, const double* from) {
         MovingVehicle& vehicle = fleet.vehicles[k];
-        vehicle.mechanism.read_seen(vehicle.state, from);
+        vehicle.mechanism.read_observed(vehicle.state, from);
         from += mechanism_numbers(k);
         for (const int i : vehicle.touching) {
-          visit_seen(fleet.contact(i),
-                     [&from](auto& value) { value = static_cast<std::decay_t<decltype(value)>>(*from++); });
+          visit_observed(fleet.contact(i),
+                         [&from](auto& value) { value = static_cast<std::decay_t<decltype(value)>>(*from++); });
         }
       });
 }

@@ -1,6 +1,6 @@
-// Vehicles dealt out to the ranks: each rank moves and evaluates its own, neighbours in the train. What the others need
-// of them goes round in small messages: where wheels are, the contacts' kinematics and directions with what a vehicle
-// makes of forces there, and once a step p, p' and p''. Complete states follow only where a state is observed.
+// Distribution of the vehicles over the ranks: each rank moves and evaluates its own vehicles, neighbours in the train.
+// Ranks exchange small messages: positions of wheels, kinematics and directions of contacts, the vehicles' compliances,
+// and once in a step p, p' and p''. Complete states are exchanged only when a state is observed.
 #pragma once
 
 #include <mpi.h>
@@ -13,49 +13,50 @@ namespace traverse::train {
 
 class VehicleShare {
  public:
-  /// What ranks tell each other beside numbers; true for all where it is for one.
-  enum Sign : unsigned { failed = 1, renewed = 2, misplaced = 4, worn = 8, moved = 16 };
+  /// Flags that ranks exchange together with numbers; a flag of one rank is set for all.
+  enum Flag : unsigned { failed = 1, renewed = 2, misplaced = 4, worn = 8, moved = 16 };
 
-  /// Collective. Deals the vehicles out by their sizes, in order; a rank may be left without. Not where there is one
-  /// alone, where bodies of a vehicle touch each other, or where a wheel may touch at several points: then every rank
-  /// has all.
-  void deal(MPI_Comm comm, Fleet& fleet);
-  /// Whether there is anything to exchange.
-  bool dealt() const { return !first_.empty(); }
-  /// The rank that has each of so many vehicles; the first one where they are not dealt.
+  /// Collective. Distributes the vehicles in order by their sizes; a rank may have none. Every rank has all vehicles if
+  /// there is only one vehicle or rank, if bodies of a vehicle touch each other, or if a wheel may touch at several
+  /// points.
+  void distribute(MPI_Comm comm, Fleet& fleet);
+  /// Whether ranks share the vehicles.
+  bool distributed() const { return !first_.empty(); }
+  /// The rank of each vehicle; the first rank if they are not shared.
   std::vector<int> owners(std::size_t vehicles) const;
 
-  /// Collective where dealt. Every rank writes numbers of its vehicles, size(k) of vehicle k, and reads those of the
-  /// others': write(k, double*), read(k, const double*). Returns the signs of all ranks.
+  /// Collective if shared. Every rank writes numbers of its vehicles, size(k) for vehicle k, and reads those of the
+  /// others: write(k, double*), read(k, const double*). Returns the flags of all ranks.
   template <class Size, class Write, class Read>
-  unsigned exchange(unsigned signs, Size size, Write write, Read read) {
-    if (!dealt()) return signs;
+  unsigned exchange(unsigned flags, Size size, Write write, Read read) {
+    if (!distributed()) return flags;
     lay_out(size);
     double* to = &buffer_[static_cast<std::size_t>(begin_[rank_])];
-    *to++ = signs;
+    *to++ = flags;
     for (int k = first_[rank_]; k < first_[rank_ + 1]; to += size(k), ++k) write(k, to);
     send();
     for (std::size_t r = 0; r < count_.size(); ++r) {
       const double* from = &buffer_[static_cast<std::size_t>(begin_[r])];
-      signs |= static_cast<unsigned>(*from++);
+      flags |= static_cast<unsigned>(*from++);
       if (static_cast<int>(r) == rank_) continue;
       for (int k = first_[r]; k < first_[r + 1]; from += size(k), ++k) read(k, from);
     }
-    return signs;
+    return flags;
   }
-  /// Collective where dealt. Signs alone.
-  unsigned exchange(unsigned signs) {
+  /// Collective if shared. Flags only.
+  unsigned exchange(unsigned flags) {
     return exchange(
-        signs, [](int) { return 0; }, [](int, double*) {}, [](int, const double*) {});
+        flags, [](int) { return 0; }, [](int, double*) {}, [](int, const double*) {});
   }
 
-  /// Collective where dealt. x and x' of the wheels' bodies.
-  unsigned places(Fleet& fleet, unsigned signs);
-  /// Collective where dealt. The state of vehicles and contacts as observers see it.
+  /// Collective if shared. x and x' of the wheels' bodies.
+  unsigned wheel_positions(Fleet& fleet, unsigned flags);
+  /// Collective if shared. The observed state of vehicles and contacts.
   void states(Fleet& fleet);
-  /// Collective where dealt. Independent coordinates chosen anew by their vehicles' ranks, from states that all know.
+  /// Collective if shared. The new independent coordinates that a vehicle's rank has selected, from states known to all
+  /// ranks.
   void partitions(Fleet& fleet);
-  /// Collective where dealt. `values`, one a coordinate of p, of all vehicles.
+  /// Collective if shared. `values`, one for each coordinate of p, of all vehicles.
   void coordinates(const Fleet& fleet, std::vector<double>& values);
 
  private:
@@ -73,7 +74,7 @@ class VehicleShare {
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0;
-  std::vector<int> first_;          // vehicle of every rank, and one past the last
+  std::vector<int> first_;          // first vehicle of every rank, and the number of vehicles
   std::vector<int> begin_, count_;  // of every rank's numbers in the buffer
   std::vector<double> buffer_;
 };

@@ -12,9 +12,9 @@
 namespace traverse::train {
 namespace {
 
-// The surface point that belongs to the material station x, and how it changes along x. At a height e above the
-// neutral axis it moves by (-e theta, -e theta^2/2), as the plane sections turn; theta = v' without shear. The second
-// order along y counts: the force is along the normal, which turns with the section, and has no moment about the axis.
+// The surface point of the material station x, and its derivatives along x. At a height e above the neutral axis it
+// moves by (-e theta, -e theta^2/2), because plane sections rotate; theta = v' without shear. The second order term of
+// y is necessary: the force is along the normal, which rotates with the section, and has no moment about the axis.
 struct SurfacePoint {
   Eigen::Vector2d P, P_x, P_xx;
   double turn = 0.0;  // theta
@@ -32,7 +32,7 @@ struct Surface {
       : patch(patch_), profile(profile_), block(block_), v(v_) {
     if (patch.element < 0) return;
     per_length = 1.0 / patch.length;
-    const int o = block - 2;  // where v stands among a node's unknowns
+    const int o = block - 2;  // index of v among a node's unknowns
     const double difference = v[block + o] - v[o];
     double left = patch.length * v[o + 1], right = patch.length * v[block + o + 1];
     if (patch.shear != 0.0) {
@@ -66,17 +66,17 @@ struct Surface {
   }
 };
 
-/// What an element clamped at its nodes yields to a force at xi, m/N, and its derivative over x. With u = xi (1 - xi)
-/// and s = 12 EI/(GA h^2) it is h^3/(12 EI) ((4 u^3 + s u^2)/(1 + s) + s u).
-std::pair<double, double> seat_of(const Patch& patch, double xi) {
-  const double hump = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / patch.length;
-  if (patch.shear == 0.0) return {patch.compliance * hump * hump * hump, patch.compliance * 3.0 * hump * hump * by_x};
+/// The compliance of an element clamped at its nodes for a force at xi, m/N, and its derivative over x. With u = xi (1
+/// - xi) and s = 12 EI/(GA h^2) it is h^3/(12 EI) ((4 u^3 + s u^2)/(1 + s) + s u).
+std::pair<double, double> local_compliance_of(const Patch& patch, double xi) {
+  const double u = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / patch.length;
+  if (patch.shear == 0.0) return {patch.compliance * u * u * u, patch.compliance * 3.0 * u * u * by_x};
   const double s = patch.shear, quarter = 0.25 * patch.compliance;
-  return {quarter * hump * ((4.0 * hump + s) * hump / (1.0 + s) + s),
-          quarter * ((12.0 * hump + 2.0 * s) * hump / (1.0 + s) + s) * by_x};
+  return {quarter * u * ((4.0 * u + s) * u / (1.0 + s) + s),
+          quarter * ((12.0 * u + 2.0 * s) * u / (1.0 + s) + s) * by_x};
 }
 
-// Station of the point s closest to the centre c: (c - P).P_x = 0, by Newton.
+// Station of the point s closest to the centre c: (c - P).P_x = 0, by Newton's method.
 double closest_station(const Surface& surface, const Eigen::Vector2d& c, double start, SurfacePoint& s) {
   const double low = surface.patch.low, high = surface.patch.high;
   double x = std::clamp(start, low, high);
@@ -92,19 +92,19 @@ double closest_station(const Surface& surface, const Eigen::Vector2d& c, double 
   return x;
 }
 
-// The station between low and high where the distance to c is least (sign 1) or greatest (sign -1), from the start on:
-// Newton, kept in the right direction by bisection, which ends at low or high where there is none.
+// The station between low and high where the distance to c has its minimum (sign 1) or maximum (sign -1), from the
+// start on: Newton's method with bisection as a safeguard. The result is low or high if there is no extremum.
 double station_within(const Surface& surface, const Eigen::Vector2d& c, double sign) {
   double low = surface.patch.low, high = surface.patch.high;
   double x = std::clamp(surface.patch.start, low, high);
   for (int i = 0; i < 100; ++i) {
     const SurfacePoint s = surface.at(x);
     const Eigen::Vector2d d = c - s.P;
-    const double f = sign * d.dot(s.P_x);  // above 0: it lies to the right
+    const double f = sign * d.dot(s.P_x);  // positive: the station is to the right
     const double f_x = sign * (d.dot(s.P_xx) - s.P_x.squaredNorm());
-    const double tiny = 1e-15 * (1.0 + std::abs(x));
+    const double resolution = 1e-15 * (1.0 + std::abs(x));
     (f > 0.0 ? low : high) = x;
-    if (high - low <= tiny || (f_x < 0.0 && std::abs(f) <= -f_x * tiny)) break;
+    if (high - low <= resolution || (f_x < 0.0 && std::abs(f) <= -f_x * resolution)) break;
     const double newton = f_x < 0.0 ? x - f / f_x : low;
     x = newton > low && newton < high ? newton : 0.5 * (low + high);
   }
@@ -128,18 +128,18 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
   const Eigen::Vector2d from_surface = c - s.P;
   const double distance = from_surface.norm();
   if (!std::isfinite(distance)) return false;
-  const bool corner = x == patch.low || x == patch.high;  // beside which a wheel may have fallen
-  if (!(from_surface.y() > 0.0) && !(corner && distance > radius)) return false;
+  const bool at_end = x == patch.low || x == patch.high;  // a wheel may have fallen beside it
+  if (!(from_surface.y() > 0.0) && !(at_end && distance > radius)) return false;
   const Eigen::Vector2d n = from_surface / distance;
   const Eigen::Vector2d tau(n.y(), -n.x());
 
-  Eigen::Vector2d relative = qd.head<2>();  // of the centre against the surface's material
-  out.xi = out.seat = out.seat_by_x = 0.0;
+  Eigen::Vector2d relative = qd.head<2>();  // of the centre relative to the surface's material
+  out.xi = out.local_compliance = out.local_compliance_by_x = 0.0;
   out.station = x;
   out.ahead = x - c.x();
   if (patch.element >= 0) {
     out.xi = (x - patch.x) * surface.per_length;
-    std::tie(out.seat, out.seat_by_x) = seat_of(patch, out.xi);
+    std::tie(out.local_compliance, out.local_compliance_by_x) = local_compliance_of(patch, out.xi);
     const beam::Hermite psi = beam::hermite(out.xi, patch.length, patch.shear);
     const std::array<double, 4> turn =
         patch.shear == 0.0 ? psi.slope : beam::rotation(out.xi, patch.length, patch.shear);

@@ -1,4 +1,4 @@
-// Stores wheel positions at a limited number of instants; when these are full every second one is removed and the
+// Stores wheel positions at a limited number of instants; when the limit is reached every second one is removed and the
 // stride is doubled.
 #include "train/wheel_paths.hpp"
 
@@ -15,7 +15,7 @@ constexpr std::size_t most_instants = 4096;
 }  // namespace
 
 void WheelPaths::add(double t, const Fleet& fleet) {
-  if (seen_++ % stride_ != 0) return;
+  if (count_++ % stride_ != 0) return;
   wheels_ = fleet.wheels.size();
   time_.push_back(t);
   for (const WheelContact& c : fleet.wheels) x_.push_back(fleet.coordinates(c).x());
@@ -24,7 +24,7 @@ void WheelPaths::add(double t, const Fleet& fleet) {
   if (time_.size() == most_instants) thin_out();
 }
 
-// Every other instant goes.
+// Removes every second instant.
 void WheelPaths::thin_out() {
   for (std::size_t i = 1; 2 * i < time_.size(); ++i) {
     time_[i] = time_[2 * i];

@@ -252,7 +252,7 @@ class Spline(Files):
         motion = self.motion()
         known = ~np.isnan(motion.deflection(3))
         np.testing.assert_array_equal(known, (motion.x <= 20.0) | (motion.x == 35.0))
-        self.assertIn("spans without a station are left out", motion.in_words())
+        self.assertIn("spans without a station are not drawn", motion.in_words())
         self.made("animate", "run.h5", "-o", "run.png", "--space-time", "st.png")
 
 

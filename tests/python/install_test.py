@@ -58,6 +58,29 @@ class Install(unittest.TestCase):
         said = succeed(self.prefix / "bin/traverse-report", self.folder / "by_cmake/embed_20.h5", "-o", self.folder / "installed")
         self.assertIn("installed.pdf", said)
 
+    def test_a_contact_law_from_outside(self):
+        build = self.folder / "build_law"
+        succeed("cmake", "-G", "Ninja", "-S", SOURCE / "examples/contact_law", "-B", build,
+                f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        succeed("cmake", "--build", build)
+        scene = ("-options_file", SOURCE / "options/scenes/wheel_over_a_bump.yml", "-output_quiet")
+        forces = {}
+        for name, program in (("hertz", self.prefix / "bin/traverse"), ("tyre", build / "contact_law")):
+            file = self.folder / f"{name}.h5"
+            succeed(program, *scene, "-output_file", file)
+            with h5py.File(file) as results:
+                summary = results["summary"].attrs
+                self.assertLess(summary["energy_residual"], 1e-5 * summary["energy_scale"])
+                forces[name] = results["vehicles/0/wheel/normal_force"][()], results["vehicles/0/wheel/penetration"][()]
+        normal, penetration = forces["tyre"]
+        self.assertGreater(abs(normal - forces["hertz"][0]).max(), 1e4)
+        touching = normal > 1.0
+        law = 1.5e6 * penetration + 4.0e9 * penetration**3
+        self.assertLess(abs(normal - law)[touching].max(), 1e-6 * normal.max())
+        refused = subprocess.run([build / "contact_law", *scene, "-study_vary", "train_speed", "-train_speed", "20,30"],
+                                 capture_output=True, text=True, cwd=self.folder)
+        self.assertIn("without contact laws of the program", refused.stderr)
+
     def test_a_program_by_pkg_config(self):
         path = next(self.prefix.glob("lib*/**/pkgconfig"))
         flags = succeed("pkg-config", "--cflags", "--libs", "traverse",

@@ -177,7 +177,7 @@ class PictureTest(unittest.TestCase):
             del file["probes"]
             file["probes/x"] = np.linspace(1.0, 39.0, 20)
             file["probes/deflection"] = -1e-3 * np.ones((400, 20)) * np.linspace(0.0, 1.0, 400)[:, None]
-        self.assert_within("dashed: worst instant", "places)")
+        self.assert_within("dashed: largest deflection", "places)")
 
     def test_what_is_no_car_is_called_by_its_name(self):
         titles = []

@@ -149,7 +149,7 @@ class ResultsFiles(Files):
 class Choices(Files):
     def test_are_bound_to_their_scene_and_within_ranges(self):
         self.compute("open", OPEN)
-        said = "chosen as before for this scene"
+        said = "stored choice for the same scene"
         self.assertIn(said, self.program("-options_file", "open.yml", "-output_file", "open.h5").stdout)
         kept, = (self.folder / ".traverse_choices").iterdir()
         whole = kept.read_bytes()

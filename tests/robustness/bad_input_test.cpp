@@ -125,7 +125,7 @@ TEST(BadNames, MisspeltOnesGetAProposal) {
                       {{"-vehicle_car_wheel_law", "square"}, {"wheel_law = square", "one of hertz, linear"}},
                       {{"-vehicle_car_guide_type", "hinge"}, {"guide_type = hinge", "one of revolute, prismatic"}},
                       {{"-track_profile", "bumpy"}, {"track_profile = bumpy", "none, bump"}},
-                      {{"astray"}, {"astray", "belongs to no option"}},
+                      {{"astray"}, {"astray", "is not the value of an option"}},
                   });
 }
 
@@ -143,7 +143,8 @@ TEST(BadNames, CouplersThatJoinNothing) {
       {
           {coupler({"-train_gear_bodies", "body,bogie"}), {"vehicle 1", "no body 'bogie'"}},
           {coupler({"-train_gear_bodies", "body,body", "-train_gear_after", "1"}), {"after = 1", "from 0 to 0"}},
-          {coupler({"-train_gear_bodies", "body,body", "-train_vehicles", "car"}), {"nothing for gear to join"}},
+          {coupler({"-train_gear_bodies", "body,body", "-train_vehicles", "car"}),
+           {"gear needs a train of at least two vehicles"}},
           {coupler({"-train_gear_bodies", "body,body", "-train_gear_typ", "slot"}), {"gear_type?"}},
       });
 }
@@ -161,12 +162,12 @@ TEST(BadCounts, ListsOfTheWrongLength) {
   expect_refusals(
       workplace,
       {
-          {{"-support_types", "pinned,roller"}, {"support_types = pinned,roller", "2 entries", "3, one for every"}},
-          {{"-beam_damping_ratios", "0.1,0.1,0.1"}, {"beam_damping_ratios", "3 entries", "2, zeta1 and zeta2"}},
+          {{"-support_types", "pinned,roller"}, {"support_types = pinned,roller", "2 entries", "3 (one per span end)"}},
+          {{"-beam_damping_ratios", "0.1,0.1,0.1"}, {"beam_damping_ratios", "3 entries", "2 (zeta1 and zeta2)"}},
           {{"-beam_rayleigh", "1"}, {"beam_rayleigh = 1", "2 numbers"}},
-          {{"-beam_elements_per_span", "4,4,4"}, {"3 entries", "2, one per span"}},
+          {{"-beam_elements_per_span", "4,4,4"}, {"3 entries", "2 (one per span)"}},
           {{"-train_positions", "1,2"}, {"train_positions = 1,2", "2 entries"}},
-          {{"-train_vehicles", "car*3", "-train_positions", "1,2"}, {"2 entries", "3, one a vehicle"}},
+          {{"-train_vehicles", "car*3", "-train_positions", "1,2"}, {"2 entries", "3 (one per vehicle)"}},
           {{"-train_vehicles", "car*2"}, {"train_spacing", "missing", "vehicle_car_length"}},
           {{"-vehicle_car_body_position", "1"}, {"vehicle_car_body_position = 1", "2 numbers"}},
           {{"-vehicle_car_body_position", "1,2,3"}, {"vehicle_car_body_position = 1,2,3", "2 numbers"}},
@@ -189,7 +190,7 @@ TEST(BadFoundations, LawsThatAreNotLinear) {
           {point({"-foundation_vertical_gap", "-1e-3"}), {"foundation_vertical_gap = -1e-3", "not below 0"}},
           {point({"-foundation_vertical_cubic", "nan"}), {"foundation_vertical_cubic = nan", "allowed: "}},
           {point({"-foundation_vertical_one_sided", "maybe"}), {"one_sided = maybe", "one of true, false"}},
-          {point({"-foundation_vertical_one_sided", "true,true,true"}), {"3 entries", "2, as many as stations"}},
+          {point({"-foundation_vertical_one_sided", "true,true,true"}), {"3 entries", "2 (one per station)"}},
           {point({"-foundation_vertical_side", "middle"}), {"side = middle", "one of right, left, both"}},
           {point({"-foundation_vertical_side", "both"}), {"side = both", "at 5 m", "allowed there: right"}},
           {{"-foundation_vertical_gap", "1e-3"}, {"foundation_vertical_gap", "needs foundation_vertical_x"}},

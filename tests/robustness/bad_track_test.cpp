@@ -38,7 +38,7 @@ TEST(BadTracks, AreRefusedByName) {
            {"track_rail_hinges", "3.1", {"track_rail_hinges is 3.1", "0.3 m apart"}},
            {"track_dips_length", "1", {"track_dips_length = 1", "need track_dips_x"}},
            {"output_sleepers", "5,40", {"output_sleepers = 5,40", "no track at x = 40 m", "from -6 to 15 m"}},
-           {"output_sleepers", "3,3.1", {"the sleeper at x = 3 m twice", "each once"}},
+           {"output_sleepers", "3,3.1", {"the sleeper at x = 3 m twice", "each sleeper once"}},
        }) {
     SCOPED_TRACE(bad.option);
     const bool ground = std::string(bad.option) == "track_weak_subballast_k";
@@ -100,7 +100,7 @@ load: {forces: 1.0e5, positions: 5.0, speed: 0.0}
 scene: {analysis: static}
 )";
   for (const char* name : {"track_shear_k", "track_shear_c", "track_ballast_own_mass"})
-    expect_refused([&] { run_yaml(on_pads, {{name, "1"}}); }, {name, "needs ballast that moves by itself"});
+    expect_refused([&] { run_yaml(on_pads, {{name, "1"}}); }, {name, "needs ballast masses that move separately"});
   expect_refused([&] { run_yaml(on_pads, {{"track_gap", "1e-3"}}); }, {"track_gap needs track_ballast_k"});
 }
 

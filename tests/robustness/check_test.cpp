@@ -102,11 +102,11 @@ TEST_P(Unusual, IsFoundWhereItIs) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Unusual,
     testing::Values(
-        Case{"LowFrequency", {"-beam_EI", "2.0e10"}, "below what railway bridges of 30 m have"},
-        Case{"HighFrequency", {"-beam_EI", "1.6e12"}, "above what railway bridges of 30 m have"},
-        Case{"StiffnessInKilonewtons", {"-beam_EI", "1.6e8"}, "as if it were given in kN m2"},
-        Case{"MassInTonnes", {"-beam_mass", "20"}, "as if it were given in t/m"},
-        Case{"BothInThousands", {"-beam_mass", "20", "-beam_EI", "1.6e8"}, "beam_mass: 20 kg/m are little"},
+        Case{"LowFrequency", {"-beam_EI", "2.0e10"}, "below the range of railway bridges of 30 m"},
+        Case{"HighFrequency", {"-beam_EI", "1.6e12"}, "above the range of railway bridges of 30 m"},
+        Case{"StiffnessInKilonewtons", {"-beam_EI", "1.6e8"}, "possibly given in kN m2"},
+        Case{"MassInTonnes", {"-beam_mass", "20"}, "possibly given in t/m"},
+        Case{"BothInThousands", {"-beam_mass", "20", "-beam_EI", "1.6e8"}, "beam_mass: 20 kg/m is small"},
         Case{"DampingInPerCent", {"-beam_damping_ratios", "0.5,0.5"}, "50 % of critical damping"},
         Case{"FastTrain", {"-train_speed", "155"}, "558 km/h"},
         Case{"FasterThanAny", {"-train_speed", "300"}, "1080 km/h"},
@@ -114,17 +114,17 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"HeavyAxle", {"-vehicle_cart_frame_mass", "9e4"}, "46 t, on one axle"},
         Case{"MassesInTonnes",
              {"-vehicle_cart_frame_mass", "18", "-vehicle_cart_front_mass", "1", "-vehicle_cart_rear_mass", "1"},
-             "as if masses were given in t"},
+             "masses are possibly given in t"},
         Case{"ForcesInKilonewtons",
              {"-train_vehicles", "[]", "-load_forces", "170", "-load_speed", "40"},
-             "as if forces were given in kN"},
-        Case{"WheelInTheAir", {"-vehicle_cart_frame_position", "2.2,1.5"}, "carries"},
+             "forces are possibly given in kN"},
+        Case{"WheelInTheAir", {"-vehicle_cart_frame_position", "2.2,1.5"}, "the static wheel load is"},
         Case{"LargeDeflection", {"-beam_EI", "5e8"}, "of its span"},
-        Case{"StandsBefore", {"-train_speed", "0", "-ts_max_time", "1"}, "the train never meets the bridge"},
-        Case{"EndsBeforeItComes", {"-ts_max_time", "0.05"}, "before the first wheel comes onto the bridge"},
+        Case{"StandsBefore", {"-train_speed", "0", "-ts_max_time", "1"}, "the train does not reach the bridge"},
+        Case{"EndsBeforeItComes", {"-ts_max_time", "0.05"}, "before the first wheel reaches the bridge"},
         Case{"EndsBeforeItLeaves", {"-ts_max_time", "0.5"}, "before the last wheel has left the bridge"},
-        Case{"SettledEnd", {"-support_settlement", "0,-0.005"}, "steps by up to 5 mm at x = 30 m"},
-        Case{"YieldingEnd", {"-support_stiffness", "0,1.0e8"}, "steps by up to 1.8"},
+        Case{"SettledEnd", {"-support_settlement", "0,-0.005"}, "a step of up to 5 mm at x = 30 m"},
+        Case{"YieldingEnd", {"-support_stiffness", "0,1.0e8"}, "a step of up to 1.8"},
         Case{"OnTheMoon", {"-gravity", "1.62"}, "on earth it is 9.81"},
         Case{"WithoutEffect", {"-load_speed", "30"}, "load_speed has no effect"}),
     [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
@@ -164,7 +164,7 @@ TEST(Check, LeavesResultsThatAreThereAlone) {
   workplace.write("mine.h5", "not a results file");
   const Outcome outcome = workplace.run({"-check", "-output_file", "mine.h5"});
   expect_success(outcome);
-  EXPECT_TRUE(contains(outcome.out, "the file is there")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "the file exists")) << outcome.out;
   EXPECT_EQ(std::filesystem::file_size(workplace.path("mine.h5")), 18u);
 }
 

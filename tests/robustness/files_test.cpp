@@ -126,7 +126,7 @@ TEST(NamedFiles, WithADashInFrontOnTheCommandLine) {
   for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
            {"-options_file", "-dash.yml"}, {"-output_file", "-r.h5"}, {"-vehicle_car_file", "-car.yml"}}) {
     SCOPED_TRACE(words.back());
-    expect_refusal(workplace, workplace.run(words), {"'" + words.back() + "'", "written ./" + words.back()});
+    expect_refusal(workplace, workplace.run(words), {"'" + words.back() + "'", "write ./" + words.back()});
   }
 }
 

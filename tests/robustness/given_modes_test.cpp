@@ -22,9 +22,10 @@ void expect_refused(const std::string& modes, const std::vector<std::string>& pa
 
 TEST(GivenModesFile, NamesTheLine) {
   expect_refused("frequency, 4, -9\n", {"modes.csv:1", "mode 2", "above 0"});
-  expect_refused("frequency, 4, 9\nmodal_mass, 1e5\n", {"modes.csv:2", "modal_mass", "one a mode"});
+  expect_refused("frequency, 4, 9\nmodal_mass, 1e5\n", {"modes.csv:2", "modal_mass", "one per mode"});
   expect_refused("frequency, 4, 9\nmodal_mass, 1e5, -3\n", {"modes.csv:2", "modal mass of mode 2"});
-  expect_refused("frequency, 4, 9\ndamping_ratio, 0.1, -1.5\n", {"modes.csv:2", "damping ratio of mode 2", "from 0"});
+  expect_refused("frequency, 4, 9\ndamping_ratio, 0.1, -1.5\n",
+                 {"modes.csv:2", "damping ratio of mode 2", "not below 0"});
   expect_refused("frequency, 4, 9\ndamping_ratio, 2\n", {"modes.csv:2", "lowest mode is 2", "below 1"});
   expect_refused(head + "0, 0, 0\n5, 1, 1\n5, 1, 0\n", {"modes.csv:6", "increase strictly"});
   expect_refused(head + "0, 0, 0\n5, 1\n", {"modes.csv:5", "for 2 modes"});

@@ -48,10 +48,10 @@ TEST(StudyInput, IsRefusedInOneLine) {
       {"beam_mass: []", {"study_vary_beam_mass", "empty list"}},
       {"beam_mass: {from: 2.0e3, to: 1.0e3, step: 10}", {"study_vary_beam_mass", "empty range"}},
       {"load_speed: 10:5", {"study_vary_load_speed", "empty range"}},
-      {"beam_mass: [1.0e3, heavy]", {"study_vary_beam_mass", "'heavy' is no finite number", "beam_mass"}},
-      {"beam_mass: [1.0e3, -1]", {"study_vary_beam_mass", "-1 is no value of beam_mass", "above"}},
+      {"beam_mass: [1.0e3, heavy]", {"study_vary_beam_mass", "'heavy' is not a finite number", "beam_mass"}},
+      {"beam_mass: [1.0e3, -1]", {"study_vary_beam_mass", "-1 is not a value of beam_mass", "above"}},
       {"beam_mass: {normal: [1.0, 5.0]}", {"study_draws is missing"}},
-      {"support_types: [pinned]", {"support_types cannot be varied", "no number"}},
+      {"support_types: [pinned]", {"support_types cannot be varied", "not a number"}},
       {"ts_dt: [1.0e-3, 2.0e-3]", {"ts_dt cannot be varied", "given for all runs too"}},
       {"accuracy: [1.0e-3, 1.0e-2]", {"accuracy cannot be varied"}},
       {"track_seed: 1:5", {"track_seed has no effect", "track_profile is none"}},
@@ -70,9 +70,9 @@ TEST(StudyInput, IsRefusedInOneLine) {
 
 TEST(StudyInput, DrawsAreCheckedToo) {
   const Workplace workplace(forces + "study: {vary: {beam_mass: {normal: [1.0, 5.0]}}, draws: 100}\n");
-  expect_refusal(workplace, workplace.run(), {"study_vary_beam_mass_normal", "draw ", "take lognormal"});
+  expect_refusal(workplace, workplace.run(), {"study_vary_beam_mass_normal", "draw ", "use lognormal"});
   const Workplace unequal(forces + "study: {vary: {beam_mass: [1, 2], load_speed: [10, 20, 30]}, combine: together}\n");
-  expect_refusal(unequal, unequal.run(), {"study_combine", "load_speed has 3 values"});
+  expect_refusal(unequal, unequal.run(), {"study_combine", "beam_mass (2) and load_speed (3) differ"});
   const Workplace unvaried(study("beam_mass: [1000, 2000]"));
   expect_refusal(unvaried, unvaried.run({"-study_statistics_over", "beam_EI"}), {"study_statistics_over", "beam_EI"});
 }
@@ -93,7 +93,7 @@ TEST(StudyInput, SpeedsToRefineAreAListOfTheirOwn) {
   }
   const Workplace together(forces + "study: {vary: {beam_mass: [1, 2, 3], load_speed: [10, 20, 30]}}\n");
   expect_refusal(together, together.run({"-study_refine", "1e-2", "-study_combine", "together"}),
-                 {"study_refine", "load_speed goes side by side"});
+                 {"study_refine", "load_speed varies together"});
   const Workplace swept(forces);
   expect_refusal(swept, swept.run({"-sweep_speed", "30,40,10", "-sweep_refine", "1e-2"}),
                  {"sweep_refine", "2 speeds", "at least 3"});

@@ -51,8 +51,8 @@ TEST(Petscrc, InTheFolderIsSaidOnStandardOutput) {
     expect_success(outcome);
     for (const char* line :
          {"beam_damping_ratios = 0.5 (.petscrc:1) is in force", "load_speed = 41 (.petscrc:2) has no",
-          "load_speed = 40.0 (scene.yml:", "python = touch (.petscrc:3) is left out",
-          "gravity = 1 (PETSC_OPTIONS) is in force", "info = victim (PETSC_OPTIONS) is left out"})
+          "load_speed = 40.0 (scene.yml:", "python = touch (.petscrc:3) is ignored",
+          "gravity = 1 (PETSC_OPTIONS) is in force", "info = victim (PETSC_OPTIONS) is ignored"})
       EXPECT_NE(outcome.out.find(line), std::string::npos) << line << " in\n" << outcome.out;
     EXPECT_FALSE(workplace.has("victim"));
   }

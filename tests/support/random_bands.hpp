@@ -53,7 +53,7 @@ inline Eigen::VectorXd product(const solve::BlockTridiagonal& A, const Eigen::Ve
 }
 
 /// Copies a right-hand side into x when told to, and counts what was asked.
-class CopyingFiller final : public solve::NodeFiller {
+class CopyingFiller final : public solve::RhsCallback {
  public:
   CopyingFiller(Eigen::VectorXd from, int block) : from_(std::move(from)), block_(block) {
     x.setConstant(from_.size(), std::numeric_limits<double>::quiet_NaN());

@@ -37,7 +37,7 @@ engine::BatchResult trial(bool filtered, double step, double distance) {
   Scene scene = scene_of(coaches);
   scene.sweep.emplace();
   scene.sweep->speeds = {64.0};
-  scene.output.low_pass_asked = filtered;
+  scene.output.low_pass_requested = filtered;
   scene.output.low_pass = 30.0;
   BatchTrialRuns trials(scene, {{64.0}}, distance);
   return trials.run(model_with(step)).front();

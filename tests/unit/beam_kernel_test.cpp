@@ -144,7 +144,7 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
       }
     with_structure(t, [&](const auto& structure) {
       structure.factorise(rate, displacement);
-      structure.mark(wheels.task, rate, displacement);
+      structure.set_window(wheels.task, rate, displacement);
       structure.find_residual(rate, displacement);
       structure.begin_passes();
       structure.clear_loads();

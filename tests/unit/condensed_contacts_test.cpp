@@ -49,7 +49,7 @@ class Contacts : public testing::Test {
       c.law.friction = friction;
       c.slots = {slot, -1};
       // Held where the law gives about what a wheel carries; the geometry has gone on from there.
-      const double penetration = contact::penetration_at_rest(c.law, 5e4);
+      const double penetration = contact::static_penetration(c.law, 5e4);
       c.kinematics = {penetration, 0.01 * number(), 0.02 * number()};
       c.touch.kinematics = {penetration * (1.0 + 0.1 * number()), 0.01 * number(), 0.02 * number()};
       c.force = contact::force(c.law, c.kinematics, 0.0);
@@ -123,11 +123,11 @@ class Contacts : public testing::Test {
 
   contact::Kinematics kinematics(int row, const Eigen::VectorXd& delta) const {
     const int first = contacts_.row(row).normal ? row : row - 1;
-    const bool rubs = first + 1 < rows() && !contacts_.row(first + 1).normal;
+    const bool has_friction = first + 1 < rows() && !contacts_.row(first + 1).normal;
     contact::Kinematics k = contacts_.row(first).contact->touch.kinematics;
     k.penetration += delta[first];
     k.penetration_rate += shift_ * delta[first];
-    if (rubs) k.sliding_speed += shift_ * delta[first + 1];
+    if (has_friction) k.sliding_speed += shift_ * delta[first + 1];
     return k;
   }
   Eigen::VectorXd forces(const Eigen::VectorXd& delta) const {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "traverse/contact/law.hpp"
@@ -32,7 +33,23 @@ Law impact() {
 }
 
 Law on_a_seat(Law law) {
-  law.seat = 0.3 / (law.kind == LawKind::linear ? law.stiffness : 1e9);
+  law.local_compliance = 0.3 / (law.kind == LawKind::linear ? law.stiffness : 1e9);
+  return law;
+}
+
+/// Hertz's law as a program outside would write it.
+class WrittenHertz : public ElasticLaw {
+ public:
+  double force(double a) const override { return 9.4e10 * std::pow(a, 1.5); }
+  double stiffness(double a) const override { return 1.5 * 9.4e10 * std::sqrt(a); }
+  double energy(double a) const override { return 0.4 * 9.4e10 * std::pow(a, 2.5); }
+};
+
+Law other() {
+  Law law = hertz();
+  law.kind = LawKind::other;
+  law.elastic = std::make_shared<WrittenHertz>();
+  law.stiffness = 0.0;
   return law;
 }
 
@@ -64,6 +81,26 @@ TEST(ContactLaw, DerivativesMatchDifferences) {
   for (const Law& law : {hertz(), linear(), impact()}) expect_derivatives(on_a_seat(law), k, 0.2);
 }
 
+TEST(ContactLaw, OfAProgramIsUsedAsHertz) {
+  expect_derivatives(other(), {1.2e-4, 0.013, 0.015}, 0.0);
+  for (const double local_compliance : {0.0, 3e-10}) {
+    Law written = other(), built_in = hertz();
+    written.local_compliance = built_in.local_compliance = local_compliance;
+    const auto near = [](double a, double b) { EXPECT_NEAR(a, b, 1e-10 * std::abs(b)); };
+    for (const double alpha : {2e-6, 1.2e-4, 3e-3}) {
+      const Force a = force(written, {alpha, 0.01, 0.02}, 0.0), b = force(built_in, {alpha, 0.01, 0.02}, 0.0);
+      near(a.normal, b.normal);
+      near(a.normal_by_penetration, b.normal_by_penetration);
+      near(a.tangential, b.tangential);
+      near(surface_penetration(written, alpha), surface_penetration(built_in, alpha));
+      near(potential(written, alpha), potential(built_in, alpha));
+    }
+    near(static_penetration(written, 66217.5), static_penetration(built_in, 66217.5));
+  }
+  const double exact = impact_duration(hertz(), 300.0, 0.4);
+  EXPECT_NEAR(impact_duration(other(), 300.0, 0.4), exact, 1e-5 * exact);
+}
+
 // In series: the law at its own part of the penetration, the seat at the rest.
 TEST(ContactLaw, SharesThePenetrationWithItsSeat) {
   for (Law law : {hertz(), linear()}) {
@@ -71,11 +108,11 @@ TEST(ContactLaw, SharesThePenetrationWithItsSeat) {
     const Law seated = on_a_seat(law);
     for (const double penetration : {1e-9, 2e-5, 1.2e-4, 3e-3}) {
       const double normal = force(seated, {penetration, 0.0, 0.0}, 0.0).normal;
-      const double own = penetration - seated.seat * normal;
+      const double own = penetration - seated.local_compliance * normal;
       EXPECT_NEAR(normal, force(law, {own, 0.0, 0.0}, 0.0).normal, 1e-12 * normal);
-      EXPECT_NEAR(own_penetration(seated, penetration), own, 1e-12 * penetration);
+      EXPECT_NEAR(surface_penetration(seated, penetration), own, 1e-12 * penetration);
       EXPECT_LT(own, penetration);
-      const double stored = potential(law, own) + 0.5 * seated.seat * normal * normal;
+      const double stored = potential(law, own) + 0.5 * seated.local_compliance * normal * normal;
       EXPECT_NEAR(potential(seated, penetration), stored, 1e-12 * stored);
     }
   }
@@ -113,14 +150,14 @@ TEST(ContactLaw, PotentialIsTheIntegralOfTheForce) {
 
 TEST(ContactLaw, PenetrationAtRestInvertsTheForce) {
   for (const Law& law : {hertz(), linear(), impact()}) {
-    const double alpha = penetration_at_rest(law, 66217.5);
+    const double alpha = static_penetration(law, 66217.5);
     EXPECT_NEAR(force(law, {alpha, 0.0, 0.0}, 0.0).normal, 66217.5, 1e-9 * 66217.5);
-    EXPECT_EQ(penetration_at_rest(law, 0.0), 0.0);
+    EXPECT_EQ(static_penetration(law, 0.0), 0.0);
   }
   // reference/R4.csv, first line: F = (delta/9.1e-8)^1.5 under 66217.5 N
   Law r4;
   r4.stiffness = std::pow(9.1e-8, -1.5);
-  EXPECT_NEAR(penetration_at_rest(r4, 66217.5), 1.489440799e-4, 1e-12);
+  EXPECT_NEAR(static_penetration(r4, 66217.5), 1.489440799e-4, 1e-12);
 }
 
 TEST(ContactLaw, FrictionActsWithTheSlidingSpeedAndSaturates) {

@@ -100,7 +100,7 @@ void expect_same_products(const beam::BeamModel& model) {
       Tile damped, plain, rates, heavy, forces;  // x + b y, x, y, y with what M takes of it for damping
       for (int c = 0; c < b; ++c) {
         for (Tile* of : {&damped, &plain, &rates, &heavy})
-          (*of)[c].assign(static_cast<std::size_t>(past - first) + 2 + beam::abreast, 0.5);
+          (*of)[c].assign(static_cast<std::size_t>(past - first) + 2 + beam::nodes_per_step, 0.5);
         forces[c].assign(static_cast<std::size_t>(past - first), 0.0);
         for (int node = std::max(first - 1, 0); node < std::min(past + 1, nodes); ++node) {
           const int i = node - first + 1, k = b * node + c;
@@ -176,7 +176,7 @@ TEST(SeparateParts, SolveAsTheWhole) {
   for (double value : expected) largest = std::max(largest, std::abs(value));
   for (std::size_t i = 0; i < x.size(); ++i) ASSERT_NEAR(x[i], expected[i], 1e-12 * largest);
 
-  struct Copy final : solve::NodeFiller {
+  struct Copy final : solve::RhsCallback {
     const std::vector<double>* from = nullptr;
     double* to = nullptr;
     void fill(std::ptrdiff_t first, std::ptrdiff_t past) override {

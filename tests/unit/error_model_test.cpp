@@ -28,14 +28,14 @@ TEST_P(Orders, AreMeasuredWithTheError) {
   EXPECT_NEAR(error.value, cautious * c * std::pow(h, order), 1e-9 * error.value);
   EXPECT_NEAR(error.at(2.0), error.value * std::pow(2.0, order), 1e-9 * error.value * 16.0);
   const double wanted = 3.0 * error.value;
-  EXPECT_NEAR(error.at(error.room(wanted)), wanted, 1e-9 * wanted);
+  EXPECT_NEAR(error.at(error.allowed_ratio(wanted)), wanted, 1e-9 * wanted);
 }
 
 // Halving is never supposed to gain more than the third power.
 TEST(ErrorModel, IsCautiousTowardsShorterSteps) {
   const ErrorModel error = found(5.0, 4.0, 1e-3);
   EXPECT_NEAR(error.at(0.5), error.value / 8.0, 1e-9 * error.value);
-  EXPECT_NEAR(error.room(error.value / 8.0), 0.5, 1e-9);
+  EXPECT_NEAR(error.allowed_ratio(error.value / 8.0), 0.5, 1e-9);
 }
 
 // Without a second halving the order is a supposed one.

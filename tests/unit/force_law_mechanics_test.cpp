@@ -91,7 +91,7 @@ TEST(ForceLaw, NeverPullsOrPushesWhereItIsLoose) {
   for (const double gap : {0.0, 0.05})
     for (const Side side : sides) {
       const ForceLaw law = rich_law(gap, side);
-      if (!law.lets_go()) continue;
+      if (!law.can_disengage()) continue;
       for (double e = -1.0; e <= 1.0; e += 0.01)
         for (const double rate : {-5.0, -0.5, 0.0, 0.5, 5.0}) {
           const double t = tension(law, e, rate).tension;

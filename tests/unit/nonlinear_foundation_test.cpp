@@ -137,14 +137,14 @@ class Founded {
         op.solve_static(z.data(), &added);
       else
         op.factored(stage.shift, stage.shift2, &added).solve(z.data());
-      const Verdict verdict = foundation.judge(z.data());
+      const Verdict verdict = foundation.check_stage(z.data());
       if (verdict != Verdict::again) return verdict;
     }
   }
 
   void expect_dense(const Stage& stage) {
     Eigen::VectorXd z;
-    ASSERT_EQ(solve(stage, z), Verdict::settled);
+    ASSERT_EQ(solve(stage, z), Verdict::converged);
     const Eigen::VectorXd right = newton(stage);
     const int block = beam.block();
     for (int kind = 0; kind < block; ++kind) {

@@ -56,8 +56,8 @@ TEST(Yaml, ErrorsNameFileAndLine) {
   EXPECT_PRED2(contains, refused("a: 1\n\tb: 2\n"), "s.yml:2: ");
   EXPECT_PRED2(contains, refused("just words\n"), "s.yml:1: ");
   EXPECT_PRED2(contains, refused("a: 1\nb: 2\na: 3\n"), "s.yml:3: a is given twice, first in line 1");
-  EXPECT_PRED2(contains, refused("a: [[1, 2], [3]]\n"), "a list holds numbers or words");
-  EXPECT_PRED2(contains, refused("a b: 1\n"), "'a b' is no name");
+  EXPECT_PRED2(contains, refused("a: [[1, 2], [3]]\n"), "a list may contain numbers or words");
+  EXPECT_PRED2(contains, refused("a b: 1\n"), "'a b' is not the name");
   EXPECT_PRED2(contains, refused("a: 1\n---\nb: 2\n"), "more than one YAML document");
 }
 
@@ -76,7 +76,7 @@ TEST(Yaml, TheBlocksOwnKeysWinOverMergedOnes) {
     ASSERT_EQ(entries.size(), 2u);
     for (const Entry& entry : entries) EXPECT_EQ(entry.value, entry.name == "a_r" ? "2" : "x");
   }
-  EXPECT_PRED2(contains, message_of([] { parse_yaml("a: {<<: 3}\n", "s.yml"); }), "<< takes a block");
+  EXPECT_PRED2(contains, message_of([] { parse_yaml("a: {<<: 3}\n", "s.yml"); }), "<< needs a block");
 }
 
 TEST(Yaml, EmptyListsAreMeantAndMissingValuesAreNot) {
@@ -128,7 +128,10 @@ TEST(CommandLine, PetscSeesWhatItOwnsOutOfFilesToo) {
 
 TEST(CommandLine, RefusesWhatBelongsToNothing) {
   EXPECT_PRED2(contains, message_of([] { input_of({"scene.yml"}); }), "-options_file scene.yml");
-  EXPECT_PRED2(contains, message_of([] { input_of({"-beam_spans", "25,", "30"}); }), "'30' belongs to no option");
+  EXPECT_PRED2(contains, message_of([] {
+                 input_of({"-beam_spans", "25,", "30"});
+               }),
+               "'30' is not the value of an option");
   EXPECT_PRED2(contains, message_of([] { input_of({"-options_file", "no/such.yml"}); }), "no/such.yml");
   EXPECT_PRED2(contains, message_of([] { input_of({"-options_file", "/"}); }), "folder");
   EXPECT_PRED2(contains, message_of([] { input_of({"-options_file"}); }), "name of a file");
@@ -156,7 +159,7 @@ TEST(CommandLine, FilesNameFurtherFiles) {
 }
 
 TEST(CommandLine, WordsThatAreNoNames) {
-  EXPECT_PRED2(contains, message_of([] { input_of({"-options_file", "-dash.yml"}); }), "written ./-dash.yml");
+  EXPECT_PRED2(contains, message_of([] { input_of({"-options_file", "-dash.yml"}); }), "write ./-dash.yml");
   EXPECT_PRED2(contains, message_of([] { input_of({"-ts_type=bdf"}); }), "a blank before the value");
 }
 
@@ -215,10 +218,10 @@ TEST_P(BadValue, IsRefusedWithNameValueAndPlace) {
 INSTANTIATE_TEST_SUITE_P(
     Values, BadValue,
     testing::Values(
-        Bad{"train_speed", "fast", "'fast' is no finite number"}, Bad{"train_speed", "nan", "no finite number"},
-        Bad{"train_speed", "1e999", "no finite number"}, Bad{"train_speed", "3 mph", "no finite number"},
+        Bad{"train_speed", "fast", "'fast' is not a finite number"}, Bad{"train_speed", "nan", "not a finite number"},
+        Bad{"train_speed", "1e999", "not a finite number"}, Bad{"train_speed", "3 mph", "not a finite number"},
         Bad{"train_speed", "-20000", "from -10000 to 10000 (m/s)"}, Bad{"scene_tail", "-1", "not below 0 (s)"},
-        Bad{"beam_EI", "0", "above 1e-07 (N m2)"}, Bad{"beam_EI", "inf", "no finite number"},
+        Bad{"beam_EI", "0", "above 1e-07 (N m2)"}, Bad{"beam_EI", "inf", "not a finite number"},
         Bad{"beam_EI", "nowhere.csv", "neither a number nor a file"},
         Bad{"beam_elements_per_span", "3.5", "whole numbers"}, Bad{"beam_elements_per_span", "0", "from 1"},
         Bad{"beam_spans", "25,,30", "empty entry"}, Bad{"beam_spans", "", "has no value"},
@@ -233,19 +236,19 @@ TEST(Numbers, SayWhatStandsInTheWay) {
   const auto refused = [](const std::string& name, const std::string& value) {
     return message_of([&] { Options({{name, value}}).check_values(); });
   };
-  EXPECT_PRED2(contains, refused("beam_spans", "28 m"), "a number stands without its unit, in m");
-  EXPECT_PRED2(contains, refused("beam_EI", "260 GN.m2"), "a number stands without its unit, in N m2");
-  EXPECT_PRED2(contains, refused("train_speed", "30 mph"), "a speed is in m/s, or in km/h as in 100 km/h");
+  EXPECT_PRED2(contains, refused("beam_spans", "28 m"), "give the number without its unit, in m");
+  EXPECT_PRED2(contains, refused("beam_EI", "260 GN.m2"), "give the number without its unit, in N m2");
+  EXPECT_PRED2(contains, refused("train_speed", "30 mph"), "give a speed in m/s, or in km/h as in 100 km/h");
   EXPECT_PRED2(contains, refused("load_speed", "144_km/h"), "or in km/h");
-  EXPECT_PRED2(contains, refused("ts_dt", "1,5e-3"), "decimals follow a point: 1.5e-3");
-  EXPECT_PRED2(contains, refused("beam_EI", "1e10,2e10"), "one number is wanted, not a list");
-  EXPECT_PRED2(contains, refused("beam_spans", "28,0"), "'0' is none of what is allowed");
+  EXPECT_PRED2(contains, refused("ts_dt", "1,5e-3"), "use a decimal point: 1.5e-3");
+  EXPECT_PRED2(contains, refused("beam_EI", "1e10,2e10"), "expected one number, not a list");
+  EXPECT_PRED2(contains, refused("beam_spans", "28,0"), "'0' is not allowed; allowed: ");
   for (const char* name : {"train_speed", "load_speed"}) {
     EXPECT_DOUBLE_EQ(Options({{name, "90 km/h"}}).number(name), 25.0);
     EXPECT_DOUBLE_EQ(Options({{name, "-90km/h"}}).number(name), -25.0);
   }
   EXPECT_PRED2(contains, message_of([] { Options::from_yaml("beam: {spans: 28,0, EI: 1e10}\n", "a.yml"); }),
-               "a.yml:1: '0' stands where a name should");
+               "a.yml:1: '0' is in the place of a name");
 }
 
 TEST(Names, MisspeltOnesGetAProposal) {
@@ -318,10 +321,10 @@ TEST(DataFile, ColumnsAndComments) {
     const std::string file = folder.write("b.csv", text);
     return message_of([&] { read_columns(file, 2, 2); });
   };
-  EXPECT_PRED2(contains, refused("0 1\n1 2 3\n"), "b.csv:2: holds 3 numbers, expected 2");
+  EXPECT_PRED2(contains, refused("0 1\n1 2 3\n"), "b.csv:2: has 3 numbers, expected 2");
   EXPECT_PRED2(contains, refused("0 1\n1 x\n"), "b.csv:2: 'x'");
   EXPECT_PRED2(contains, refused("0 nan\n"), "b.csv:1: 'nan'");
-  EXPECT_PRED2(contains, refused("# nothing\n"), "holds no numbers");
+  EXPECT_PRED2(contains, refused("# nothing\n"), "contains no numbers");
 }
 
 TEST(DataFile, FoundBesideTheFileThatNamesIt) {

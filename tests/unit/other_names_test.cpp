@@ -42,8 +42,10 @@ TEST(OtherNames, AreExplained) { EXPECT_EQ(help_text("-ts_time_step"), help_text
 
 TEST(OtherNames, AreRefusedBesideOneAnother) {
   const std::string message = message_of([] { input_of({"-ts_dt", "0.1", "-ts_time_step", "0.2"}); });
-  EXPECT_EQ(message,
-            "ts_time_step = 0.2 (command line): another name of ts_dt = 0.1 (command line); allowed: one of the two");
+  EXPECT_EQ(
+      message,
+      "ts_time_step = 0.2 (command line): this is another name of ts_dt = 0.1 (command line); give only one of the "
+      "two");
 }
 
 TEST(OtherNames, OfTheEnvironmentAreThoseThatPetscKnows) {

@@ -129,7 +129,7 @@ TEST(PetscList, ViewersArePutWithoutAValue) {
 TEST(PetscList, FilesDoNotSayThatFilesAreNotRead) {
   const test::TemporaryFolder folder;
   const std::string scene = folder.write("scene.yml", "skip_petscrc: true\n");
-  EXPECT_PRED2(contains, message_of([&] { input_of({"-options_file", scene}); }), "belongs to the command line alone");
+  EXPECT_PRED2(contains, message_of([&] { input_of({"-options_file", scene}); }), "allowed only on the command line");
 }
 
 // --- .petscrc and PETSC_OPTIONS --------------------------------------------------------------------------------------
@@ -172,8 +172,8 @@ TEST_F(Petscrc, LaterPlacesWinAndEachOptionHasItsLine) {
                 "train_speed = 20 (.petscrc:3) has no effect: train_speed = 40 (" + scene + ":1) overrides it",
                 "gravity = 3 (PETSC_OPTIONS) is in force: nothing overrides it",
                 "load_speed = 30 (PETSC_OPTIONS) is in force: nothing overrides it",
-                "ksp_rtol = 1e-3 (PETSC_OPTIONS) is left out: it is no option that Traverse takes from there",
-                "da_grid_x = 4 (PETSC_OPTIONS) is left out: it is no option that Traverse takes from there"}));
+                "ksp_rtol = 1e-3 (PETSC_OPTIONS) is ignored: Traverse does not read this option from there",
+                "da_grid_x = 4 (PETSC_OPTIONS) is ignored: Traverse does not read this option from there"}));
   EXPECT_EQ(getenv("PETSC_OPTIONS"), nullptr) << "PETSc would read it again";
 }
 
@@ -182,7 +182,7 @@ TEST_F(Petscrc, IsAsSafeAsAScene) {
     folder_.write(".petscrc", "-" + name + " victim\n");
     const Input input = input_of({});
     EXPECT_FALSE(any_contains(input.petsc_words, "victim")) << name;
-    EXPECT_PRED2(any_contains, input.notes, name + " = victim (.petscrc:1) is left out");
+    EXPECT_PRED2(any_contains, input.notes, name + " = victim (.petscrc:1) is ignored");
   }
   folder_.write(".petscrc", "-log_view :victim\n");
   EXPECT_PRED2(contains, message_of([] { input_of({}); }), "log_view = :victim (.petscrc:1)");

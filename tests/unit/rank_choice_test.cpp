@@ -11,7 +11,7 @@ namespace {
 app::StageWork long_bridge(double unknowns) {
   app::StageWork work;
   work.unknowns = unknowns;
-  work.each = 7e-9;
+  work.seconds_per_unknown = 7e-9;
   return work;
 }
 
@@ -45,7 +45,7 @@ TEST(RankChoice, IsNeverSlowerThanOneRankByTheModel) {
 
 TEST(RankChoice, WhatIsForOneRankAlone) {
   app::StageWork work = long_bridge(1e9);
-  work.alone = "its steps are short";
+  work.single_rank_reason = "its steps are short";
   EXPECT_EQ(app::best_ranks(work, 1024, 1e-9), 1);
 }
 

@@ -62,9 +62,9 @@ TEST(ResponseExtremes, BendsOfAWave) {
   EXPECT_NEAR(slow.wheel_force, slow.acceleration, 1e-3 * slow.acceleration);
   const SecondDifference fast =
       peaks_of_curve([&](double t) { return 3.0 * std::sin(2.0 * omega * t); }, h).roughness();
-  EXPECT_NEAR(fast.times(slow), 4.0, 0.05);
-  peaks.forget_roughness();
-  EXPECT_EQ(peaks.roughness().times(slow), 0.0);
+  EXPECT_NEAR(fast.ratio_to(slow), 4.0, 0.05);
+  peaks.reset_roughness();
+  EXPECT_EQ(peaks.roughness().ratio_to(slow), 0.0);
 }
 
 // The error falls with the sixth power of the interval, wherever the samples lie.

@@ -112,7 +112,7 @@ TEST(SceneTrain, PositionsAndSpacing) {
       (std::vector<double>{-5.0, -15.0, -35.0}));
   EXPECT_EQ(scene_with({{"train_vehicles", "car*3"}, {"vehicle_car_length", "12"}}).train.positions,
             (std::vector<double>{-0.5, -12.5, -24.5}));
-  EXPECT_PRED2(contains, refused_with("train_positions", "1,2"), "one a vehicle");
+  EXPECT_PRED2(contains, refused_with("train_positions", "1,2"), "one per vehicle");
   EXPECT_PRED2(contains, message_of([] { scene_with({{"train_vehicles", "car*3"}}); }), "train_spacing: missing");
   EXPECT_PRED2(contains, refused_with("train_vehicles", "cat"), "did you mean car?");
   EXPECT_PRED2(contains, refused(beam_yaml + vehicle_yaml), "train_speed is missing");
@@ -180,11 +180,11 @@ TEST(SceneLoad, AxlesOfAFileEitherWay) {
                     load = beam_yaml + "load: {speed: 30, file: " + file;
   const Scene forward = scene_of(load + "}\n"), backward = scene_of(load + ", file_x: backward}\n");
   EXPECT_EQ(forward.load.positions, (std::vector<double>{-4.5, -2.4, 0.0}));
-  EXPECT_PRED2(any_contains, forward.unusual, "the last row's force of 90 kN leads");
+  EXPECT_PRED2(any_contains, forward.unusual, "the force of 90 kN in the last row is in front");
   EXPECT_EQ(backward.load.positions, (std::vector<double>{-0.0, -2.1, -4.5}));
-  EXPECT_FALSE(any_contains(backward.unusual, "leads"));
+  EXPECT_FALSE(any_contains(backward.unusual, "in front"));
   const std::string behind = folder.write("behind.csv", "0, 220e3\n-2.1, 210e3\n");
-  EXPECT_FALSE(any_contains(scene_of(beam_yaml + "load: {speed: 30, file: " + behind + "}\n").unusual, "leads"));
+  EXPECT_FALSE(any_contains(scene_of(beam_yaml + "load: {speed: 30, file: " + behind + "}\n").unusual, "in front"));
 }
 
 // What is no error and seldom meant has a word: a bridge without damping, a rough track that begins at the bridge.
@@ -193,7 +193,7 @@ TEST(SceneSense, WordsOnWhatIsLeftOut) {
   EXPECT_PRED2(any_contains, scene_of(beam_yaml + load).unusual, "damping: none is given");
   EXPECT_FALSE(any_contains(scene_of(beam_yaml + load + "beam_damping_ratios: 0.01\n").unusual, "damping"));
   const Scene rough = scene_with({{"track_profile", "iso8608_B"}});
-  EXPECT_PRED2(any_contains, rough.unusual, "the track is rough from the first wheel on");
+  EXPECT_PRED2(any_contains, rough.unusual, "the roughness begins at the first wheel");
   EXPECT_PRED2(any_contains, rough.unusual, "-train_positions -10");
   EXPECT_FALSE(
       any_contains(scene_with({{"track_profile", "iso8608_B"}, {"train_positions", "-100"}}).unusual, "rough"));
@@ -271,18 +271,19 @@ TEST(SceneModel, ModesUnderVehicles) {
   EXPECT_FALSE(scene_with({{"model_modes", "5"}}).exact_in_time());
   const std::vector<std::string> notes = scene_with({{"model_modes", "5"}, {"model_window", "1e-3"}}).notes;
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
-    return note == "model_window has no effect: a bridge by its modes moves as a whole";
+    return note == "model_window has no effect: with modes the bridge has no parts that could be excluded";
   }));
   EXPECT_NO_THROW(scene_with({{"model_modes", "5"}, {"ts_type", "genalpha"}}));
   EXPECT_PRED2(contains, refused(vehicle_yaml + train_yaml + "ts_max_time: 1\nmodel_modes: 5\n"), "needs a beam");
 }
 
 TEST(SceneModel, Window) {
-  EXPECT_EQ(scene_with({}).model.rest_tolerance, -1.0);
-  EXPECT_EQ(scene_with({{"model_window", "0"}}).model.rest_tolerance, 0.0);
-  EXPECT_EQ(scene_with({{"model_window", "1e-4"}}).model.rest_tolerance, 1e-4);
+  EXPECT_EQ(scene_with({}).model.window_tolerance, -1.0);
+  EXPECT_EQ(scene_with({{"model_window", "0"}}).model.window_tolerance, 0.0);
+  EXPECT_EQ(scene_with({{"model_window", "1e-4"}}).model.window_tolerance, 1e-4);
   for (const char* wrong : {"2", "-1e-3", "near", "1e-4x"})
-    EXPECT_PRED2(contains, refused_with("model_window", wrong), "allowed: auto, 0, or a part of the largest motion");
+    EXPECT_PRED2(contains, refused_with("model_window", wrong),
+                 "allowed: auto, 0, or a fraction of the largest motion");
 }
 
 TEST(SceneSweep, SpeedsAndTrains) {
@@ -299,16 +300,16 @@ TEST(SceneSweep, SpeedsAndTrains) {
   ASSERT_EQ(speeds.size(), 4U);
   EXPECT_NEAR(speeds[0], 10.0, 1e-14);
   EXPECT_NEAR(speeds[3], 25.0, 1e-14);
-  EXPECT_PRED2(contains, refused_with("sweep_speed", "36 mph,90,5"), "'36 mph' is no finite number");
+  EXPECT_PRED2(contains, refused_with("sweep_speed", "36 mph,90,5"), "'36 mph' is not a finite number");
   EXPECT_PRED2(contains, refused_with("sweep_speed", "20,10,5"), "from is above to");
   EXPECT_PRED2(contains, refused_with("sweep_speed", "10,20"), "3 numbers");
-  EXPECT_PRED2(contains, refused_with("sweep_speed", "50,60,70"), "the step of 70 m/s is longer");
-  EXPECT_PRED2(contains, refused_with("sweep_hslm_a", "1,1"), "every train once");
+  EXPECT_PRED2(contains, refused_with("sweep_speed", "50,60,70"), "the step of 70 m/s is larger");
+  EXPECT_PRED2(contains, refused_with("sweep_hslm_a", "1,1"), "each train once");
   EXPECT_PRED2(contains, refused_with("sweep_hslm_a", "0"), "from 1 to 10");
   EXPECT_PRED2(contains, refused(beam_yaml + "load: {hslm_a: 1}\nsweep: {hslm_a: 2, speed: [10, 20, 5]}\n"), "either");
   EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: 1}\nsweep: {hslm_a: 2, speed: [10, 20, 5]}\n"), "either");
   EXPECT_PRED2(contains, refused(beam_yaml + "scene_analysis: modes\nsweep: {speed: [10, 20, 5]}\n"), "transient");
-  EXPECT_PRED2(contains, refused(vehicle_yaml + train_yaml + "sweep: {speed: [10, 20, 5]}\n"), "no beam");
+  EXPECT_PRED2(contains, refused(vehicle_yaml + train_yaml + "sweep: {speed: [10, 20, 5]}\n"), "needs a bridge");
 }
 
 TEST(SceneSweep, BridgesByModes) {

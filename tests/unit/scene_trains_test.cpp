@@ -23,7 +23,7 @@ TEST(SceneTrains, SeveralAreNumberedThrough) {
   const std::vector<double> down = wheels_at_start(s, 2);
   EXPECT_NEAR(*std::min_element(down.begin(), down.end()), 80.0, 1e-12) << "the front wheel at the right end";
   EXPECT_TRUE(any_contains(s.notes, "runs: up at 30 m/s to the right; down at 25 m/s to the left"));
-  EXPECT_TRUE(any_contains(s.notes, "tracks side by side"));
+  EXPECT_TRUE(any_contains(s.notes, "parallel tracks"));
 }
 
 TEST(SceneTrains, OneAloneStaysAsItIs) {
@@ -59,13 +59,13 @@ TEST(SceneTrains, WhatIsRefused) {
   EXPECT_TRUE(test::contains(refused(train + ", drive: free}\n"), "train_drive free"));
   EXPECT_TRUE(test::contains(refused("train: {vehicles: car, speed_file: " + both + "}\n"), "both signs"));
   EXPECT_TRUE(test::contains(refused("train: {vehicles: car, speed: 3, speed_over: position}\n"), "train_speed_file"));
-  EXPECT_TRUE(test::contains(refused(train + "}\nsweep: {speed: [20, 30, 5]}\n"), "constant speeds"));
+  EXPECT_TRUE(test::contains(refused(train + "}\nsweep: {speed: [20, 30, 5]}\n"), "constant speed"));
   EXPECT_TRUE(test::contains(
       refused(two_trains.substr(beam_yaml.size() + vehicle_yaml.size()) + "scene: {analysis: envelope}\n"),
       "one train or load"));
   EXPECT_TRUE(test::contains(refused(two_trains.substr(beam_yaml.size() + vehicle_yaml.size()) +
                                      "track: {rail: {EI: 1e7, mass: 120}, spacing: 0.6, pad: {k: 6e7}}\n"),
-                             "rail of its own"));
+                             "further rails"));
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST(SceneVehicle, Refusals) {
   EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_stiffness", "0"), "above 0");
   EXPECT_PRED2(contains, refused_with("vehicle_car_spring_free_length", "1"), "give either a preload");
   EXPECT_PRED2(contains, refused_with("vehicle_car_spring_to", "0.5,2"), "the same point");
-  EXPECT_PRED2(contains, refused_with("vehicle_car_springs", "spring,axle"), "'axle' is the name of a body already");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_springs", "spring,axle"), "'axle' is already the name of a body");
   EXPECT_PRED2(contains, refused_with("vehicle_car_bodies", "body,axle,ground"), "'ground' cannot be a part's name");
   EXPECT_PRED2(contains, message_of([] {
                  scene_with({{"vehicle_car_joints", "guide,second"}});
@@ -134,7 +134,7 @@ TEST(SceneVehicle, WheelsOutOfRound) {
       contains, message_of([] {
         scene_with({{"vehicle_car_wheel_polygon_order", "10"}, {"vehicle_car_wheel_polygon_amplitude", "5e-3"}});
       }),
-      "hollow; allowed: below 0.0046 m");
+      "concave; allowed: below 0.0046 m");
 }
 
 TEST(Coach, VelaroMasses) {

@@ -45,9 +45,9 @@ TEST(TextFiles, HoldNoControlCharactersAndNoOtherEncoding) {
     const auto with = [&](const std::string& bytes) {
       return kind.text.substr(0, second) + bytes + kind.text.substr(second);
     };
-    EXPECT_PRED2(contains, refused(with("\0"s)), kind.name + ":2: holds the control character 0x00 (NUL)");
-    EXPECT_PRED2(contains, refused(with("\x1b")), kind.name + ":2: holds the control character 0x1b");
-    EXPECT_PRED2(contains, refused(with("\xe4")), kind.name + ":2: byte 0xe4 is no text in UTF-8");
+    EXPECT_PRED2(contains, refused(with("\0"s)), kind.name + ":2: contains the control character 0x00 (NUL)");
+    EXPECT_PRED2(contains, refused(with("\x1b")), kind.name + ":2: contains the control character 0x1b");
+    EXPECT_PRED2(contains, refused(with("\xe4")), kind.name + ":2: byte 0xe4 is not valid UTF-8");
   }
 }
 
@@ -75,12 +75,12 @@ TEST(TextFiles, ALineOfNamesIsCalledOne) {
   const test::TemporaryFolder folder;
   const std::string file = folder.write("t.csv", "x,EI\n0,1e9\n20,2e9\n");
   EXPECT_PRED2(contains, message_of([&] { read_columns(file, 2, 2); }),
-               "t.csv:1: 'x' is no finite number; a line of names begins with #");
+               "t.csv:1: 'x' is not a finite number; a line of column names must begin with #");
 }
 
 TEST(YamlFiles, AreOneDocument) {
   EXPECT_PRED2(contains, message_of([] { parse_verdict_limits(limits + "---\n" + limits, "l.yml"); }),
-               "l.yml:2: limits: holds more than one YAML document");
+               "l.yml:2: limits: contains more than one YAML document");
   // YAML::LoadAll finds no end of these
   for (const std::string text : {", 1\n", "# head\n , 1\n"}) {
     EXPECT_PRED2(contains, message_of([&] { parse_verdict_limits(text, "l.yml"); }), "more than one YAML document");
@@ -90,7 +90,8 @@ TEST(YamlFiles, AreOneDocument) {
 
 TEST(YamlFiles, HoldNoBlockThatHoldsItself) {
   for (const char* text : {"q: &q {a: *q}\n", "q: &q {<<: *q}\n", "q: &q {<<: [*q, *q]}\n", "q: &q {a: {b: *q}}\n"})
-    EXPECT_PRED2(contains, message_of([&] { parse_yaml(text, "s.yml"); }), "s.yml:1: blocks more than 64 deep");
+    EXPECT_PRED2(contains, message_of([&] { parse_yaml(text, "s.yml"); }),
+                 "s.yml:1: blocks are nested more than 64 deep");
 }
 
 // Ten aliases of ten, and so on: 10^30 blocks of nothing.
@@ -102,7 +103,8 @@ TEST(YamlFiles, AreNoLongerThanTheirText) {
       text += (i > 0 ? ", k" : "k") + std::to_string(i) + ": *" + static_cast<char>(next - 1);
     text += "}\n";
   }
-  EXPECT_PRED2(contains, message_of([&] { parse_yaml(text + "beam: *z\n", "s.yml"); }), "its anchors make more than");
+  EXPECT_PRED2(contains, message_of([&] { parse_yaml(text + "beam: *z\n", "s.yml"); }),
+               "the anchors expand to more than");
 }
 
 TEST(OptionsFiles, NameEachOtherInARowOrInACircle) {

@@ -102,7 +102,7 @@ TEST(Touching, MorePointsThanAreKept) {
   std::vector<double> depths;
   for (const Found& f : minima) depths.push_back(f.depth);
   std::sort(depths.rbegin(), depths.rend());
-  EXPECT_NEAR(points.left_out, depths[3], 3e-5);
+  EXPECT_NEAR(points.deepest_omitted, depths[3], 3e-5);
   for (const TouchingPoint& point : points.points) EXPECT_GT(point.depth, depths[2] - 3e-5);
   EXPECT_LT(points.points[0].station, points.points[1].station);
   EXPECT_LT(points.points[1].station, points.points[2].station);

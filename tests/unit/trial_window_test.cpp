@@ -33,7 +33,7 @@ TEST(TrialWindow, ASpanUnlikeThoseBefore) {
   const std::vector<LaterEvent> longer = later(scene_of("", "[30.0, 30.0, 36.0, 36.0]"));
   ASSERT_EQ(longer.size(), 1U);
   EXPECT_NEAR(longer[0].until, (60.0 + 1.1 * 36.0) / 50.0, 1e-12);
-  EXPECT_EQ(longer[0].what, "the span from 60 to 96 m, unlike those before it");
+  EXPECT_EQ(longer[0].what, "the span from 60 to 96 m (different from all before it)");
   EXPECT_EQ(later(scene_of("", "30.0*4", "[pinned, roller, roller, roller, clamped]")).size(), 1U);
   const std::vector<LaterEvent> prop =
       later(scene_of("foundation: {vertical: {x: 75.0, k: 1.0e8, one_sided: true}}\n"));
@@ -67,25 +67,27 @@ TEST(Accuracy, IsWithdrawnWhereContactsWereLostUnseen) {
   accuracy.measured = true;
   for (ErrorEstimate& promise : accuracy.estimates) promise = {true, true, 1e-4, ""};
   const std::vector<double> losses = {0.5, 0.9};
-  EXPECT_EQ(accuracy.withdrawn({}), "");
+  EXPECT_EQ(accuracy.invalidate_by_contact_loss({}), "");
   Accuracy seen = accuracy;
   seen.lost_contact = true;
-  seen.seen_until = 1.0;
-  EXPECT_EQ(seen.withdrawn(losses), "");
+  seen.covered_until = 1.0;
+  EXPECT_EQ(seen.invalidate_by_contact_loss(losses), "");
   EXPECT_EQ(seen.expected().size(), static_cast<std::size_t>(quantities));
-  seen.seen_until = 0.7;
-  EXPECT_NE(seen.withdrawn(losses).find("lost contact 1 times after 0.7 s, which happened in no"), std::string::npos);
+  seen.covered_until = 0.7;
+  EXPECT_NE(seen.invalidate_by_contact_loss(losses).find("lost contact 1 times after 0.7 s, which happened in no"),
+            std::string::npos);
   EXPECT_TRUE(seen.expected().empty());
-  EXPECT_NE(accuracy.withdrawn(losses).find("lost contact 2 times, which happened in no trial run"), std::string::npos);
+  EXPECT_NE(accuracy.invalidate_by_contact_loss(losses).find("lost contact 2 times, which happened in no trial run"),
+            std::string::npos);
   EXPECT_TRUE(accuracy.expected().empty());
-  EXPECT_EQ(accuracy.withdrawn(losses), "");
+  EXPECT_EQ(accuracy.invalidate_by_contact_loss(losses), "");
 }
 
 // What bends twice as much is four times as far off; what nobody has seen promises nothing.
 TEST(Accuracy, IsWithdrawnWhereMoreComesThanTrialsSaw) {
   Accuracy accuracy;
   accuracy.measured = true;
-  accuracy.seen_until = 0.7;
+  accuracy.covered_until = 0.7;
   for (ErrorEstimate& promise : accuracy.estimates) promise = {true, true, 1e-4, ""};
   accuracy.estimates[moment].expected = 5e-4;
   EXPECT_EQ(accuracy.invalidate_if_rougher(1.9, 1e-3), "");
@@ -102,8 +104,8 @@ TEST(RunModel, PromisesNothingOfRunsThatMeetWhatNoTrialHasSeen) {
   results::RunModel model;
   model.expected_errors = {{"deflection", 1e-3}};
   const std::vector<double> unseen = {0.0, 1.0, std::numeric_limits<double>::quiet_NaN(), 1.0};
-  EXPECT_EQ(results::not_promised(model, {0.0, 0.0}), "");
-  EXPECT_NE(results::not_promised(model, unseen).find("error estimates do not hold for 2 of the runs"),
+  EXPECT_EQ(results::extrapolation_note(model, {0.0, 0.0}), "");
+  EXPECT_NE(results::extrapolation_note(model, unseen).find("error estimates are not valid for 2 of the runs"),
             std::string::npos);
 }
 

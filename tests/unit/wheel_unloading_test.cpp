@@ -21,11 +21,11 @@ TEST(WheelUnloading, OfLowPassedForces) {
     const double t = 2.5e-3 * k, fade = std::min(1.0, t);
     const double first = 1e5 * (1.0 - fade * (0.7 * std::sin(two_pi * 2.0 * t) + 0.5 * std::sin(two_pi * 90.0 * t)));
     const double second = 5e4 * (1.0 - fade * 0.4 * std::sin(two_pi * 3.0 * t));
-    EXPECT_FALSE(wheels.wants(t + 1e-3)) << "between two instants";
-    ASSERT_TRUE(wheels.wants(t));
+    EXPECT_FALSE(wheels.is_due(t + 1e-3)) << "between two instants";
+    ASSERT_TRUE(wheels.is_due(t));
     wheels.add(first);
     wheels.add(second);
-    EXPECT_FALSE(wheels.wants(t)) << "a second time";
+    EXPECT_FALSE(wheels.is_due(t)) << "a second time";
   }
   const results::FilteredUnloading found = wheels.finish(train::Fleet());
   EXPECT_NEAR(found.extreme.value, 0.7, 1e-3);

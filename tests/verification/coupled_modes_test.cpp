@@ -126,7 +126,7 @@ TEST(CoupledModes, SolveTheirEquations) {
   const train::MovingLoad load{{1e5, 2e5}, {0.0, -3.0}, 40.0};
   const integrate::ForceHistory history(bridge.influence(), load);
   integrate::ModalMotion motion(bridge, history, 40.0, true), one(bridge, history, 40.0, true);
-  motion.expect(1e-3);
+  motion.prepare(1e-3);
   const Eigen::Map<const Eigen::ArrayXd> omega(bridge.omega().data(), 6);
   const Eigen::MatrixXd C = damping_of(bridge);
   const auto of = [](const std::vector<double>& x) { return Eigen::Map<const Eigen::VectorXd>(x.data(), 6); };

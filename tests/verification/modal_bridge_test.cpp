@@ -95,7 +95,7 @@ TEST(ModalMotion, ManyStepsAndOneAgree) {
   const train::MovingLoad load{{1e5, 2e5}, {0.0, -3.0}, 40.0};
   const integrate::ForceHistory history(bridge.influence(), load);
   integrate::ModalMotion one(bridge, history, 40.0, true), many(bridge, history, 40.0, true);
-  many.expect(1e-3);
+  many.prepare(1e-3);
   for (int i = 1; i <= 900; ++i) many.advance(i * 1e-3);
   one.advance(0.9);
   for (std::size_t i = 0; i < 6; ++i) {

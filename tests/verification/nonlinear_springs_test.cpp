@@ -227,7 +227,7 @@ TEST(SpringLaws, Refusals) {
   expect({{spring + "table", good}, {spring + "stiffness", "1"}}, {spring + "table = ", "either table or"});
   expect({{spring + "damper_table", good}, {spring + "damping", "1"}}, {spring + "damper_table = ", "either"});
   expect({{spring + "table", back}}, {spring + "table = ", "increase strictly", "row 2"});
-  expect({{spring + "damper_table", gains}}, {spring + "damper_table = ", "takes energy", "-2 at 1"});
+  expect({{spring + "damper_table", gains}}, {spring + "damper_table = ", "dissipates energy", "-2 at 1"});
   expect({{spring + "table", off}, {spring + "gap", "0.1"}}, {spring + "table = ", "sign of the elongation", "1 at 0"});
   expect({{spring + "stiffness", "1"}, {spring + "gap", "-0.1"}}, {spring + "gap = -0.1", "not below 0"});
   expect({{spring + "stiffness", "1"}, {spring + "side", "left"}}, {"side = left", "both, compression, tension"});

@@ -23,7 +23,7 @@ TEST(RailDevices, FreeEndsBreathe) {
     rail::RailBridge bridge(model, area, 1e7);
     Loads strains;
     strains.strains = true;
-    const rail::State state = bridge.rest(strains);
+    const rail::State state = bridge.equilibrium(strains);
     const double r = 2e4, u0 = 2e-3, lambda = std::sqrt(r / u0 / rail_EA), N0 = rail_EA * 50.0 * expansion;
     const double a = (N0 - rail_EA * lambda * u0) / r;  // the force at its end is EA (alpha T - lambda u0)
     const double end = u0 + (N0 * a - 0.5 * r * a * a) / rail_EA;
@@ -47,14 +47,14 @@ TEST(RailDevices, AgainstAModelOfItsOwn) {
   const HandRailModel hand(by_hand(model));
   Loads strains;
   strains.strains = true;
-  const rail::State warm = bridge.rest(strains);
+  const rail::State warm = bridge.equilibrium(strains);
   const HandState hand_warm = hand.rest(by_hand(strains));
   double worst[3] = {difference(warm, hand_warm), 0.0, 0.0};
   for (const double front : {30.0, 60.0, 99.0}) {
     Loads train = train_at(front);
-    worst[1] = std::max(worst[1], difference(bridge.rest(train), hand.rest(by_hand(train))));
+    worst[1] = std::max(worst[1], difference(bridge.equilibrium(train), hand.rest(by_hand(train))));
     train.strains = true;
-    const rail::State state = bridge.rest(train, &warm);
+    const rail::State state = bridge.equilibrium(train, &warm);
     worst[2] = std::max(worst[2], difference(state, hand.rest(by_hand(train), &hand_warm)));
     EXPECT_LT(std::abs(bridge.residual(train, state)) / 1e6, 1e-9);
   }

@@ -133,7 +133,7 @@ TEST(Study, TrainsInLanesAreThoseOfRunsAlone) {
   testing::internal::CaptureStdout();
   Results study = run_yaml(coach, by_elements + draws);
   const std::string said = testing::internal::GetCapturedStdout();
-  EXPECT_NE(said.find("runs that differ in speed, track and vehicles' numbers alone are advanced together"), said.npos)
+  EXPECT_NE(said.find("runs that differ in speed, track and vehicle parameters only are advanced together"), said.npos)
       << said;
   double worst = 0.0;
   for (const std::size_t run : {0u, 2u, 4u}) {

@@ -17,16 +17,16 @@ TEST(RailForces, AgainstAModelOfItsOwn) {
   const HandRailModel hand(by_hand(model));
   Loads strains;
   strains.strains = true;
-  const rail::State warm = bridge.rest(strains);
+  const rail::State warm = bridge.equilibrium(strains);
   const HandState hand_warm = hand.rest(by_hand(strains));
   double worst[4] = {difference(warm, hand_warm), 0.0, 0.0, 0.0};
   for (const double front : {0.0, 30.0, 60.0, 99.0}) {
     Loads train = train_at(front), roughness = train;
     roughness.along = 0.0;
-    worst[1] = std::max(worst[1], difference(bridge.rest(roughness), hand.rest(by_hand(roughness))));
+    worst[1] = std::max(worst[1], difference(bridge.equilibrium(roughness), hand.rest(by_hand(roughness))));
     train.strains = true;
-    worst[2] = std::max(worst[2], difference(bridge.rest(train, &warm), hand.rest(by_hand(train), &hand_warm)));
-    worst[3] = std::max(worst[3], difference(bridge.rest(train), hand.rest(by_hand(train))));
+    worst[2] = std::max(worst[2], difference(bridge.equilibrium(train, &warm), hand.rest(by_hand(train), &hand_warm)));
+    worst[3] = std::max(worst[3], difference(bridge.equilibrium(train), hand.rest(by_hand(train))));
   }
   const char* names[] = {"temperature_error", "bending_error", "sequence_error", "at_once_error"};
   for (std::size_t i = 0; i < 4; ++i) record(names[i], worst[i]);
@@ -45,7 +45,7 @@ TEST(RailForces, FreeEndBreathes) {
     rail::RailBridge bridge(model, area, 1e7);
     Loads strains;
     strains.strains = true;
-    const rail::State state = bridge.rest(strains);
+    const rail::State state = bridge.equilibrium(strains);
     const double r = 2e4, u0 = 2e-3, lambda = std::sqrt(r / u0 / rail_EA), N0 = rail_EA * 50.0 * expansion;
     const double N = N0 - rail_EA * lambda * u0, a = N / r - 0.5 * spacing;  // the last sleeper stands at the end
     // The strain that is left is (N0 - r(x + spacing/2))/EA.
@@ -68,7 +68,7 @@ TEST(RailForces, BrakingOnTheGround) {
     push.along_from = 150.0;
     push.along_to = 198.0;
     push.along = p;
-    const rail::State state = bridge.rest(push);
+    const rail::State state = bridge.equilibrium(push);
     const double lambda = std::sqrt(1e7 / rail_EA), u = p / 1e7 * (1.0 - std::exp(-24.0 * lambda));
     for (std::size_t s = 0; s < bridge.sleepers().size(); ++s)
       if (std::abs(bridge.sleepers()[s] - 174.0) < 1e-6) error[i] = std::abs(state.displacement[s] / u - 1.0);
@@ -85,11 +85,11 @@ TEST(RailForces, SleepersHoldLessWhenTheTrainHasGone) {
   rail::RailBridge bridge(model, area, 1e7);
   Loads strains;
   strains.strains = true;
-  const rail::State warm = bridge.rest(strains);
+  const rail::State warm = bridge.equilibrium(strains);
   Loads train = train_at(60.0);
   train.strains = true;
-  const rail::State loaded = bridge.rest(train, &warm);
-  const rail::State after = bridge.rest(strains, &loaded);
+  const rail::State loaded = bridge.equilibrium(train, &warm);
+  const rail::State after = bridge.equilibrium(strains, &loaded);
   const double limit = 2e4 * 0.6;
   double most_loaded = 0.0, most_after = 0.0;
   for (std::size_t i = 0; i < after.slid.force.size(); ++i) {
@@ -99,7 +99,7 @@ TEST(RailForces, SleepersHoldLessWhenTheTrainHasGone) {
   EXPECT_GT(most_loaded, 1.5 * limit);
   EXPECT_LE(most_after, limit * (1.0 + 1e-12));
   EXPECT_LT(bridge.residual(strains, after) / limit, 1e-6);
-  const rail::State again = bridge.rest(strains, &after);
+  const rail::State again = bridge.equilibrium(strains, &after);
   EXPECT_LT(relative_difference(again.stress, after.stress), 1e-9);
 }
 

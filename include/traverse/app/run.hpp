@@ -1,4 +1,4 @@
-// Runs a scene: its check, its analysis in time or at rest, its modes, or the runs of its sweep or study.
+// Runs a scene: -check, one analysis (in time, static, or natural modes), a sweep or a study.
 #pragma once
 
 #include <mpi.h>
@@ -7,8 +7,8 @@
 
 namespace traverse::app {
 
-/// Collective. Carries out the scene's analysis, writes the results file and the summary. Throws Error; results
-/// written until then stay readable. Returns the exit status: 0, or 128 + signal when a signal ended the run.
+/// Collective. Carries out the scene's analysis and writes the results file and the summary. Throws Error; results
+/// written before remain readable. Returns the exit status: 0, or 128 + signal if a signal ended the run.
 int run(MPI_Comm comm, const Scene& scene);
 
 }  // namespace traverse::app

@@ -7,11 +7,11 @@
 
 namespace traverse {
 
-/// The text on one line of valid UTF-8: a line break becomes the two characters \n, a tab \t, any other control
-/// character and any byte that belongs to no UTF-8 character \x and its two hexadecimal digits.
+/// The text as one line of valid UTF-8. A line break is replaced by the two characters \n, a tab by \t, any other
+/// control character and any byte outside a valid UTF-8 character by \x and its two hexadecimal digits.
 std::string printable(std::string_view text);
 
-/// Any failure that ends a run with a message of one line; what the user wrote is made printable in it.
+/// A failure that ends a run with a message of one line. Text from the user is made printable in the message.
 class Error : public std::runtime_error {
  public:
   Error(const std::string& message, int status) : std::runtime_error(printable(message)), status_(status) {}
@@ -21,19 +21,19 @@ class Error : public std::runtime_error {
   int status_;
 };
 
-/// The scene as written cannot be run. The message names the option, its value and what is allowed.
+/// The input is invalid. The message names the option, its value and the allowed values.
 class InputError : public Error {
  public:
   explicit InputError(const std::string& message) : Error(message, 2) {}
 };
 
-/// The equations could not be solved. The message says where and what to change.
+/// The equations could not be solved. The message describes the place of the failure and what to change.
 class SolverError : public Error {
  public:
   explicit SolverError(const std::string& message) : Error(message, 3) {}
 };
 
-/// A step could not be taken, or what it led to is no motion: a shorter one may do.
+/// A step failed, or its result is not a valid motion. A shorter step may succeed.
 class StepTooLong : public SolverError {
  public:
   using SolverError::SolverError;

@@ -1,11 +1,12 @@
-// The law of a spring and its damper that is not linear: tables, play, one side only.
+// The nonlinear law of a spring and its damper: tables, a gap, one-sided action.
 //
-// With the elongation e beyond the free length (of a torsion spring: the twist) and the gap G:
+// With the elongation e relative to the free length (of a torsion spring: the twist) and the gap G:
 //   |e| <= G:  no force;     |e| > G:  x = e - G sign(e), tension T(x) + D(de/dt).
-// One-sided: only for e < -G (compression) or e > G (tension). A spring that lets go, by its side or its gap, never
-// changes the sign of its tension: where T + D has not that of x the ends run apart faster than the spring follows
-// and the tension is zero. Its damper comes on over the first nanometre of x, without which a stage of an implicit
-// method that ends just there would have no solution. What the tension does beyond T is lost, never gained.
+// A one-sided spring acts only for e < -G (compression) or e > G (tension). The tension of a spring with a gap or with
+// one-sided action never changes its sign: if T + D and x differ in sign, the ends separate faster than the spring
+// follows, and the tension is zero. The damper force increases linearly over the first nanometre of x; otherwise a
+// stage of an implicit method that ends in this range could have no solution. The work of the tension in addition to
+// that of T is dissipated; it is never negative.
 #pragma once
 
 #include <optional>
@@ -14,23 +15,23 @@
 
 namespace traverse::multibody {
 
-/// Straight lines through points, the first and the last one continued.
+/// A piecewise linear function through points. Its first and last segments continue outside the points.
 class Polyline {
  public:
-  /// x strictly increasing, at least two points; throws InputError otherwise.
+  /// x must increase strictly and have at least two values; otherwise InputError is thrown.
   Polyline(std::vector<double> x, std::vector<double> y);
-  /// y = slope*x.
+  /// The function y = slope*x.
   static Polyline line(double slope) { return {{0.0, 1.0}, {0.0, slope}}; }
 
-  /// -value(-x).
+  /// The function -value(-x).
   Polyline reversed() const;
 
-  double value(double x) const;     // straight lines between the points, the end slopes outside
-  double slope(double x) const;     // at a corner the one on its right
-  double integral(double x) const;  // of the value, from 0
-  /// Where the value is y; nothing unless the lines rise all along.
+  double value(double x) const;     // linear between the points, with the end slopes outside
+  double slope(double x) const;     // at a corner the slope on the right
+  double integral(double x) const;  // of the value from 0 to x
+  /// The argument at which the value is y; empty unless the function increases everywhere.
   std::optional<double> inverse(double y) const;
-  /// Why x y < 0 somewhere, in words; empty when it is nowhere.
+  /// The reason, in words, why x y < 0 somewhere; empty if x y >= 0 everywhere.
   std::string opposing() const;
 
  private:
@@ -38,27 +39,27 @@ class Polyline {
   double from_start(double x) const;
 
   std::vector<double> x_, y_;
-  std::vector<double> slope_;  // of every segment
-  std::vector<double> area_;   // integral from the first point to every other
+  std::vector<double> slope_;  // of each segment
+  std::vector<double> area_;   // integral from the first point to each point
   double origin_ = 0.0;        // integral from the first point to 0
 };
 
 enum class Side { both, compression, tension };
 
-/// For a torsion spring read m as rad and N as N m.
+/// For a torsion spring the units are rad instead of m and N m instead of N.
 struct ForceLaw {
   Polyline elastic = Polyline::line(0.0);  // T: N over m
   Polyline damper = Polyline::line(0.0);   // D: N over m/s
-  double gap = 0.0;                        // m, either way, >= 0
+  double gap = 0.0;                        // m, in both directions, >= 0
   Side side = Side::both;
 
-  /// The spring is loose in some positions.
-  bool lets_go() const { return gap > 0.0 || side != Side::both; }
-  /// The elongation at which the spring alone gives a tension; nothing when there is none or more than one.
+  /// Whether the spring has no force in a range of elongations.
+  bool can_disengage() const { return gap > 0.0 || side != Side::both; }
+  /// The elongation at which the spring alone has this tension; empty if there is none or more than one.
   std::optional<double> elongation_at(double tension) const;
 };
 
-/// At one elongation e (m) and its rate (m/s).
+/// The tension with its derivatives and dissipation at an elongation e (m) and its rate (m/s).
 struct Tension {
   double tension = 0.0;        // N, damper included
   double by_elongation = 0.0;  // N/m
@@ -66,7 +67,7 @@ struct Tension {
   double dissipation = 0.0;    // W, >= 0
 };
 Tension tension(const ForceLaw& law, double elongation, double rate);
-/// Energy stored: the integral of the tension without damper from 0 on, J.
+/// Stored energy, J: the integral of the tension without the damper from 0 to the elongation.
 double stored_energy(const ForceLaw& law, double elongation);
 
 }  // namespace traverse::multibody

@@ -1,4 +1,4 @@
-// How something runs along the track: its speed over time, and the way that it has gone since t = 0.
+// The speed of a train or load along the track over time, and its distance since t = 0.
 #pragma once
 
 #include <vector>
@@ -7,43 +7,44 @@
 
 namespace traverse::base {
 
-/// A speed (m/s) that is constant or piecewise linear in time, all of one sign: above 0 to the right, below 0 to the
-/// left.
+/// A speed (m/s) that is constant or piecewise linear in time and never changes its sign. It is positive to the right
+/// and negative to the left.
 class SpeedLaw {
  public:
   SpeedLaw() = default;
-  explicit SpeedLaw(double speed) : way_(0.0, speed) {}
-  /// Straight lines between the rows t (s), v (m/s), the end values outside. InputError where times do not rise, speeds
-  /// are of both signs or all 0.
+  explicit SpeedLaw(double speed) : distance_(0.0, speed) {}
+  /// A piecewise linear speed through the rows t (s), v (m/s), with the end values outside. Throws InputError if the
+  /// times do not increase, if speeds have both signs, or if all of them are 0.
   static SpeedLaw over_time(std::vector<double> times, std::vector<double> speeds);
-  /// Rows x (m), v (m/s) for something that is at `start` at t = 0: the acceleration is constant between two rows, so
-  /// that v^2 is linear in x, and the end speeds hold outside. Something at rest in a row begins to move with the
-  /// acceleration of the interval before it. InputError as above, where two rows next to each other have the speed 0,
-  /// and where `start` lies where the speed is 0 for good.
+  /// Rows x (m), v (m/s) for an object that is at `start` at t = 0. The acceleration is constant between two rows, so
+  /// that v^2 is linear in x; the end speeds apply outside. An object whose speed is 0 in a row starts with the
+  /// acceleration of the interval ahead of it. Throws InputError as above, if two neighbouring rows have the speed 0,
+  /// and if the speed remains 0 at `start`.
   static SpeedLaw over_place(std::vector<double> places, std::vector<double> speeds, double start);
 
-  /// Whether the speed is the same at all times.
-  bool constant() const { return way_.straight(); }
-  double speed(double t) const { return way_.rate(t); }
-  /// m/s2; at a jump that of one of its sides.
-  double acceleration(double t) const { return way_.acceleration(t); }
-  /// The way gone since t = 0, m; below 0 to the left.
-  double distance(double t) const { return way_.value(t); }
-  /// x + distance(t).
+  /// Whether the speed is constant.
+  bool constant() const { return distance_.straight(); }
+  double speed(double t) const { return distance_.rate(t); }
+  /// m/s2; at a jump the value on one of its sides.
+  double acceleration(double t) const { return distance_.acceleration(t); }
+  /// Distance since t = 0, m; negative to the left.
+  double distance(double t) const { return distance_.value(t); }
+  /// The position x + distance(t).
   TimeFunction from(double x) const;
-  /// When `distance` is gone, for the first time: before 0 where it lies behind, infinite where it is never gone.
+  /// The first time at which `distance` is covered: negative if it is behind the start, infinite if it is never
+  /// covered.
   double time_of(double distance) const;
-  /// 1 to the right, -1 to the left, 0 where it stands at all times.
+  /// 1 to the right, -1 to the left, 0 if the speed is always 0.
   double direction() const;
-  /// From when on it stands; infinite where it never does.
+  /// The time after which the speed remains 0; infinite if there is none.
   double standstill() const;
-  /// The greatest magnitude of the speed from t = 0 on.
+  /// The largest magnitude of the speed for t >= 0.
   double fastest() const;
   /// Times at which the acceleration jumps.
-  std::vector<double> kinks() const { return way_.kinks(); }
+  std::vector<double> kinks() const { return distance_.kinks(); }
 
  private:
-  TimeFunction way_{0.0, 0.0};
+  TimeFunction distance_{0.0, 0.0};
 };
 
 }  // namespace traverse::base

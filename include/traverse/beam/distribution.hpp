@@ -1,4 +1,4 @@
-// A quantity along the beam.
+// A quantity that varies along the beam.
 #pragma once
 
 #include <string>
@@ -6,24 +6,24 @@
 
 namespace traverse::beam {
 
-/// A quantity along x: one value, or a piecewise linear table in which a repeated x is a step.
-/// Outside the table the end value holds.
+/// A quantity over x: a constant, or a piecewise linear table in which a repeated x makes a step. Outside the table the
+/// end value applies.
 class Distribution {
  public:
   Distribution(double value = 0.0) : values_{value} {}  // NOLINT: a number is a distribution
-  /// x not decreasing, at most two equal in a row; throws InputError naming `name` otherwise.
+  /// x must not decrease, with at most two equal values in a row; otherwise an InputError that names `name` is thrown.
   Distribution(std::vector<double> x, std::vector<double> values, const std::string& name);
 
-  /// Value at x seen from inside the interval that lies towards `inside` (matters at a step only).
+  /// The value at x; at a step the value on the side of `inside`.
   double at(double x, double inside) const;
   bool uniform() const { return x_.empty(); }
   double minimum() const;
   double maximum() const;
-  /// The same quantity with `value` more everywhere.
+  /// The same quantity increased by `value` everywhere.
   Distribution plus(double value) const;
-  /// The same quantity `factor` times as large from `from` to `to`, with a step at either.
+  /// The same quantity multiplied by `factor` between `from` and `to`, with a step at both ends.
   Distribution with_factor(double from, double to, double factor) const;
-  /// Stations of the table strictly inside (a, b), without repetition: where an integration has to be split.
+  /// Stations of the table strictly inside (a, b), each once, at which an integration must be divided.
   std::vector<double> breaks(double a, double b) const;
   /// Stations strictly inside (a, b) at which the value steps.
   std::vector<double> steps(double a, double b) const;

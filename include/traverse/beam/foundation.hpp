@@ -1,6 +1,6 @@
-// The foundation of the paper's section 3: springs and dampers that hold the beam besides its supports, at stations and
-// along beds. A kind of foundation is a member of Foundation and a row of foundation_kinds below it; everything else,
-// from the option table to the results, walks that table.
+// The foundation of section 3 of the paper: springs and dampers that hold the beam in addition to its supports, at
+// stations and as beds. Each kind of foundation is a member of Foundation and a row of foundation_kinds. Options,
+// matrices and results iterate over these rows.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace traverse::beam {
 
-/// What of the beam a foundation holds: its deflection v, its displacement along x u, or its slope.
+/// The displacement that a foundation resists: the deflection v, the displacement u along x, or the slope.
 enum class Direction { vertical, longitudinal, rotational };
 inline constexpr std::size_t direction_count = 3;
 
@@ -23,38 +23,38 @@ struct PointFoundation {
   double x = 0.0;
   double k = 0.0;
   double c = 0.0;
-  bool from_left = false;  // on the end of two separate spans, or beside a hinge: it holds the left one
+  bool from_left = false;  // at the end of two separate spans or at a hinge: it holds the left side
   FoundationLaw law = {};
-  double depth = 0.0;  // m below the beam's axis at which it holds along x; only at span ends
+  double depth = 0.0;  // m below the beam's axis, of a longitudinal point; only at span ends
 };
 
-/// A bed along the whole beam: a point's k and c per length, neither negative.
+/// A bed along the whole beam: k and c of a point per length, both >= 0.
 struct Bed {
   Distribution k;
   Distribution c;
   FoundationLaw law = {};
 };
 
-/// Each kind is assembled into a matrix of its own. It pushes back: the force on the beam is -k v - c dv/dt. What has a
-/// law that is not linear is in none of the matrices (nonlinear_points.hpp).
-/// The longitudinal kinds have no effect on a beam without axial unknowns.
+/// Each kind is assembled into its own matrix. The force on the beam is -k v - c dv/dt. Foundations with a nonlinear
+/// law are in none of the matrices (nonlinear_points.hpp). The longitudinal kinds have no effect on a beam without
+/// axial unknowns.
 struct Foundation {
   std::vector<PointFoundation> vertical;      // 3.2
   std::optional<Bed> vertical_bed;            // 3.3
   std::vector<PointFoundation> longitudinal;  // 3.4
   std::optional<Bed> longitudinal_bed;        // 3.5
   std::vector<PointFoundation> rotational;    // 3.6
-  std::optional<Bed> rotational_bed;          // holds the slope along the beam; not in the paper
+  std::optional<Bed> rotational_bed;          // resists the slope along the beam; not in the paper
 
-  /// Whether any of it has a law that is not linear.
+  /// Whether a part of the foundation has a nonlinear law.
   bool nonlinear() const;
 };
 
-/// One row of the table: points at stations, or a bed, that hold the beam in a direction.
+/// A row of the table: points at stations, or a bed, that resist one displacement.
 struct FoundationKind {
-  std::string_view name;  // of its options and results
+  std::string_view name;  // in the names of its options and results
   Direction direction = Direction::vertical;
-  std::vector<PointFoundation> Foundation::*points = nullptr;  // one of these two
+  std::vector<PointFoundation> Foundation::*points = nullptr;  // either points or bed is set
   std::optional<Bed> Foundation::*bed = nullptr;
 };
 inline constexpr std::array foundation_kinds = {
@@ -68,10 +68,10 @@ inline constexpr std::array foundation_kinds = {
 };
 inline constexpr std::size_t foundation_kind_count = foundation_kinds.size();
 
-/// Where a kind stands in the table. Throws InputError when there is none of this name.
+/// The index of a kind in the table. Throws InputError if there is no kind of this name.
 std::size_t foundation_kind(std::string_view name);
 
-/// What acts on the beam where a direction is held: its name and unit.
+/// The quantity and unit of the force of a foundation on the beam.
 struct FoundationForceName {
   std::string_view quantity, unit;
 };
@@ -81,7 +81,7 @@ constexpr const FoundationForceName& force_name(const FoundationKind& kind) {
   return foundation_forces[static_cast<std::size_t>(kind.direction)];
 }
 
-/// The units of what describes a kind.
+/// The units of a kind's properties.
 struct FoundationUnits {
   std::string_view k, c, gap, cubic;
 };
@@ -93,26 +93,26 @@ constexpr FoundationUnits units_of(const FoundationKind& kind) {
                              : FoundationUnits{"N/m", "N s/m", "m", "N/m3"};
 }
 
-/// The rate at which bending beside a load fades along a bed of k on a beam of EI, 1/m: lambda = (k/(4 EI))^(1/4) on a
-/// vertical bed, (k/EI)^(1/2) on a rotational one, 0 on a longitudinal one.
-double fading_of_bending(Direction direction, double k, double EI);
+/// The decay rate of bending beside a load on a beam of EI on a bed of k, 1/m: lambda = (k/(4 EI))^(1/4) on a vertical
+/// bed, (k/EI)^(1/2) on a rotational one, 0 on a longitudinal one.
+double bending_decay_rate(Direction direction, double k, double EI);
 
-/// Calls use(kind, points) for the kinds that stand at stations.
+/// Calls use(kind, points) for each kind at stations.
 template <class F, class Use>
 void for_points(F& foundation, Use use) {
   for (const FoundationKind& kind : foundation_kinds)
     if (kind.points != nullptr) use(kind, foundation.*kind.points);
 }
-/// Calls use(kind, bed) for the beds that there are.
+/// Calls use(kind, bed) for each bed of the foundation.
 template <class F, class Use>
 void for_beds(F& foundation, Use use) {
   for (const FoundationKind& kind : foundation_kinds)
     if (kind.bed != nullptr && foundation.*kind.bed) use(kind, *(foundation.*kind.bed));
 }
 
-/// Whether there is any of a kind.
+/// Whether the foundation contains a kind.
 bool present(const Foundation& foundation, const FoundationKind& kind);
-/// The same of a direction.
+/// Whether the foundation contains a kind in this direction.
 bool present(const Foundation& foundation, Direction direction);
 
 }  // namespace traverse::beam

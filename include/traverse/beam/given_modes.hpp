@@ -1,5 +1,5 @@
-// A bridge by natural modes that were found elsewhere: by another program's model of the whole bridge, or by a
-// measurement. Between stations shapes are cubic, through the values and slopes there.
+// A bridge by natural modes from another program's model of the whole bridge, or from a measurement. Between stations
+// the shapes are cubic polynomials through the values and slopes at the stations.
 #pragma once
 
 #include <string>
@@ -8,22 +8,22 @@
 namespace traverse::beam {
 
 struct GivenModes {
-  /// A further quantity that the modes' coordinates give: a stress, a moment, a bearing's force.
+  /// A further result that follows from the modal coordinates: a stress, a moment, a bearing's force.
   struct Output {
     std::string name, unit;
-    std::vector<double> of_mode;  // in its unit for 1 m kg^(1/2) of each mode's coordinate
+    std::vector<double> of_mode;  // of each mode, in its unit for a modal coordinate of 1 m kg^(1/2)
   };
 
-  std::string source;                      // the file that they came from, for messages
-  std::vector<double> x;                   // m, ascending from 0, where the bridge begins, to its end
+  std::string source;                      // the file of the modes, for messages
+  std::vector<double> x;                   // m, ascending from 0, the left end of the bridge, to its right end
   std::vector<double> omega, ratio;        // rad/s, ascending, above 0; damping ratios
   std::vector<std::vector<double>> shape;  // [mode][station]: upward, m for 1 m kg^(1/2) of the mode's coordinate
-  std::vector<std::vector<double>> slope;  // of these, 1/m
+  std::vector<std::vector<double>> slope;  // of the shapes, 1/m
   std::vector<Output> outputs;
 };
 
-/// Slopes of a cubic spline through values at x: continuous curvature, and at both ends the slope of the cubic through
-/// the four stations there (with fewer stations that of the polynomial through all).
+/// Slopes of a cubic spline through values at x. The curvature is continuous. The slope at each end is that of the
+/// cubic through the four stations there, or of the polynomial through all stations if there are fewer.
 std::vector<double> spline_slopes(const std::vector<double>& x, const std::vector<double>& values);
 
 }  // namespace traverse::beam

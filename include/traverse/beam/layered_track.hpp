@@ -1,5 +1,5 @@
-// A layered track as a user describes it: rail, pads, sleepers, ballast and sub-ballast, each property as it changes
-// along x, and stretches where some of them differ. All of it is for both rails together, in SI units.
+// A layered track as the user describes it: rail, pads, sleepers, ballast and sub-ballast with properties along x, and
+// stretches with different properties. All values are for both rails together, in SI units.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace traverse::beam {
 
-/// The springs and dampers of a layer of track along x: N/m and N s/m for each sleeper.
+/// The springs and dampers of one layer of the track along x: N/m and N s/m per sleeper.
 struct Layer {
   Distribution k;
   Distribution c;
@@ -26,12 +26,13 @@ struct Spring {
   double c = 0.0;
 };
 
-/// The properties of the track at one sleeper; zero where the model leaves a layer out.
+/// The properties of the track at one sleeper; zero for layers that the model does not contain.
 struct TrackValues {
   Spring pad, ballast, subballast, longitudinal;
   double sleeper_mass = 0.0, ballast_mass = 0.0;  // kg
-  double gap = 0.0;                               // m, below the unloaded sleeper, which hangs on the rail
-  /// Of the longitudinal spring, N, and with its stiffness, N/m, below a train; 0: it holds, and it is the same there.
+  double gap = 0.0;                               // m, below the unloaded sleeper, which the rail carries
+  /// Limit of the longitudinal spring, N (0: it never slides), and its stiffness, N/m, and limit under a train (0: the
+  /// same as without a train).
   double slides_at = 0.0, loaded_k = 0.0, loaded_slides_at = 0.0;
 
   /// The law of the longitudinal spring.
@@ -43,66 +44,66 @@ struct TrackValues {
 
 struct LayeredTrack;
 
-/// One row of the table of properties, each an option of the track and of every stretch.
+/// A row of the table of properties, each an option of the track and of every stretch.
 struct TrackProperty {
   std::string_view name;  // of the options track_<name> and track_<stretch>_<name>
   std::string_view unit, text;
   double& (*of)(TrackValues& values);
-  const Distribution* (*along)(const LayeredTrack& track);  // null where the model leaves the layer out
+  const Distribution* (*along)(const LayeredTrack& track);  // null if the model does not contain the layer
 };
 inline constexpr std::size_t track_property_count = 14;
 
-/// Sleepers from `from` to `to`, both included, with properties of their own.
+/// Sleepers from `from` to `to`, both included, with different properties.
 struct TrackStretch {
   std::string name;
   double from = 0.0, to = 0.0;                                           // m
-  std::array<std::optional<Distribution>, track_property_count> values;  // by the rows of track_properties
-  bool sleepers = true;  // false: neither sleepers nor pads; ballast stays
-  bool holds(double x, double rounding) const { return x >= from - rounding && x <= to + rounding; }
+  std::array<std::optional<Distribution>, track_property_count> values;  // in the order of track_properties
+  bool sleepers = true;  // false: neither sleepers nor pads, but ballast
+  bool contains(double x, double rounding) const { return x >= from - rounding && x <= to + rounding; }
 };
 
-/// Rail, pads, sleepers, ballast and sub-ballast. On the ground a sleeper stands on its ballast spring, the ballast's
-/// mass, the sub-ballast's spring; on the bridge the ballast's spring stands on the beam and its mass rides there, or
-/// it is a mass by itself on the sub-ballast's spring as on the ground (own_mass). A layer that is left out is rigid:
-/// the sleeper stands on the next one.
+/// Rail, pads, sleepers, ballast and sub-ballast. On the ground the ballast spring, the ballast's mass and the
+/// sub-ballast's spring carry a sleeper in series. On the bridge the ballast spring acts on the beam and the ballast's
+/// mass moves with the beam, or the ballast is a separate mass on the sub-ballast's spring as on the ground (own_mass).
+/// A layer that the model does not contain is rigid: the sleeper acts on the next layer.
 struct LayeredTrack {
   Distribution rail_EI, rail_EA, rail_mass;  // N m2, N, kg/m
-  std::optional<double> rail_GA;             // N; none: it does not shear
-  std::vector<double> rail_hinges;        // stations of joints that carry no moment, m, ascending; at nodes of the rail
-  std::vector<double> expansion_devices;  // stations where it may lengthen, m, ascending; at nodes between sleepers
-  double spacing = 0.6;                   // from sleeper to sleeper, m
-  double offset = 0.0;                    // station of one of them, m
-  int elements_per_bay = 2;               // of the rail
+  std::optional<double> rail_GA;             // N; empty: no shear deformation
+  std::vector<double> rail_hinges;           // stations of joints without moment, m, ascending; at nodes of the rail
+  std::vector<double> expansion_devices;     // stations at which u may jump, m, ascending; at nodes between sleepers
+  double spacing = 0.6;                      // between sleepers, m
+  double offset = 0.0;                       // station of one sleeper, m
+  int elements_per_bay = 2;                  // elements of the rail between two sleepers
   Layer pad;
   Distribution sleeper_mass;  // kg
   std::optional<Layer> ballast;
-  Distribution ballast_mass;  // kg a sleeper
-  bool own_mass = false;      // the ballast moves by itself on the bridge too
+  Distribution ballast_mass;  // kg per sleeper
+  bool own_mass = false;      // the ballast is a separate mass on the bridge too
   std::optional<Layer> subballast;
   Layer longitudinal;                       // between rail and bridge, or rail and ground, along x
-  Distribution slides_at;                   // N a sleeper: where the longitudinal spring slides; 0: it holds
-  Distribution loaded_k, loaded_slides_at;  // N/m and N: the same below a train; 0: as without one
-  bool holds_fast = false;                  // it never slides: of small motions
-  double rail_temperature = 0.0;            // K, since the rail was laid
+  Distribution slides_at;                   // N per sleeper: limit of the longitudinal spring; 0: it never slides
+  Distribution loaded_k, loaded_slides_at;  // N/m and N: stiffness and limit under a train; 0: as without a train
+  bool sliding_disabled = false;            // the longitudinal spring never slides, for small motions
+  double rail_temperature = 0.0;            // K, change since the rail was laid
   double rail_expansion = 0.0;              // 1/K
-  bool rail_ends_held = false;              // along x, as where the track goes on; false: free
+  bool rail_ends_held = false;              // along x, as by a track that continues; false: free
   Distribution gap;                         // m, below unloaded sleepers
-  bool gaps_stay_open = false;              // sleepers over a gap never reach what is below: of small motions
-  Spring shear;                         // between neighbouring masses of ballast that move by themselves, N/m, N s/m
-  std::vector<TrackStretch> stretches;  // where they overlap the last one counts
-  double approach = 0.0;                // of track on either side of the bridge, m; made whole bays
+  bool gaps_stay_open = false;              // sleepers never close a gap, for small motions
+  Spring shear;                             // between neighbouring separate ballast masses, N/m, N s/m
+  std::vector<TrackStretch> stretches;      // of overlapping stretches the last one applies
+  double approach = 0.0;  // length of the track on either side of the bridge, m; adjusted to whole bays
 
-  /// The properties at a sleeper; at a step of a table those to its right.
+  /// The properties at a sleeper; at a step of a table the values on its right.
   TrackValues at(double x) const;
-  /// Whether there is a sleeper at this station of the grid.
+  /// Whether this station of the grid has a sleeper.
   bool has_sleeper(double x) const;
-  /// Whether a property, by its name, is above zero at some sleepers.
-  bool somewhere(std::string_view name) const;
+  /// Whether the property of this name is positive at some sleepers.
+  bool any_positive(std::string_view name) const;
   /// Whether some sleepers may hang over a gap.
   bool hangs() const;
   /// Whether some longitudinal springs may slide.
   bool slides() const;
-  /// Whether every sleeper is like every other.
+  /// Whether all sleepers have equal properties.
   bool uniform() const;
 };
 

@@ -1,5 +1,5 @@
-// A bridge, track or rail as a user describes it: the paper's sections 2 and 3.
-// Units SI; x from the left end of the first span.
+// A bridge, track or rail as the user describes it (sections 2 and 3 of the paper). Units are SI; x is measured from
+// the left end of the first span.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace traverse::beam {
 
-/// Kinematic conditions of the paper's 3.1 at a span end. `fixes` below says what each one holds.
+/// Kinematic conditions at a span end (section 3.1 of the paper). The functions below state what each one fixes.
 enum class Support {
   free,     // nothing
   roller,   // v
@@ -26,13 +26,13 @@ bool fixes_axial(Support s);
 bool fixes_vertical(Support s);
 bool fixes_rotation(Support s);
 
-/// What joins the beam to its continuation at an inner span end.
+/// The connection of the beam to its continuation at an inner span end.
 enum class Joint {
-  continuous,  // it goes through
-  hinge,       // it goes through, but its slope may jump: no moment there
-  separate,    // two beams that end there, side by side on one support
-  cracked,     // it goes through, but its slope may jump against a rotational spring
-  expansion,   // it goes through, but its displacement along x may jump: no axial force there
+  continuous,  // no jump
+  hinge,       // the slope may jump: no moment there
+  separate,    // two beams that end side by side on one support
+  cracked,     // the slope may jump against a rotational spring
+  expansion,   // the displacement along x may jump: no axial force there
 };
 
 /// A crack: a rotational spring between the beam's two sides.
@@ -41,76 +41,78 @@ struct Crack {
   double k = 0.0;  // N m/rad, > 0
 };
 
-/// What the beam would do by itself since it was built in: it lengthens and, warmer above than below, curves upward.
+/// Temperature change since the beam was built. An unloaded free beam lengthens; if its top is warmer than its bottom,
+/// it bends convex upward.
 struct Temperature {
   double uniform = 0.0;    // K
-  double gradient = 0.0;   // K, of the top over the bottom
+  double gradient = 0.0;   // K, top minus bottom
   double expansion = 0.0;  // 1/K
-  double depth = 1.0;      // m, over which the gradient is
+  double depth = 1.0;      // m, between top and bottom
 
   double strain() const { return expansion * uniform; }               // 1, positive in elongation
   double curvature() const { return -expansion * gradient / depth; }  // 1/m, positive in sagging
 };
 
 struct BeamModel {
-  std::vector<double> spans;       // m, each > 0
-  std::vector<int> elements;       // one number a span, each >= 1; with a layered track its rail's mesh decides instead
-  Distribution EI;                 // N m2, > 0
-  Distribution EA;                 // N, > 0 where axial
-  std::optional<Distribution> GA;  // N, > 0: shear stiffness kappa G A; none: the beam does not shear
-  Distribution mass;               // kg/m, > 0
-  Distribution rotary_inertia;     // kg m, >= 0: of a section about its neutral axis, rho I
-  std::vector<Joint> joints;       // at the inner span ends, one for all or one each; empty: continuous
-  std::vector<double> hinges;      // further hinges within spans, m, ascending
-  std::vector<Crack> cracks;       // ascending, none at a hinge
-  std::vector<double> expansion_devices;  // of a rail: stations where it may lengthen, m, ascending, none at a hinge
-  std::vector<double> cuts;               // stations that always get a node, m, ascending
-  std::vector<Support> supports;          // one at every span end: spans + 1; where spans are separate it serves both
-  std::vector<double> settlement;         // m upward, of what holds v there: one at every span end, or none at all
+  std::vector<double> spans;  // m, each > 0
+  std::vector<int> elements;  // number per span, each >= 1; with a layered track the mesh of its rail is used instead
+  Distribution EI;            // N m2, > 0
+  Distribution EA;            // N, > 0 where axial
+  std::optional<Distribution> GA;         // N, > 0: shear stiffness kappa G A; empty: no shear deformation
+  Distribution mass;                      // kg/m, > 0
+  Distribution rotary_inertia;            // kg m, >= 0: rho I of a section about its neutral axis
+  std::vector<Joint> joints;              // at the inner span ends, one for all or one each; empty: continuous
+  std::vector<double> hinges;             // further hinges within spans, m, ascending
+  std::vector<Crack> cracks;              // ascending, none at a hinge
+  std::vector<double> expansion_devices;  // of a rail: stations at which u may jump, m, ascending, none at a hinge
+  std::vector<double> cuts;               // stations of additional nodes, m, ascending
+  std::vector<Support> supports;   // one at every span end: spans + 1; separate spans share the support between them
+  std::vector<double> settlement;  // m upward, of supports that fix v: one at every span end, or empty
   std::optional<Temperature> temperature;
   Foundation foundation;
   std::optional<LayeredTrack> track;
-  std::optional<GivenModes> given;  // the bridge is these modes, between whose stations it has one element each
-  bool axial = true;                // false: no axial unknowns
-  double start = 0.0;               // x of the left end, m: 0, but for a rail that begins before the bridge
-  double surface_height = 0.0;      // of the running surface above the neutral axis, m: forces along x act up there
-  bool nodes_at_steps = true;       // of EI and mass
-  std::array<bool, 2> ground = {true, true};  // whether the rigid running surface goes on before and behind it
+  std::optional<GivenModes>
+      given;                    // the bridge consists of these modes, with one element between neighbouring stations
+  bool axial = true;            // false: no axial unknowns
+  double start = 0.0;           // x of the left end, m; 0 except for a rail that begins before the bridge
+  double surface_height = 0.0;  // of the running surface above the neutral axis, m: forces along x act at this height
+  bool nodes_at_steps = true;   // at steps of EI and mass
+  std::array<bool, 2> ground = {true, true};  // whether the rigid running surface continues before and behind the beam
 
   /// The length of all spans and the x of the right end, m.
   double length() const;
   double end() const { return start + length(); }
-  /// At an inner span end, 1 <= span_end < spans.
+  /// The joint at an inner span end, 1 <= span_end < spans.
   Joint joint(int span_end) const;
-  /// Whether all its spans are beams of their own.
+  /// Whether all spans are separate beams.
   bool all_separate() const;
-  /// Whether settlements or temperature bend or stretch it without a load.
+  /// Whether settlements or temperature deform the beam without a load.
   bool strained() const;
-  /// Whether some of its foundation, or sleepers over a gap or that slide, obey a law that is not linear.
+  /// Whether a part of the foundation or the sleepers (over a gap, or sliding) have a nonlinear law.
   bool nonlinear() const { return foundation.nonlinear() || (track && (track->hangs() || track->slides())); }
 };
 
-/// A bridge of given modes: what its elements are between the stations of the shapes. They carry the shapes and
-/// neither bend nor weigh.
+/// The beam model of a bridge by given modes, with elements between the stations of the shapes. The elements
+/// interpolate the shapes; they contribute neither flexibility nor weight.
 BeamModel bridge_of(GivenModes modes);
 
-/// Whether a kind of foundation has an effect on the beam: a longitudinal one needs axial unknowns.
+/// Whether a kind of foundation acts on the beam: the longitudinal kinds need axial unknowns.
 inline bool acts(const FoundationKind& kind, const BeamModel& model) {
   return model.axial || kind.direction != Direction::longitudinal;
 }
 
-/// A run of elements of one length: a span, or what hinges and steps of EI and mass leave of it.
+/// A range of elements of equal length: a span, or a part of it between hinges and steps of EI and mass.
 struct Piece {
   int span = 0;
   double left = 0.0, right = 0.0;  // m
   int elements = 0;
-  Joint next = Joint::continuous;  // what joins it to the next piece; of the last one: separate
+  Joint next = Joint::continuous;  // joint to the next piece; of the last one: separate
   bool ends_span = true;
 };
 std::vector<Piece> pieces_of(const BeamModel& model);
 
-/// The sleepers and the rail's nodes of a model with a layered track: node i stands at rail_start + i*rail_element,
-/// a sleeper at every elements_per_bay-th of them.
+/// The nodes of the rail in a model with a layered track: node i is at start + i*element, and every elements_per_bay-th
+/// node is at a sleeper.
 struct RailMesh {
   double start = 0.0, element = 0.0;  // m
   int elements = 0;
@@ -120,43 +122,43 @@ struct RailMesh {
 };
 RailMesh rail_mesh(const BeamModel& model);
 
-/// The bridge without its layered track, whose ballast (without ballast its sleepers) is spread over its length: the
-/// mean of what stands on the bridge. Damping ratios refer to the frequencies of this beam.
+/// The bridge without its layered track. The ballast on the bridge (without ballast its sleepers) becomes a uniform
+/// mass per length. Damping ratios refer to the frequencies of this beam.
 BeamModel bridge_alone(const BeamModel& model);
 
-/// With every foundation linear, as it acts about rest under load: without a gap by its k and c, with one not at all.
-/// Sleepers over a gap hang on the rail. Its frequencies are those of small motions.
+/// The model with linear foundations, for small motions about the static equilibrium: a foundation without a gap acts
+/// by its k and c, one with a gap does not act, and sleepers over a gap hang on the rail.
 BeamModel linearised(const BeamModel& model);
 
-/// The rail as a beam, eqs. 1-12: free at both ends, without foundation; its layers join it to the sleepers.
+/// The rail as a beam, eqs. 1-12, free at both ends and without foundation; the layers connect it to the sleepers.
 BeamModel rail_model(const BeamModel& model);
 
-/// Throws InputError when the model cannot be assembled: the message names the option (beam_EI, support_types,
-/// foundation_vertical_x, ...), its value and what is allowed. A beam that floats is no error here.
+/// Throws InputError if the model cannot be assembled. The message names the option (beam_EI, support_types,
+/// foundation_vertical_x, ...), its value and the allowed values. A floating beam is not an error here.
 void check(const BeamModel& model);
 
-/// One entry a span, non-zero for one of several separate beams that neither supports nor a longitudinal spring or bed
-/// hold along x: its left end is given a fixed bearing. Only where there are axial unknowns.
+/// One entry per span, non-zero if the span is one of several separate beams and neither supports nor a longitudinal
+/// spring or bed hold it along x. The left end of such a span has a fixed bearing. Only with axial unknowns.
 std::vector<char> axial_bearings(const BeamModel& model);
 
-/// A motion without strain and without a spring's force of one part of the beam (what lies between its ends and
-/// separate joints): along x, or a chain of straight pieces between hinges.
+/// A motion of one part of the beam without strain and without spring forces: along x, or a chain of straight segments
+/// between hinges. A part is the beam between its ends and separate joints.
 struct RigidMotion {
   double left = 0.0, right = 0.0;  // of the part, m
   bool axial = false;
   std::vector<double> x;           // stations of the part's ends and hinges
-  std::vector<double> deflection;  // there; of an axial motion the displacement along x
+  std::vector<double> deflection;  // at the stations; of an axial motion the displacement along x
 
-  /// Deflection and slope at a station of the part; at a hinge the slope to its right, or to its left.
+  /// Deflection and slope at a station of the part; at a hinge the slope on its right, or on its left.
   double value(double station) const;
   double slope(double station, bool from_left) const;
 };
-/// All of them, found from what holds each part, from left to right. A model with a layered track has none.
-/// What has a law that is not linear does not count: these are the motions that the matrices know.
+/// All rigid motions that the linear supports and foundations allow, from left to right. A model with a layered track
+/// has none. Nonlinear foundations are ignored, because the matrices do not contain them.
 std::vector<RigidMotion> rigid_motions(const BeamModel& model);
 
-/// The first motion that nothing at all resists, in words, or empty. A foundation that is one-sided or has a gap
-/// counts as resisting; the static solution finds out whether it does.
+/// The description of the first motion that nothing resists, or empty. A foundation that is one-sided or has a gap is
+/// treated as a resistance; the static solution determines whether it acts.
 std::string floating_motion(const BeamModel& model);
 
 }  // namespace traverse::beam

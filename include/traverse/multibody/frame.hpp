@@ -1,14 +1,14 @@
-// Where a body is and how it moves: all that a joint or a force element sees of it.
+// Position and velocity of a body, the only data of a body that joints and force elements use.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace traverse::multibody {
 
-/// A quarter turn counter-clockwise: the derivative of a turning arm with respect to its angle.
+/// The vector rotated by 90 degrees counter-clockwise: the derivative of a rotating vector with respect to its angle.
 inline Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
 
-/// Position and velocity of a body; the default is the fixed ground.
+/// Position and velocity of a body; the default values are the fixed ground.
 struct Frame {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();    // m, centre of mass
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  // m/s
@@ -28,7 +28,7 @@ struct Frame {
   /// Velocity of the point at `arm` (global components, from the centre of mass).
   Eigen::Vector2d velocity_at(const Eigen::Vector2d& arm) const { return velocity + omega * quarter_turn(arm); }
 
-  /// rad; updates cosine and sine.
+  /// Sets the angle, rad, with its cosine and sine.
   void set_angle(double value);
   /// Serialises all members.
   template <class Bytes>

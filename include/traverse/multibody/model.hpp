@@ -1,6 +1,6 @@
-// A planar mechanism as a user describes it: bodies, joints, drivers, force elements (the paper's section 4).
-// Units SI; x along the track, y upward, angles counter-clockwise in rad. All points are given in the global
-// frame at t = 0, with every body at its `position`; `ground` is the fixed frame.
+// A planar mechanism as the user describes it: bodies, joints, drivers, force elements (section 4 of the paper). Units
+// are SI; x is along the track, y upward, angles counter-clockwise in rad. All points are in the global frame at t = 0,
+// with every body at its `position`; `ground` is the fixed frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,28 +26,28 @@ struct Body {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // of x, y, phi at t = 0
 };
 
-/// Friction along the axis of a joint that slides: (coefficient*|normal force| + force) tanh(sliding speed /
+/// Friction along the axis of a sliding joint: (coefficient*|normal force| + force) tanh(sliding speed /
 /// transition_speed), against the sliding.
 struct SlidingFriction {
   double coefficient = 0.0;        // 1, on the joint's normal force
-  double force = 0.0;              // N, whatever the normal force
+  double force = 0.0;              // N, independent of the normal force
   double transition_speed = 0.01;  // m/s
   bool acts() const { return coefficient > 0.0 || force > 0.0; }
 };
 
 struct Joint {
   std::string name;
-  JointType type = JointType::revolute;          // which also says what of the following counts
-  std::array<int, 2> bodies = {ground, ground};  // the reaction is reported on the second
+  JointType type = JointType::revolute;          // determines which of the following members are used
+  std::array<int, 2> bodies = {ground, ground};  // the reported reaction acts on the second one
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   Eigen::Vector2d axis = Eigen::Vector2d::UnitY();  // fixed in the first body
   Eigen::Vector2d from = Eigen::Vector2d::Zero();   // on the first body
   Eigen::Vector2d to = Eigen::Vector2d::Zero();     // on the second body
   SlidingFriction friction = {};
-  std::array<double, most_joint_numbers> numbers = {};  // of the type's own
+  std::array<double, most_joint_numbers> numbers = {};  // additional numbers of the type
 };
 
-/// A rheonomic constraint: one coordinate of one body is a given function of time.
+/// A rheonomic constraint: one coordinate of one body is a prescribed function of time.
 struct Driver {
   std::string name;
   int body = 0;
@@ -55,10 +55,10 @@ struct Driver {
   base::TimeFunction value;
 };
 
-/// Spring-damper between two points: force = preload + stiffness*(length - free_length) + damping*rate,
-/// positive in tension. Exactly one of free_length and preload may be given; with neither, the spring is
-/// without force at t = 0's geometry. With a preload, it is the force (tension positive) at t = 0's geometry.
-/// With a law: force = law(length - free_length, rate).
+/// Spring-damper between two points: force = preload + stiffness*(length - free_length) + damping*rate, positive in
+/// tension. At most one of free_length and preload may be set. With neither, the spring has no force in the geometry at
+/// t = 0. A preload is the force (positive in tension) in the geometry at t = 0. With a law: force = law(length -
+/// free_length, rate).
 struct Spring {
   std::string name;
   std::array<int, 2> bodies = {ground, ground};
@@ -78,12 +78,12 @@ struct TorsionSpring {
   std::array<int, 2> bodies = {ground, ground};
   double stiffness = 0.0;                      // N m/rad
   double damping = 0.0;                        // N m s/rad
-  std::optional<double> free_angle;            // rad; left out: the angle at t = 0
+  std::optional<double> free_angle;            // rad; empty: the angle at t = 0
   std::optional<ForceLaw> law = std::nullopt;  // instead of stiffness and damping, over the twist
 };
 
-/// A force at the centre of mass and a moment over time on `body`, the opposite on `reaction_body`
-/// (the moment only is opposite; the force acts at the reaction body's centre of mass).
+/// A force at the centre of mass of `body` and a moment on it over time. The opposite force acts at the centre of mass
+/// of `reaction_body`, with the opposite moment; the moment due to the offset of both forces is not balanced.
 struct Actuator {
   std::string name;
   int body = 0;

@@ -1,4 +1,4 @@
-// What scene_analysis may ask for. How each is carried out stands in src/app/analyses.hpp.
+// The analyses of the option scene_analysis. src/app/analyses.hpp has the function of each.
 #pragma once
 
 #include <string_view>
@@ -13,17 +13,17 @@ struct AnalysisRow {
   std::string_view words;  // for -help
 };
 
-/// The default first.
+/// The first row is the default.
 inline constexpr AnalysisRow analyses[] = {
-    {Analysis::transient, "transient", "the motion in time"},
-    {Analysis::modes, "modes", "natural frequencies and shapes"},
-    {Analysis::static_response, "static", "rest where the loads stand at t = 0"},
-    {Analysis::static_envelope, "envelope", "the largest static effects of the loads, wherever they stand"},
+    {Analysis::transient, "transient", "response over time"},
+    {Analysis::modes, "modes", "natural frequencies and mode shapes"},
+    {Analysis::static_response, "static", "static equilibrium under the loads at t = 0"},
+    {Analysis::static_envelope, "envelope", "largest static effects over all positions of the loads"},
     {Analysis::rail_forces, "rail",
-     "rail and bridge together at rest under temperature, braking and a train's weight, UIC 774-3"},
+     "track-bridge interaction under temperature, braking and the weight of a train, UIC 774-3"},
 };
 
-/// Of a name in the list; the default otherwise.
+/// The analysis of a name in the list, the default for any other name.
 constexpr Analysis analysis_of(std::string_view name) {
   for (const AnalysisRow& row : analyses)
     if (row.name == name) return row.analysis;

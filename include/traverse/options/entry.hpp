@@ -1,4 +1,4 @@
-// Options as the user gave them: name, value and the place where each one was written.
+// Options as the user gives them: the name, the value and the source of each.
 #pragma once
 
 #include <string>
@@ -12,25 +12,25 @@ namespace traverse::options {
 struct Entry {
   std::string name;
   std::string value;
-  std::string source;  // a file, or in words ("command line")
-  int line = 0;        // in the file, from 1; 0: the source is no file
+  std::string source;  // a file, or a text such as "command line"
+  int line = 0;        // in the file, from 1; 0: the source is not a file
 
-  /// Whether it was given in a file, not on the command line.
+  /// Whether the source is a file, not the command line.
   bool from_file() const { return line > 0; }
-  /// "scene.yml:12" or "command line".
+  /// The source: "scene.yml:12" or "command line".
   std::string where() const;
-  /// For messages: "name = value (where)", long values cut.
+  /// The text for messages: "name = value (where)", with long values truncated.
   std::string given() const;
 };
 
-/// All options in force: one entry a name, in the order in which the names came up.
+/// All options in force: one entry per name, in the order of their first appearance.
 class Entries {
  public:
-  /// Adds an entry; one of the same name is replaced.
+  /// Adds an entry, or replaces the entry of the same name.
   void set(Entry entry);
-  /// Adds an entry unless its name is there already.
+  /// Adds an entry unless there is one of the same name.
   void set_default(Entry entry);
-  /// Gives an entry a name that no other entry has.
+  /// Renames an entry. No other entry may have the new name.
   void rename(const std::string& from, const std::string& to);
   const Entry* find(std::string_view name) const;
   bool has(std::string_view name) const { return find(name) != nullptr; }

@@ -1,9 +1,9 @@
-// From the command line to the options in force, some of which pass into PETSc's own table: those that the table of
-// options lists, none that starts a program, loads code or writes a file (options/table.hpp, passes_to_petsc).
+// Reads the command line into the options in force. Some of them are copied into PETSc's own table: those of PETSc that
+// the table of options lists, none that starts a program, loads code or writes a file (table.hpp, passes_to_petsc).
 //
 //   Input input = read_input(argc, argv);              // before PETSc starts; reads the options files
-//   if (input.help) ...                                // print help_text(input.help_about) and leave
-//   Arguments words(input.petsc_words);                // what passes to PETSc
+//   if (input.help) ...                                // print help_text(input.help_about) and exit
+//   Arguments words(input.petsc_words);                // the options for PETSc
 //   SlepcInitialize(words.argc(), words.argv(), ...);
 //   put_into_petsc(input);
 //   Scene scene = read_scene();
@@ -20,20 +20,20 @@
 namespace traverse::options {
 
 struct Input {
-  Entries entries;         // the last one of each name by position; scene_name always (default: the first file's)
+  Entries entries;         // the last one of each name; always with scene_name (default: the name of the first file)
   bool help = false;       // -help, -h
-  std::string help_about;  // what -help asks about; empty: everything
+  std::string help_about;  // the value of -help; empty for the complete list
   bool version = false;    // -version
-  std::vector<std::string> notes;        // on options by .petscrc and PETSC_OPTIONS: what each of them does
-  std::vector<std::string> petsc_words;  // the program's name, then the options that pass to PETSc
+  std::vector<std::string> notes;        // the effect of each option of .petscrc and PETSC_OPTIONS
+  std::vector<std::string> petsc_words;  // the program's name, then the options for PETSc
 };
 
-/// Reads the command line and every file named by -options_file, at its position; weakest of all, where `petscrc` says
-/// so, .petscrc and PETSC_OPTIONS, which it takes out of the environment: PETSc reads neither. `before`: options that
-/// those of the command line win over. InputError for options of PETSc's kinds that do not pass to it.
+/// Reads the command line and each file that -options_file names, at its position. With `petscrc` also reads, with the
+/// lowest precedence, .petscrc and PETSC_OPTIONS, which is removed from the environment, so that PETSc reads neither.
+/// `before`: options that the command line overrides. InputError for options of PETSc that are not permitted.
 Input read_input(int argc, char** argv, const std::vector<Entry>& before = {}, bool petscrc = true);
 
-/// The words as argc and argv, kept until the object goes.
+/// The words as argc and argv, which are valid as long as the object exists.
 class Arguments {
  public:
   explicit Arguments(std::vector<std::string> words);
@@ -47,11 +47,11 @@ class Arguments {
   char** argv_ = nullptr;
 };
 
-/// After PetscInitialize: the options are in force, and TS finds its own in PETSc's table.
+/// Puts the options in force and copies those of TS into PETSc's table. To be called after PetscInitialize.
 void put_into_petsc(const Input& input);
 
-/// While it lives PETSc does not see those options that show what its solvers do or that end a run early: they are
-/// meant for the run that the user asked for, not for trial runs.
+/// Hides from PETSc, as long as the object exists, the options that print the progress of its solvers or end a run
+/// early: they apply to the requested run and not to trial runs.
 class WithoutMonitors {
  public:
   WithoutMonitors();
@@ -60,18 +60,18 @@ class WithoutMonitors {
   WithoutMonitors& operator=(const WithoutMonitors&) = delete;
 
  private:
-  std::vector<Entry> aside_;
+  std::vector<Entry> hidden_;
 };
 
-/// The entries that put_into_petsc saw last.
+/// The entries of the last call of put_into_petsc.
 const Entries& in_force();
-/// What it was told of .petscrc and PETSC_OPTIONS: a line on each option.
+/// A line on each option of .petscrc and PETSC_OPTIONS, from the last call of put_into_petsc.
 const std::vector<std::string>& notes_on_petscrc();
 
-/// Throws the InputError for what PETSc says about a value while it reads its solvers' options: names the option.
+/// Throws an InputError for a message of PETSc about a value of its solvers' options, with the name of the option.
 [[noreturn]] void refuse_by_petsc(const std::string& message);
 
-/// After TSSetFromOptions: notes on options of TS without effect in this scene.
+/// Notes on options of TS without effect in this scene. To be called after TSSetFromOptions.
 std::vector<std::string> notes_on_unused(const Entries& entries);
 
 }  // namespace traverse::options

@@ -1,4 +1,4 @@
-// What users choose of EN 1991-2. The formulas stand in src/norm/en1991.cpp.
+// The options of EN 1991-2. The formulas are in src/norm/en1991.cpp.
 #pragma once
 
 #include <optional>
@@ -8,24 +8,24 @@
 
 namespace traverse::options {
 
-/// Of the static effects of trains and load models, and of the verdict of 6.4.6.5.
+/// The options for the static effects of trains and load models, and for the check of 6.4.6.5.
 struct NormRules {
   std::vector<std::string> load_models;  // lm71, sw0, sw2
-  double alpha = 1.0;                    // 6.3.2 (3), of LM71 and SW/0
-  bool careful = false;                  // maintenance of the track: Phi2, else Phi3
-  std::optional<double> length;          // m, L_Phi of the whole bridge; left out: from the spans
-  double spacing = 0.0;                  // m, of sections; 0: a twentieth of each span
+  double alpha = 1.0;                    // classification factor of LM71 and SW/0, 6.3.2 (3)
+  bool careful = false;                  // careful maintenance of the track: Phi2, else Phi3
+  std::optional<double> length;          // m, L_Phi of the whole bridge; default: from the spans
+  double spacing = 0.0;                  // m, distance of sections; 0: a twentieth of each span
 };
 
 enum class BridgeMaterial { steel, composite, prestressed, reinforced, filler_beam };
 
-/// Table 6.6: the lower bound of damping in % on spans from 20 m on, and what each metre below 20 m adds.
+/// Table 6.6: the lower bound of damping in % for spans of at least 20 m, and the increase per metre below 20 m.
 struct DampingBound {
-  std::string_view name;  // as the user writes it
+  std::string_view name;  // in the option
   double long_spans, slope;
 };
 
-/// In the order of BridgeMaterial.
+/// The rows are in the order of BridgeMaterial.
 inline constexpr DampingBound damping_bounds[] = {
     {"steel", 0.5, 0.125},     {"composite", 0.5, 0.125},  {"prestressed", 1.0, 0.07},
     {"reinforced", 1.5, 0.07}, {"filler_beam", 1.5, 0.07},

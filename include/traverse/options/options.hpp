@@ -1,5 +1,5 @@
-// Typed, checked reading of the options in force. Every getter throws InputError with one line that names the
-// option, its value, where it was given and what is allowed.
+// Typed and checked access to the options in force. Each getter throws InputError with one line that names the option,
+// its value, its source and the permitted values.
 #pragma once
 
 #include <optional>
@@ -16,37 +16,38 @@ namespace traverse::options {
 
 class Options {
  public:
-  /// Options as they were given, before any check.
+  /// The options as given, without any check.
   explicit Options(Entries entries);
-  /// For tests: names and values, given on the "command line".
+  /// For tests: names and values with the source "command line".
   Options(std::initializer_list<std::pair<std::string, std::string>> values);
-  /// For tests: YAML text, its lines counted as those of a file called `name`.
+  /// For tests: YAML text with the source `name`.
   static Options from_yaml(const std::string& text, const std::string& name = "scene.yml");
 
-  /// All that is given, in its order.
+  /// All given options in their order.
   const Entries& entries() const { return entries_; }
-  /// Whether the option is given and no empty list.
+  /// Whether the option is given and is not an empty list.
   bool has(std::string_view name) const;
-  /// Whether any option is given whose name starts with this.
+  /// The first given option whose name begins with the prefix; null if there is none.
   const Entry* first_with_prefix(std::string_view prefix) const;
 
-  /// Adds options that count unless they are given already: those of a vehicle's file.
+  /// Adds options that are used unless they are given already, as those of a vehicle's file.
   void add_defaults(const std::vector<Entry>& entries);
-  /// Makes a name known besides the fixed ones: the options of a vehicle and its parts.
-  /// False when the name is known already.
+  /// Makes a name known in addition to the fixed ones, as an option of a vehicle or its parts. False if the name is
+  /// known already.
   bool declare(const std::string& name, const Row& row);
+  /// Whether the name is that of an option.
   bool knows(std::string_view name) const { return find_known(name) != nullptr; }
-  /// The row of a name; null where nothing is known of it.
+  /// The row of a name; null for an unknown name.
   const Row* find_known(std::string_view name) const;
-  /// The known name that is nearest to one; empty where none is near.
+  /// The known name that is most similar to `name`; empty if none is similar.
   std::string nearest_known(const std::string& name) const;
 
-  /// Every option given must be known, or owned by PETSc. Throws naming the nearest known one.
+  /// Checks that each given option is known. Throws InputError with the most similar known name.
   void check_names() const;
-  /// Every known option given must be of its row's type and inside its range.
+  /// Checks that each known given option has the type of its row and is in its range.
   void check_values() const;
 
-  // Values: what is given, otherwise the row's default; without either "NAME is missing: <text>".
+  // The given value, otherwise the default of the row; without either an InputError "NAME is missing: <text>".
   double number(std::string_view name) const;
   int integer(std::string_view name) const;
   bool flag(std::string_view name) const;
@@ -56,22 +57,22 @@ class Options {
   std::vector<int> integers(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;
 
-  /// The number that is given; none where it is not.
+  /// The given number; none if it is not given.
   std::optional<double> optional_number(std::string_view name) const;
-  /// A list of `count` entries where a single one serves all; `what` says what is counted, for the message.
+  /// A list of `count` entries, where a single one is used for all. `what` describes the entries for the message.
   std::vector<double> numbers(std::string_view name, std::size_t count, std::string_view what) const;
   std::vector<int> integers(std::string_view name, std::size_t count, std::string_view what) const;
   std::vector<std::string> texts(std::string_view name, std::size_t count, std::string_view what) const;
 
   /// Whether the value of a number_or_file option is a number.
   bool is_number(std::string_view name) const;
-  /// The file that an option names, found beside the file that names it or from the working directory.
+  /// The path of the file that an option names, relative to the file that names it or to the working directory.
   std::string path(std::string_view name) const;
 
-  /// Throws InputError "NAME = value (where): why", or "NAME: why" when it is not given.
+  /// Throws InputError "NAME = value (where): why", or "NAME: why" if the option is not given.
   [[noreturn]] void refuse(std::string_view name, const std::string& why) const;
 
-  /// The full list with final values, for the results file.
+  /// All given options with their values, for the results file.
   std::vector<std::pair<std::string, std::string>> all() const;
 
  private:

@@ -1,4 +1,4 @@
-// What users choose of the loads of UIC 774-3: a train that stands on the track, brakes or pulls.
+// The options of the loads of UIC 774-3: the weight, the braking force and the traction of a train.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@ enum class Runs { to_the_right, to_the_left, both_ways };
 struct RailLoads {
   double length = 300.0;                         // m, of the train
   double weight = 8e4;                           // N/m
-  double braking = 2e4, most_braking = 6e6;      // N/m, N of the whole train
-  double traction = 3.3e4, most_traction = 1e6;  // the same
-  std::vector<double> fronts;                    // m beyond the end of the bridge where the train comes from
+  double braking = 2e4, most_braking = 6e6;      // N/m, and the greatest force of the train in N
+  double traction = 3.3e4, most_traction = 1e6;  // N/m, and the greatest force of the train in N
+  std::vector<double> fronts;                    // m, from the bridge end at which the train enters
   Runs runs = Runs::to_the_right;
   double rail_area = 0.0;  // m2, of both rails
 };

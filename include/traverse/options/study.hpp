@@ -1,4 +1,4 @@
-// A study: a scene with some of its options varied, in one dimension or in several.
+// A study: a scene of which some options are varied, in one dimension or in several.
 #pragma once
 
 #include <cstddef>
@@ -8,34 +8,36 @@
 
 namespace traverse::options {
 
-/// A number that is varied.
+/// One varied quantity with its values.
 struct StudyDimension {
-  std::vector<std::string> options;  // that take its values, the first one names the dimension
+  std::vector<std::string> options;  // with these values; the first one is the name of the dimension
   std::string unit;
   bool whole = false;          // whole numbers only
-  std::string law;             // "list", "uniform", "normal" or "lognormal", as drawn
-  std::vector<double> values;  // along its axis
+  std::string law;             // "list", "uniform", "normal" or "lognormal"
+  std::vector<double> values;  // by the index along its axis
   std::size_t axis = 0;
 
-  /// The first of its options.
+  /// The name of the dimension: the first of its options.
   const std::string& name() const { return options.front(); }
 };
 
-/// Runs are numbered through the axes, the last of which runs fastest; the dimensions of one axis go side by side.
+/// The runs are all combinations of the axes, numbered with the last axis varying fastest. Dimensions of the same axis
+/// vary together.
 struct Study {
   struct Axis {
-    std::string name;  // of its dimension, or "draw" or "row" where it has several
+    std::string name;  // the name of its dimension, or "draw" or "row" if it has several
     std::size_t length = 0;
   };
   std::vector<StudyDimension> dimensions;
   std::vector<Axis> axes;
-  std::vector<std::size_t> over;  // axes that statistics go over; empty: none
-  std::vector<double> quantiles;  // of the statistics
-  double confidence = 0.95;       // of their intervals
-  double refine = 0.0;            // of each peak over the speed, to which speeds are added; 0: none are
-  std::size_t speeds = 0;         // the dimension that these are added to
-  bool resume = false;            // the results file holds runs of it that need not be run again
-  bool sweep = false;             // its axes are the trains and the speeds of a sweep (results/sweep.hpp)
+  std::vector<std::size_t> over;  // axes over which statistics are computed; empty: no statistics
+  std::vector<double> quantiles;  // probabilities of the quantiles
+  double confidence = 0.95;       // level of the intervals of the quantiles
+  double refine =
+      0.0;  // relative accuracy of the peaks over the speed, for which speeds are added; 0: no speeds are added
+  std::size_t speeds = 0;  // the dimension to which speeds are added
+  bool resume = false;     // finished runs in the results file are used again
+  bool sweep = false;      // its axes are the trains and the speeds of a sweep (results/sweep.hpp)
 
   /// The product of the axes' lengths.
   std::size_t runs() const {
@@ -43,11 +45,12 @@ struct Study {
     for (const Axis& axis : axes) product *= axis.length;
     return product;
   }
-  /// Where a run stands on an axis.
+  /// The index of a run along an axis.
   std::size_t place(std::size_t run, std::size_t axis) const {
     for (std::size_t i = axes.size(); i-- > axis + 1;) run /= axes[i].length;
     return run % axes[axis].length;
   }
+  /// The value of a dimension in a run.
   double value(std::size_t run, const StudyDimension& dimension) const {
     return dimension.values[place(run, dimension.axis)];
   }

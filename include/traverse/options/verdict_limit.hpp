@@ -1,4 +1,4 @@
-// Limits that users set to what a run shows, and the quantities that a limit may be of.
+// Limits that users set for the results of a run, and the quantities that can have a limit.
 #pragma once
 
 #include <string>
@@ -6,15 +6,15 @@
 
 namespace traverse::options {
 
-/// A limit: the quantity is kept as long as it does not exceed `value`.
+/// A limit is satisfied if the quantity does not exceed `value`.
 struct VerdictLimit {
-  std::string clause;    // where it comes from, e.g. "EN 1990 A2.4.4.2.1"
+  std::string clause;    // the source, e.g. "EN 1990 A2.4.4.2.1"
   std::string quantity;  // one of limit_quantities
   double value = 0.0;    // in the unit of its quantity
-  std::string text;      // what it means, in the user's words
+  std::string text;      // the user's description
 };
 
-/// What finds a quantity: a run in time, the static effects of EN 1991-2, or scene_analysis rail.
+/// The computation that evaluates a quantity: a transient run, the static effects of EN 1991-2, or scene_analysis rail.
 enum class LimitFinder { run, norm, rail };
 
 struct LimitQuantity {
@@ -24,20 +24,21 @@ struct LimitQuantity {
   LimitFinder finder = LimitFinder::run;
 };
 
-/// How each follows from a run stands in src/run/limit_check.cpp.
+/// src/run/limit_check.cpp evaluates each of them for a run.
 inline constexpr LimitQuantity limit_quantities[] = {
-    {"deck_acceleration", "m/s2", "largest vertical acceleration of the probes, low-passed (output_lowpass)"},
-    {"unfiltered_deck_acceleration", "m/s2", "the same without a filter"},
-    {"deflection_over_span", "1", "largest deflection of a probe over the length of its span"},
+    {"deck_acceleration", "m/s2", "largest low-passed vertical acceleration at the probes (output_lowpass)"},
+    {"unfiltered_deck_acceleration", "m/s2", "largest unfiltered vertical acceleration at the probes"},
+    {"deflection_over_span", "1", "largest deflection at a probe over the length of its span"},
     {"end_rotation", "rad", "largest rotation of the deck at either end of the bridge"},
     {"joint_rotation", "rad", "largest difference of the rotations on the two sides of a joint between two decks"},
     {"car_acceleration", "m/s2", "largest vertical acceleration of the heaviest body of a vehicle, at its centre"},
-    {"wheel_unloading", "1", "largest part of a wheel's force at the start that it loses"},
-    {"filtered_wheel_unloading", "1", "the same of low-passed forces (output_wheel_lowpass)"},
+    {"wheel_unloading", "1", "largest lost fraction of a wheel's initial force"},
+    {"filtered_wheel_unloading", "1",
+     "largest lost fraction of a wheel's initial force, low-passed (output_wheel_lowpass)"},
     {"unloading_time", "s",
-     "longest time that a wheel's low-passed force lacks more than output_unloading_level of it"},
-    {"contact_loss", "s", "longest time that a wheel is off the track"},
-    {"amplification", "1", "largest deflection over the largest static one at its probe"},
+     "longest time in which the lost fraction of a wheel's low-passed force exceeds output_unloading_level"},
+    {"contact_loss", "s", "longest time in which a wheel has no contact with the track"},
+    {"amplification", "1", "largest deflection over the largest static deflection at its probe"},
     {"lm71_deflection_over_span", "1", "static deflection under LM71 times alpha and Phi over the length of its span",
      LimitFinder::norm},
     {"lm71_end_rotation", "rad", "static rotation of the deck at the bridge's ends under LM71 times alpha and Phi",
@@ -46,18 +47,19 @@ inline constexpr LimitQuantity limit_quantities[] = {
      "difference of static rotations of two decks at a joint under LM71 times alpha and Phi", LimitFinder::norm},
     {"train_over_lm71", "1", "dynamic effect of the trains over Phi times LM71, EN 1991-2 6.4.6.5", LimitFinder::norm},
     {"rail_tension", "Pa", "largest additional tension of the rails along x (track_rail_area)", LimitFinder::rail},
-    {"rail_compression", "Pa", "largest additional compression", LimitFinder::rail},
-    {"rail_slip", "m", "largest displacement of the rail against the deck or the ground by braking or traction",
+    {"rail_compression", "Pa", "largest additional compression of the rails along x (track_rail_area)",
      LimitFinder::rail},
-    {"deck_displacement", "m", "largest displacement of a deck's end along x by braking or traction",
+    {"rail_slip", "m", "largest displacement of the rail relative to the deck or the ground under braking or traction",
      LimitFinder::rail},
-    {"deck_end_displacement", "m", "largest displacement of the top of a deck's end along x as the deck bends",
+    {"deck_displacement", "m", "largest displacement of a deck end along x under braking or traction",
+     LimitFinder::rail},
+    {"deck_end_displacement", "m", "largest displacement of the top of a deck end along x from bending of the deck",
      LimitFinder::rail},
     {"rail_device_opening", "m", "largest opening or closing of a rail expansion device since the rail was laid",
      LimitFinder::rail},
 };
 
-/// Null where there is none.
+/// The row of a name; null for an unknown name.
 constexpr const LimitQuantity* limit_quantity(std::string_view name) {
   for (const LimitQuantity& row : limit_quantities)
     if (row.name == name) return &row;

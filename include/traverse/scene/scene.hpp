@@ -1,5 +1,5 @@
-// A scene as the user wrote it, checked and with every default filled in. Built by read_scene, the only reader of
-// options; the physics sees nothing but these structures.
+// A scene as the user describes it, checked and with all defaults. read_scene, the only reader of options, creates it;
+// the physics depends only on these structures.
 #pragma once
 
 #include <algorithm>
@@ -35,35 +35,37 @@ using train::Train;
 using train::Vehicle;
 using train::Wheel;
 
+/// The damping of a beam of elements.
 struct Damping {
-  std::optional<std::pair<double, double>> rayleigh;     // a, b given
+  std::optional<std::pair<double, double>> rayleigh;     // a, b
   std::optional<std::pair<double, double>> ratios;       // zeta1, zeta2
-  std::optional<std::pair<double, double>> frequencies;  // Hz, the pair that the ratios belong to, when named
+  std::optional<std::pair<double, double>> frequencies;  // Hz, at which the ratios apply, if given
 };
 
+/// What is stored and reported of a run.
 struct Output {
-  std::string file;                // HDF5; empty: none
-  std::optional<double> interval;  // s; left out: chosen with the step
-  std::vector<double> probes;      // stations; default: the middle of every span (of the first 200)
-  std::optional<double> low_pass;  // Hz, up to which deck accelerations count; 0: all; left out: as EN 1990 has it
-  bool low_pass_asked = false;     // else deck accelerations are filtered where limits ask for it
-  bool low_passed_series = false;  // filtered accelerations are stored
-  double wheel_low_pass = 20.0;    // Hz, up to which wheel forces count
-  bool wheels_filtered = false;    // asked for; else where limits ask for it
-  double unloading_level = 0.6;    // part of its force from which on a wheel counts as unloaded
-  std::vector<double> passages;    // m: where the force of every wheel that passes is noted
-  std::vector<double> sleepers;    // m: of a layered track, whose forces are stored
+  std::string file;                 // HDF5 file; empty: none
+  std::optional<double> interval;   // s; none: selected with the step
+  std::vector<double> probes;       // stations, m; default: midspan of the first 200 spans
+  std::optional<double> low_pass;   // Hz, cut-off of deck accelerations; 0: no filter; none: by EN 1990
+  bool low_pass_requested = false;  // else deck accelerations are filtered only for limits
+  bool low_passed_series = false;   // filtered accelerations are stored over time
+  double wheel_low_pass = 20.0;     // Hz, cut-off of wheel forces
+  bool wheels_filtered = false;     // filtered by request; else only for limits
+  double unloading_level = 0.6;     // lost fraction of its force from which on a wheel counts as unloaded
+  std::vector<double> passages;     // m: places at which the force of each passing wheel is stored
+  std::vector<double> sleepers;     // m: stations of the sleepers whose forces are stored
 };
 
-/// The random running surfaces that one spectrum describes.
+/// A random running surface with a given spectrum.
 struct Roughness {
   track::Spectrum spectrum;
-  double shortest = 0.0, longest = 0.0;  // m: waves
-  double start = 0.0;                    // m: before it the track is level
-  bool to_the_left = false;              // else it begins to the right of that
-  std::vector<track::Dip> dips = {};     // on top of each of them
+  double shortest = 0.0, longest = 0.0;  // m, wavelengths
+  double start = 0.0;                    // m, before which the track is level
+  bool to_the_left = false;              // the roughness begins to the left of start, else to the right
+  std::vector<track::Dip> dips = {};     // added to the roughness
 
-  /// The running surface whose random phases follow from the seed, with the dips on top.
+  /// The running surface with random phases from the seed, including the dips.
   track::Profile profile(std::uint64_t seed) const {
     track::Profile p = track::Profile::rough(spectrum, shortest, longest, to_the_left ? -start : start, seed);
     if (to_the_left) p = p.reversed();
@@ -72,76 +74,78 @@ struct Roughness {
   }
 };
 
-/// Runs of one scene at many speeds, with many trains of forces, or both.
+/// Runs of one scene at several speeds, with several trains of forces, or both.
 struct Sweep {
-  std::vector<double> speeds;        // m/s; empty: that of the scene
-  std::vector<int> trains;           // HSLM-A, 1 to 10; empty: what the scene holds
-  std::vector<MovingLoad> loads;     // of each of these trains, at the scene's speed
-  double refine = 0.0;               // of each peak over the speed, to which speeds are added; 0: none are; below 0:
-                                     // where a limit may be broken between two of them
-  std::size_t lanes = 8;             // runs side by side; 0: each by itself
-  double instants = 20.0;            // looked at in a period of the fastest mode, where modes move exactly in time
-  std::size_t runs = 0;              // of the study that these are a part of; 0: there are no others
-  std::vector<std::uint64_t> seeds;  // of some tracks of the study, which differ in them; empty: the scene's own alone
+  std::vector<double> speeds;        // m/s; empty: the speed of the scene
+  std::vector<int> trains;           // HSLM-A, 1 to 10; empty: the loads of the scene
+  std::vector<MovingLoad> loads;     // the forces of each of these trains, at the scene's speed
+  double refine = 0.0;               // relative accuracy of peaks over the speed, for which speeds are added; 0: no
+                                     // speeds are added; below 0: only where a limit may be exceeded between two
+  std::size_t lanes = 8;             // runs per SIMD batch; 0: each run separately
+  double instants = 20.0;            // samples per period of the fastest mode, for modes that are exact in time
+  std::size_t runs = 0;              // number of all runs of the study; 0: not part of a study
+  std::vector<std::uint64_t> seeds;  // of some tracks of the study that differ in them; empty: only that of the scene
 };
 
+/// All data of one problem.
 struct Scene {
-  std::string name;                     // of the options file, for messages and default file names
-  std::optional<beam::BeamModel> beam;  // absent: a mechanism on its own, or on rigid ground
+  std::string name;                     // from the options file, for messages and default file names
+  std::optional<beam::BeamModel> beam;  // none: mechanisms without a bridge, or on rigid ground
   Damping damping;
   bool self_weight = false;
-  std::vector<Vehicle> vehicles;  // types in use
+  std::vector<Vehicle> vehicles;  // types of vehicles in the trains
   Train train;
   MovingLoad load;
   track::Profile profile;
-  std::optional<Roughness> roughness;  // that the profile is one of
+  std::optional<Roughness> roughness;  // of which the profile is a sample
   double gravity = 9.81;
   Analysis analysis = Analysis::transient;
   Start start = Start::equilibrium;
-  std::optional<double> tail;      // s after the last wheel has left
+  std::optional<double> tail;      // s, free vibration after the last wheel has left
   std::optional<double> end_time;  // -ts_max_time
-  NumericalModel model;            // as far as it is said
+  NumericalModel model;            // as far as it is given
   int mode_count = 10;
-  bool modes_open = false;               // a sweep may take modes where these do as well
-  std::vector<double> damping_of_modes;  // ratio of each mode, the last one for all further modes; empty: Rayleigh's
+  bool modes_open = false;  // a sweep may use modes if they are accurate enough
+  std::vector<double>
+      damping_of_modes;  // ratio of each mode, the last one for all further modes; empty: Rayleigh damping
   std::optional<Sweep> sweep;
   std::optional<Study> study;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
   double sampling_interval =
-      std::numeric_limits<double>::infinity();  // s: longest between instants at which responses are seen
-  bool all_ranks = false;                       // take the steps, whether that is faster or not
+      std::numeric_limits<double>::infinity();  // s: longest time between two samples of the responses
+  bool all_ranks = false;                       // use all ranks for a single run, even if that is slower
   double accuracy = 1e-3;
-  std::vector<std::string> accuracy_of;  // peaks, as in the option's list; empty: all
-  bool mesh_open = false;                // its elements are chosen from the accuracy
-  bool step_open = false;                // so is the step
-  bool accuracy_report = false;          // a refined run at the end shows the true errors
+  std::vector<std::string> accuracy_of;  // names of peaks from the option's list; empty: all
+  bool mesh_open = false;                // the elements are selected from the accuracy
+  bool step_open = false;                // the step is selected from the accuracy
+  bool accuracy_report = false;          // a refined run at the end gives the true errors
   bool accuracy_whole = false;           // trial runs are as long as the run
-  bool accuracy_cache = true;            // what was chosen for the same scene before is taken again
+  bool accuracy_cache = true;            // choices for the same scene from earlier runs are used again
   Output output;
-  std::vector<options::VerdictLimit> limits;                 // that runs are checked against
-  std::optional<options::NormRules> norm;                    // static effects and the verdict of EN 1991-2 are wanted
+  std::vector<options::VerdictLimit> limits;                 // of the results, checked for each run
+  std::optional<options::NormRules> norm;                    // for static effects and the verdict of EN 1991-2
   std::optional<options::RailLoads> rail_loads;              // of scene_analysis rail
-  bool quiet = false;                                        // -output_quiet: no progress
-  bool check = false;                                        // -check: it is shown, nothing is run
-  std::vector<std::string> notes;                            // what was chosen and why, one line each
-  std::vector<std::string> unusual;                          // of these, what is no error and hardly meant
-  std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
+  bool quiet = false;                                        // -output_quiet: no progress display
+  bool check = false;                                        // -check: the scene is reported, without a run
+  std::vector<std::string> notes;                            // choices with their reasons, one line each
+  std::vector<std::string> unusual;                          // the notes on possible but unusual input
+  std::vector<std::pair<std::string, std::string>> options;  // all given options, with those of vehicle files
 
-  /// Whether limits ask something of runs, not of static effects alone.
-  bool judges_runs() const {
+  /// Whether there are limits of transient runs, and not only of static effects.
+  bool has_run_limits() const {
     return std::any_of(limits.begin(), limits.end(), [](const options::VerdictLimit& limit) {
       return options::limit_quantity(limit.quantity)->finder == options::LimitFinder::run;
     });
   }
-  /// Whether a limit is on the deck's low-passed accelerations.
+  /// Whether there is a limit of the low-passed deck acceleration.
   bool limits_deck_acceleration() const {
     return std::any_of(limits.begin(), limits.end(),
                        [](const options::VerdictLimit& limit) { return limit.quantity == "deck_acceleration"; });
   }
-  /// Whether the bridge is modes that were given, without elements behind them.
+  /// Whether the bridge consists of given modes, without elements.
   bool by_given_modes() const { return beam && beam->given; }
-  /// Modes under moving forces alone, whose motion is known exactly; single runs of given modes are stepped.
+  /// Whether the motion is exact in time: modes under moving forces alone, but not single runs of given modes.
   bool exact_in_time() const {
     return model.modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep);
   }
@@ -152,19 +156,22 @@ std::vector<double> wheels_at_start(const Scene& scene, std::size_t i);
 /// x of the wheels of all vehicles of the train at t = 0, in m.
 std::vector<double> wheels_at_start(const Scene& scene);
 
-/// The greater of the train's and the forces' speed, m/s; 0 where there are neither.
+/// The greater of the speeds of trains and forces, m/s; 0 without both.
 double greatest_speed(const Scene& scene);
 
-/// The shortest wave of the track or of a wheel out of round, m; infinite where all is smooth.
+/// Whether a program has given a wheel or a contact of bodies a law of its own (contact::LawKind::other).
+bool has_own_contact_law(const Scene& scene);
+
+/// The shortest wavelength of the track or of an out-of-round wheel, m; infinite if all are smooth.
 double shortest_wave(const Scene& scene);
 
 /// Reads and checks all options and the vehicle files they name. Throws InputError with one line.
 Scene read_scene(options::Options options);
-/// The scene of the options in force, which are those that put_into_petsc saw last.
+/// The scene of the options in force: those of the last call of put_into_petsc.
 Scene read_scene();
-/// The options that a study varies with their values in one run, as a user would write them.
+/// The varied options of a study with their values in one run, as texts.
 std::vector<std::pair<std::string, std::string>> values_of_run(const Study& study, std::size_t run);
-/// The scene of a study with other values (as a user would write them) of some of its options; a sweep of itself alone.
+/// The scene of a study with these values, given as texts, of some of its options; it is a sweep of a single run.
 Scene read_scene_of_study(const options::Options& given,
                           const std::vector<std::pair<std::string, std::string>>& values);
 

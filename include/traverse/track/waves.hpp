@@ -1,4 +1,4 @@
-// A sum of many cosines with its derivatives, from a table of its own.
+// A sum of many cosines with its derivatives, interpolated from a table.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,24 @@ struct Height {
   double curvature = 0.0;  // 1/m
 };
 
-/// sum a cos(2 pi (f s + phase)). Wheels come along in small steps and look many times near each place: the sum is
-/// formed at stations 1/96 of the shortest wave apart, as they are needed, and quintic polynomials take its value and
-/// two derivatives from one to the next. For waves of equal steepness that is off by 4e-12 of the
-/// shortest one's height and 2e-8 of its curvature (test Waves.TableAgainstTheSum records both), and does not depend on
-/// what was asked before.
+/// The sum of a cos(2 pi (f s + phase)). Wheels move in small steps and evaluate the sum many times near each place.
+/// The sum is therefore computed at stations 1/96 of the shortest wave apart, when they are first needed, and quintic
+/// polynomials interpolate its value and two derivatives between stations. For waves of equal steepness the error is
+/// 4e-12 of the shortest wave's height and 2e-8 of its curvature (the test Waves.TableAgainstTheSum records both); it
+/// does not depend on earlier evaluations.
 class Waves {
  public:
   Waves() = default;
-  /// m, cycles/m and cycles of each wave, their number a multiple of `lanes`.
+  /// Amplitude (m), frequency (cycles/m) and phase (cycles) of each wave; their number must be a multiple of `lanes`.
   Waves(std::vector<double> amplitude, std::vector<double> frequency, std::vector<double> phase);
 
-  /// Interpolated between stations whose sums are kept.
+  /// The sum interpolated between stored stations.
   Height at(double s) const;
-  /// The sum itself.
+  /// The sum without interpolation.
   Height sum(double s) const;
-  /// The sum at `count` places from s on, `distance` apart: each wave turns on by the same angle from place to place,
-  /// which takes a tenth of the time of as many sums. Rounding grows along the way to 1e-13 of the waves' heights.
+  /// The sum at `count` places from s with the spacing `distance`. Each wave advances by the same angle from place to
+  /// place, which needs a tenth of the time of separate sums. The rounding error grows along the places to 1e-13 of the
+  /// waves' heights.
   std::vector<Height> sums(double s, double distance, std::size_t count) const;
 
   static constexpr int lanes = 4;  // waves computed at once
@@ -43,7 +44,7 @@ class Waves {
 
   std::vector<double> amplitude_, frequency_, phase_;
   double spacing_ = 0.0;                   // m
-  mutable std::vector<Station> stations_;  // those looked at last, by their number's last digits
+  mutable std::vector<Station> stations_;  // the stations used last, indexed by the last digits of their numbers
 };
 
 }  // namespace traverse::track

@@ -1,6 +1,6 @@
-// Wheels out of round: what the radius gains over its nominal value R at the angle rolled since the start.
+// Wheels out of round: the deviation of the radius from its nominal value R over the angle rolled since the start.
 //
-// The angle a grows as the wheel rolls to the right (a = x/R without sliding); the point of the tread that touches at
+// The angle a increases as the wheel rolls to the right (a = x/R without sliding); the point of the tread in contact at
 // the start is at a = 0. A wheel has a polygonal shape, a flat, or both:
 //
 //   polygon: dr = A cos(n a + phase), n waves around the wheel (see J. C. O. Nielsen and A. Johansson, Out-of-round
@@ -9,8 +9,8 @@
 //            rounded (worn) flat of W. M. Zhai and others, Dynamic effects of vehicles on tracks in the case of raising
 //            train speeds, Proc. Instn Mech. Engrs F 215 (2001) 125-135. A fresh flat, a chord, is twice as deep.
 //
-// The shape changes the radius where the wheel's normal meets the tread; that a flat touches with its edges, off that
-// normal, is left out, as these models do.
+// The shape changes the radius at the point where the wheel's normal crosses the tread. The contact of a flat's edges,
+// off that normal, is neglected, as in these models.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ namespace traverse::track {
 
 struct WheelShape {
   double flat_length = 0.0;        // L, m; 0: none
-  double flat_angle = 0.0;         // of its middle, rad
+  double flat_angle = 0.0;         // angle of its middle, rad
   int polygon_order = 0;           // n; 0: none
   double polygon_amplitude = 0.0;  // A, m
   double polygon_phase = 0.0;      // rad
@@ -30,8 +30,8 @@ struct WheelShape {
 
 struct RadiusGain {
   double value = 0.0;      // dr, m
-  double slope = 0.0;      // by a, m/rad
-  double curvature = 0.0;  // by a twice, m/rad2
+  double slope = 0.0;      // derivative by a, m/rad
+  double curvature = 0.0;  // second derivative by a, m/rad2
 };
 
 /// dr at the rolled angle a (rad) of a wheel of the given radius (m).
@@ -40,7 +40,7 @@ RadiusGain radius_gain(const WheelShape& shape, double radius, double angle);
 /// Depth of a rounded flat, m.
 double flat_depth(double length, double radius);
 
-/// The angles in (0, last), ascending, at which an end of the flat meets the rail: there the curvature jumps.
+/// The angles in (0, last), ascending, at which an end of the flat touches the rail; there the curvature jumps.
 std::vector<double> flat_ends(const WheelShape& shape, double radius, double last);
 
 }  // namespace traverse::track

@@ -1,7 +1,8 @@
-// Vehicles, trains and moving forces as they meet the track.
+// Vehicles, trains and moving forces on the track.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -14,6 +15,7 @@
 #include "traverse/multibody/model.hpp"
 #include "traverse/track/profile.hpp"
 #include "traverse/track/wheel_shape.hpp"
+#include "traverse/train/force_variation.hpp"
 
 namespace traverse::train {
 
@@ -23,7 +25,7 @@ struct Wheel {
   int body = 0;
   double radius = 0.0;  // m
   contact::Law law;
-  track::WheelShape shape;  // what is out of round
+  track::WheelShape shape;  // deviations from a circle
 };
 
 /// A point fixed to a body, whose motion is stored.
@@ -45,44 +47,47 @@ struct Vehicle {
 /// constant: x of each vehicle's first body is prescribed; free: only forces act.
 enum class Drive { constant, free };
 
-/// What joins neighbours in a train: a joint, or else a spring. `point` and `from` count from the origin of the vehicle
-/// in front, `to` from that of the one behind.
+/// The connection of neighbours in a train: a joint, otherwise a spring. `point` and `from` refer to the origin of the
+/// front vehicle, `to` to that of the rear one.
 struct Coupler {
   std::string name;
-  std::array<std::string, 2> bodies;  // of the vehicle in front, of the one behind
-  std::vector<int> gaps;              // behind which vehicles of the train, from 0
+  std::array<std::string, 2> bodies;  // of the front vehicle, of the rear one
+  std::vector<int> gaps;              // the coupler is behind these vehicles of the train, from 0
   std::optional<multibody::Joint> joint;
   multibody::Spring spring;
 };
 
-/// One of several trains or groups of forces, or one whose speed changes or is below 0.
+/// One of several trains or groups of forces, or one whose speed or forces change over time or that runs to the left.
 struct Course {
   std::string name;       // of its block of options
-  std::size_t first = 0;  // of its vehicles or forces, which go on to the next course's
+  std::size_t first = 0;  // index of its first vehicle or force; the last is before the next course's first
   base::SpeedLaw speed;
   Drive drive = Drive::constant;
-  std::shared_ptr<const track::Profile> profile;  // that its wheels run on; null: the track's
+  std::shared_ptr<const track::Profile> profile;  // under its wheels; null: the track's
+  ForceVariation variation;                       // of each force of the group
 };
 
-/// The trains on the track: one that runs to the right at a constant speed where there are no courses.
+/// The trains on the track. Without courses: one train that runs to the right at a constant speed.
 struct Train {
   std::vector<int> vehicles;      // indices into a list of types, train by train, the front one first
   std::vector<double> positions;  // x of each origin at t = 0, m
   double speed = 0.0;             // m/s; with courses the greatest magnitude of all
-  Drive drive = Drive::constant;  // with courses: free where one is
-  std::vector<Coupler> couplers;  // their gaps number all vehicles
+  Drive drive = Drive::constant;  // with courses: free if one of them is
+  std::vector<Coupler> couplers;  // with gaps in the order of all vehicles
   std::vector<Course> courses;    // ascending in `first`
 
   /// Whether all vehicles run to the right at one constant, prescribed speed.
   bool steady() const { return courses.empty() && drive == Drive::constant && speed > 0.0; }
 };
 
-/// Moving constant forces.
+/// Moving forces and line loads. `lengths` and `moments` have one entry for each force or are empty: zeros.
 struct MovingLoad {
-  std::vector<double> forces;     // N, downward
-  std::vector<double> positions;  // x at t = 0, m
-  double speed = 0.0;             // m/s; with courses the greatest magnitude of all
-  std::vector<Course> courses;    // as a train's
+  std::vector<double> forces;        // N, downward: the constant part, of a line load its sum
+  std::vector<double> positions;     // x at t = 0, m; of a line load its centre
+  double speed = 0.0;                // m/s; with courses the greatest magnitude of all
+  std::vector<Course> courses = {};  // as in Train
+  std::vector<double> lengths = {};  // m, over which the force is spread uniformly; 0: concentrated
+  std::vector<double> moments = {};  // N m, counter-clockwise, concentrated
 };
 
 /// The course of vehicle or force `i`; null where there are no courses.
@@ -94,7 +99,7 @@ const Course* course_of(const Moving& moving, std::size_t i) {
   return found;
 }
 
-/// How vehicle or force `i` of a train or load runs.
+/// The speed law of vehicle or force `i` of a train or load.
 template <class Moving>
 base::SpeedLaw law_of(const Moving& moving, std::size_t i) {
   const Course* course = course_of(moving, i);
@@ -115,7 +120,37 @@ double place_of(const Moving& moving, std::size_t i, double t) {
   return moving.positions[i] + (course == nullptr ? moving.speed * t : course->speed.distance(t));
 }
 
-/// How the speed of a vehicle is prescribed: by its course, or by the train.
+/// m, over which force `i` is spread; 0: concentrated.
+inline double length_of(const MovingLoad& load, std::size_t i) { return load.lengths.empty() ? 0.0 : load.lengths[i]; }
+
+/// N m, the moment beside force `i`.
+inline double moment_of(const MovingLoad& load, std::size_t i) { return load.moments.empty() ? 0.0 : load.moments[i]; }
+
+/// Whether the load consists of constant concentrated forces, as a list of axle loads does.
+inline bool only_axle_loads(const MovingLoad& load) {
+  const auto some = [](const std::vector<double>& values) {
+    return std::any_of(values.begin(), values.end(), [](double value) { return value != 0.0; });
+  };
+  return !some(load.lengths) && !some(load.moments) &&
+         std::none_of(load.courses.begin(), load.courses.end(), [](const Course& c) { return c.variation.varies(); });
+}
+
+/// The highest frequency of the harmonics of all forces, Hz; 0 if there are none.
+inline double highest_load_frequency(const MovingLoad& load) {
+  double highest = 0.0;
+  for (const Course& course : load.courses) highest = std::max(highest, course.variation.highest_frequency());
+  return highest;
+}
+
+/// N, force `i` at t with its variation, which is a line load (N/m) if the force is one.
+inline double force_at(const MovingLoad& load, std::size_t i, double t) {
+  const Course* course = course_of(load, i);
+  if (course == nullptr || !course->variation.varies()) return load.forces[i];
+  const double length = length_of(load, i);
+  return load.forces[i] + (length > 0.0 ? length : 1.0) * course->variation.at(t);
+}
+
+/// Whether a vehicle's speed is prescribed, by its course or by the train.
 inline Drive drive_of(const Train& train, std::size_t vehicle) {
   const Course* course = course_of(train, vehicle);
   return course == nullptr ? train.drive : course->drive;

@@ -1,4 +1,4 @@
-// phi2 - phi1 - angle = 0: two bodies turn alike. 1 equation, rad; lambda is a moment.
+// phi2 - phi1 - angle = 0: two bodies rotate by the same angle. 1 equation, rad; lambda is a moment.
 #pragma once
 
 #include "multibody/joint.hpp"

@@ -1,4 +1,4 @@
-// n . (P2 - r1) - offset = 0: the point of the second body stays on a line of the first. 1 equation, m; n is fixed in
+// n . (P2 - r1) - offset = 0: the point of the second body remains on a line of the first. 1 equation, m; n is fixed in
 // the first body, r1 its centre of mass.
 #pragma once
 
@@ -8,20 +8,20 @@
 
 namespace traverse::multibody::equations {
 
-/// What the normal equation needs, and the same of another direction n of the first body.
+/// The quantities of the normal equation, or of this equation with another direction n of the first body.
 struct NormalPlacement {
   Eigen::Vector2d a2, n, e;  // second arm, direction, P2 - r1
   NormalPlacement(const JointGeometry& j, const Frame& first, const Frame& second)
       : NormalPlacement(j, j.normal, first, second) {}
   NormalPlacement(const JointGeometry& j, const Eigen::Vector2d& direction, const Frame& first, const Frame& second)
       : a2(second.to_global(j.second_arm)), n(first.to_global(direction)), e(second.origin - first.origin + a2) {}
-  /// Of n . e.
+  /// The gradient of n . e.
   Eigen::Matrix<double, 1, 6> gradient() const {
     Eigen::Matrix<double, 1, 6> g;
     g << -n.x(), -n.y(), quarter_turn(n).dot(e), n.x(), n.y(), n.dot(quarter_turn(a2));
     return g;
   }
-  /// Adds that of lambda n . e.
+  /// Adds the second derivatives of lambda n . e.
   void add_curvature(double lambda, JointCurvature& K) const {
     const Eigen::Vector2d t = lambda * quarter_turn(n);
     const double lever = lambda * n.dot(a2);
@@ -42,7 +42,7 @@ struct Normal {
   static constexpr JointNeeds needs{.point = true, .axis = true};
 
   static void prepare(const Joint& joint, const Frame& first, const Frame&, JointGeometry& j) {
-    // a component of rounding size would only spoil the sparsity of Phi_q
+    // Components in the range of rounding errors would only reduce the sparsity of Phi_q.
     Eigen::Vector2d n = -quarter_turn(joint.axis.normalized());
     for (double& component : n)
       if (std::abs(component) < 1e-15) component = 0.0;

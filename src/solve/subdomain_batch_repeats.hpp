@@ -1,30 +1,30 @@
-// Keeps the numbers of a bundle's factors once where they repeat: the bodies of Bundle<B> that blocks.hpp compiles.
+// Stores repeating values of a batch's factors once: function bodies that blocks.hpp compiles.
 #pragma once
 
 #include <algorithm>
 #include <limits>
 #include <span>
 
-#include "bundle.hpp"
+#include "subdomain_batch.hpp"
 
 namespace traverse::solve {
 
-// Inverse pivot blocks of two steps are the same where they differ by no more than rounding leaves of them: what a
-// change of the matrix by `rounding`, relative to the roots of its diagonal entries, would do. Where pivots fall slowly
-// along a chain that nothing holds, such changes add up: so they must also be the same to `settled`, relative to
-// themselves.
+// Inverse pivot blocks of two steps are equal if they differ by rounding errors only: by the effect of a change of the
+// matrix by `rounding`, relative to the roots of its diagonal entries. If pivots decrease slowly along a chain without
+// supports, such changes accumulate. The blocks must therefore also be equal to the relative tolerance
+// `repeat_tolerance`.
 inline constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
-inline constexpr double settled = 1e-10;
+inline constexpr double repeat_tolerance = 1e-10;
 
-/// Couples a chain's node k (rows) to the next (columns).
+/// The coupling of a chain's node k (rows) to the next node (columns).
 template <int B>
-Block<B> Bundle<B>::coupling(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k) const {
+Block<B> SubdomainBatch<B>::coupling(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k) const {
   const std::ptrdiff_t here = node(lane, k);
   return chain(lane).direction > 0 ? slice.upper(here) : slice.upper(here - 1).transpose();
 }
 
 template <int B>
-Block<B> Bundle<B>::stored_inverse(std::size_t lane, std::ptrdiff_t k) const {
+Block<B> SubdomainBatch<B>::stored_inverse(std::size_t lane, std::ptrdiff_t k) const {
   const LaneEntry* from = inverse_.data() + stored_.at(k).place(k) * block_.triangle();
   Block<B> result(block_);
   for (int c = 0; c < block_.size(); ++c) {
@@ -33,15 +33,15 @@ Block<B> Bundle<B>::stored_inverse(std::size_t lane, std::ptrdiff_t k) const {
   return result;
 }
 
-/// A number for each step, the same for steps with the same rows in all chains.
+/// A hash for each step, equal for steps with the same rows in all chains.
 template <int B>
-std::vector<std::uint64_t> Bundle<B>::marks(const Slice<B>& slice) const {
+std::vector<std::uint64_t> SubdomainBatch<B>::hashes(const Slice<B>& slice) const {
   std::vector<std::uint64_t> result(static_cast<std::size_t>(steps_), 0);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     for (std::ptrdiff_t k = 0; k < chain(lane).count; ++k) {
-      std::uint64_t& mark = result[static_cast<std::size_t>(k)];
+      std::uint64_t& hash = result[static_cast<std::size_t>(k)];
       for (const Block<B>& block : {slice.diagonal(node(lane, k)), coupling(slice, lane, k)}) {
-        mark = mark_of(mark, std::span(block.data(), static_cast<std::size_t>(block_.area())));
+        hash = hash_of(hash, std::span(block.data(), static_cast<std::size_t>(block_.area())));
       }
     }
   }
@@ -49,7 +49,7 @@ std::vector<std::uint64_t> Bundle<B>::marks(const Slice<B>& slice) const {
 }
 
 template <int B>
-bool Bundle<B>::same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const {
+bool SubdomainBatch<B>::same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const {
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     if (k >= chain(lane).count) continue;
     const std::ptrdiff_t now = node(lane, k), before = node(lane, k - period);
@@ -59,9 +59,9 @@ bool Bundle<B>::same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_
   return true;
 }
 
-/// To rounding. The rows being the same, so are then the other numbers.
+/// Compares the pivots to rounding; with the same rows, the other values are then the same too.
 template <int B>
-bool Bundle<B>::same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const {
+bool SubdomainBatch<B>::same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const {
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     if (k >= chain(lane).count) continue;
     const Block<B> now = stored_inverse(lane, k), before = stored_inverse(lane, k - period);
@@ -69,7 +69,8 @@ bool Bundle<B>::same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdif
     for (int c = 0; c < block_.size(); ++c) {
       for (int r = c; r < block_.size(); ++r) {
         const double change = now(r, c) - before(r, c), size = now(r, r) * now(c, c);
-        const double part = std::min(settled * settled, rounding * rounding * diagonal(r, r) * diagonal(c, c) * size);
+        const double part =
+            std::min(repeat_tolerance * repeat_tolerance, rounding * rounding * diagonal(r, r) * diagonal(c, c) * size);
         if (!(change * change <= part * size)) return false;
       }
     }
@@ -77,15 +78,14 @@ bool Bundle<B>::same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdif
   return true;
 }
 
-/// The steps from `from` on, as far as their rows repeat, take the numbers of the period before. Returns the first that
-/// does not.
+/// Uses the values of the period before for the steps from `from` on whose rows repeat. Returns the first other step.
 template <int B>
-std::ptrdiff_t Bundle<B>::repeat(const Slice<B>& slice, std::ptrdiff_t from, std::ptrdiff_t period,
-                                 std::array<Front, lanes>& fronts) {
+std::ptrdiff_t SubdomainBatch<B>::repeat(const Slice<B>& slice, std::ptrdiff_t from, std::ptrdiff_t period,
+                                         std::array<Front, lanes>& fronts) {
   std::ptrdiff_t to = from;
   while (to < steps_ && same_rows(slice, to, period)) ++to;
   if (to - from < period) return from;
-  for (std::ptrdiff_t more = stored_.repeat(from, to, period); more > 0; --more) {
+  for (std::ptrdiff_t missing = stored_.repeat(from, to, period); missing > 0; --missing) {
     extend_store();
     std::copy_n(lower_.end() - (period + 1) * block_.area(), block_.area(), lower_.end() - block_.area());
     std::copy_n(inverse_.end() - (period + 1) * block_.triangle(), block_.triangle(),
@@ -93,7 +93,7 @@ std::ptrdiff_t Bundle<B>::repeat(const Slice<B>& slice, std::ptrdiff_t from, std
   }
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const std::ptrdiff_t past = std::min(to, chain(lane).count);
-    for (std::ptrdiff_t k = from; k < past && fronts[lane].filling; ++k) {
+    for (std::ptrdiff_t k = from; k < past && fronts[lane].has_fill; ++k) {
       extend_fill(stored_inverse(lane, k), coupling(slice, lane, k), fronts[lane]);
     }
     if (past <= from) continue;

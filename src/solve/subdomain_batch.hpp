@@ -1,10 +1,13 @@
-// Neighbouring parts (see parts.hpp) eliminated side by side, A = L D L^T by blocks, with all their chains in one loop.
+// Neighbouring parts (parts.hpp) that are eliminated together, A = L D L^T by blocks, with all their chains in one
+// loop.
 //
-// A chain that starts beside a separator drags along a coupling to it, the fill. Under a large mass term the fill dies
-// out within tens of nodes and its tail is dropped; with springs alone it may reach the middle, and is kept whole.
+// A chain that starts at a separator has a coupling to it in every node, the fill. Under a large mass term the fill
+// decays within tens of nodes, and its negligible tail is dropped; with springs alone it may reach the middle and is
+// stored completely.
 //
-// Where the rows of all chains repeat and so do their pivot blocks, to rounding, the numbers of one period stand for
-// those of all that follow (Stored): the solution is that of a matrix whose pivot blocks are changed by that much.
+// If the rows of all chains repeat, and their pivot blocks repeat to rounding, the values of one period are used for
+// all periods that follow (Stored): the solution is that of a matrix whose pivot blocks have a change of this
+// magnitude.
 #pragma once
 
 #include <algorithm>
@@ -22,71 +25,71 @@
 
 namespace traverse::solve {
 
-inline constexpr std::size_t parts_a_bundle = lanes / 2;
+inline constexpr std::size_t parts_per_batch = lanes / 2;
 
-/// One entry of the factors of each chain.
+/// One entry of the factors for each chain.
 struct alignas(lanes * sizeof(double)) LaneEntry {
   std::array<double, lanes> chain;
 };
 
-/// What the elimination of a part leaves for the reduced system of the separators.
+/// The contributions of a part to the reduced system of the separators.
 template <int B>
 struct SchurPart {
-  Block<B> own;       // diagonal block of its own separator
-  Block<B> coupling;  // its own separator (rows) with the next part's (columns)
+  Block<B> own;       // diagonal block of the part's separator
+  Block<B> coupling;  // the part's separator (rows) with the next part's (columns)
   Block<B> next;      // added to the diagonal block of the next part's separator
 };
 
-/// The unknowns of the separators before (even) and behind (odd) a bundle's chains.
+/// The unknowns of the separators before (even) and behind (odd) the chains of a batch.
 template <int B, int C>
 using ChainBorders = std::array<Panel<B, C>, lanes>;
 
 template <int B>
-class Bundle {
+class SubdomainBatch {
  public:
-  /// Parts left empty have no nodes at all.
-  Bundle(Extent<B> block, const std::array<Part, parts_a_bundle>& parts);
+  /// Empty parts have no nodes.
+  SubdomainBatch(Extent<B> block, const std::array<Part, parts_per_batch>& parts);
 
-  const std::array<Part, parts_a_bundle>& parts() const { return parts_; }
+  const std::array<Part, parts_per_batch>& parts() const { return parts_; }
   Range nodes() const { return nodes_; }
 
-  /// False, and noted in the record, when a part is not positive definite.
+  /// Returns false, with an entry in the record, if a part is not positive definite.
   bool factor(const Slice<B>& slice, PivotRecord& record);
   const SchurPart<B>& schur(std::size_t part) const { return schur_[part]; }
-  /// Numbers kept of the chains.
+  /// Number of stored values of the chains.
   std::size_t stored_numbers() const { return lanes * (lower_.size() + inverse_.size() + fill_.size()); }
 
-  /// First half of a solve within a window: eliminates the inner nodes, written by the filler, unless null, before.
-  /// borders, out: what is added to the separators' right-hand sides.
+  /// First half of a solve within a window: eliminates the inner nodes, after the callback (unless null) has written
+  /// them. borders, out: contributions to the separators' right-hand sides.
   template <int C>
-  void forward(const Columns& x, Range window, NodeFiller* filler, ChainBorders<B, C>& borders) const;
+  void forward(const Columns& x, Range window, RhsCallback* rhs_callback, ChainBorders<B, C>& borders) const;
 
-  /// Second half: the inner nodes, from the separators' solutions.
+  /// Second half: computes the inner nodes from the separators' solutions.
   template <int C>
   void backward(const Columns& x, Range window, const ChainBorders<B, C>& borders) const;
 
-  /// Both halves for a single part without separators, all of it.
+  /// Both halves for a single part without separators, for all its nodes.
   template <int C>
-  void solve_alone(const Columns& x) const;
+  void solve_single(const Columns& x) const;
 
  private:
   struct Front;
 
-  /// Steps [from, to) of the chains whose bits are set, all with fill or all without.
-  struct Stretch {
+  /// Steps [from, to) of the chains whose bits are set, either all with fill or all without.
+  struct StepRange {
     std::ptrdiff_t from;
     std::ptrdiff_t to;
     unsigned chains;
   };
   struct Plan {
     std::array<Run, lanes> runs;
-    std::array<Stretch, 2 * lanes + 1> stretches;
+    std::array<StepRange, 2 * lanes + 1> ranges;
     std::size_t count = 0;
   };
   Plan plan(Range window) const;
-  const Plan& plan(Range window, Plan& room) const {
-    if (window.first <= nodes_.first && window.past >= nodes_.past) return whole_;
-    return room = plan(window);
+  const Plan& plan(Range window, Plan& buffer) const {
+    if (window.first <= nodes_.first && window.past >= nodes_.past) return full_plan_;
+    return buffer = plan(window);
   }
 
   const Chain& chain(std::size_t lane) const { return parts_[lane / 2].chains[lane % 2]; }
@@ -102,7 +105,7 @@ class Bundle {
   }
   Block<B> coupling(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k) const;
   Block<B> stored_inverse(std::size_t lane, std::ptrdiff_t k) const;
-  std::vector<std::uint64_t> marks(const Slice<B>& slice) const;
+  std::vector<std::uint64_t> hashes(const Slice<B>& slice) const;
   bool same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const;
   bool same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const;
   std::ptrdiff_t repeat(const Slice<B>& slice, std::ptrdiff_t from, std::ptrdiff_t period,
@@ -115,18 +118,18 @@ class Bundle {
   }
   Factors factors(std::size_t lane, std::ptrdiff_t k) const;
   double* address(const Columns& x, std::ptrdiff_t node) const { return x.x + (node - x.origin) * block_.size(); }
-  // Of the steps from k on, counted from there.
+  // For the steps from k on, counted from k.
   LaneSweep<B> lane_sweep(const Columns& x, std::ptrdiff_t k) const;
   template <int C, std::size_t N>
   ColumnSweep<B, C, N> column_sweep(const Columns& x, std::size_t lane, std::ptrdiff_t k) const;
   template <int C, class Body>
-  void along_columns(const Columns& x, const Stretch& steps, Body body) const;
+  void along_columns(const Columns& x, const StepRange& steps, Body body) const;
   template <bool Fill, int C>
-  void forward(const Columns& x, const Stretch& steps, ChainBorders<B, C>& borders) const;
+  void forward(const Columns& x, const StepRange& steps, ChainBorders<B, C>& borders) const;
   template <bool Fill, int C>
-  void backward(const Columns& x, const Stretch& steps, const ChainBorders<B, C>& borders) const;
+  void backward(const Columns& x, const StepRange& steps, const ChainBorders<B, C>& borders) const;
   template <int C, bool Packed>
-  void solve_alone(double* x, std::ptrdiff_t stride) const;
+  void solve_single(double* x, std::ptrdiff_t stride) const;
   template <int C>
   void solve_middle(const Columns& x, std::size_t part, const ChainBorders<B, C>& borders) const;
   template <int C>
@@ -135,22 +138,23 @@ class Bundle {
   void backward_end(const Columns& x, std::size_t lane, std::ptrdiff_t k, const Panel<B, C>& border) const;
 
   Extent<B> block_;
-  std::array<Part, parts_a_bundle> parts_;
+  std::array<Part, parts_per_batch> parts_;
   Range nodes_;
-  std::ptrdiff_t steps_ = 0;     // of the longest chain
-  std::ptrdiff_t together_ = 0;  // steps that all chains take, none of them to a middle
-  std::ptrdiff_t reach_ = 0;     // nodes a chain with fill: the longest fill's, the others padded with zeros
+  std::ptrdiff_t steps_ = 0;         // steps of the longest chain
+  std::ptrdiff_t common_steps_ = 0;  // steps that all chains have, none of them to a middle
+  std::ptrdiff_t fill_nodes_ =
+      0;  // nodes per chain with fill: those of the longest fill; the others are padded with zeros
 
-  // With D_k the pivot block, U_k the coupling to node k + 1 and S_k the coupling of the separator (rows) to node k
-  // (columns), laid out as Factors says, the first two by places:
+  // With the pivot block D_k, the coupling U_k to node k + 1 and the coupling S_k of the separator (rows) to node k
+  // (columns), in the layout of Factors, the first two indexed by places:
   StoredSteps stored_;
   std::vector<LaneEntry> lower_;    // U_k^T D_k^{-1}
   std::vector<LaneEntry> inverse_;  // D_k^{-1}
   std::vector<LaneEntry> fill_;     // S_k D_k^{-1}
-  std::array<Block<B>, parts_a_bundle> middle_inverse_;
+  std::array<Block<B>, parts_per_batch> middle_inverse_;
   std::array<Block<B>, lanes> middle_fill_;
-  std::array<SchurPart<B>, parts_a_bundle> schur_;
-  Plan whole_;
+  std::array<SchurPart<B>, parts_per_batch> schur_;
+  Plan full_plan_;
 };
 
 }  // namespace traverse::solve

@@ -1,30 +1,30 @@
-// Factors a bundle: the bodies of Bundle<B> that blocks.hpp compiles.
+// The factorisation of a subdomain batch: function bodies that blocks.hpp compiles.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 
-#include "bundle_repeats.hpp"
+#include "subdomain_batch_repeats.hpp"
 
 namespace traverse::solve {
 
-// The fill is dropped from the first node on where every entry is below this part of its largest value so far: far
-// below rounding, so that the solution is the exact one, and far above the range where numbers lose their digits.
+// The fill is dropped from the first node on at which every entry is below this fraction of its largest value so far.
+// The limit is far below rounding, so that the solution is exact, and far above the range of subnormal numbers.
 inline constexpr double negligible = 1e-30;
 
-/// What a chain carries from one node to the next while factoring.
+/// The data of a chain that are passed from one node to the next in the factorisation.
 template <int B>
-struct Bundle<B>::Front {
-  Block<B> update;           // U^T D^{-1} U: taken from the next node's diagonal block
-  Block<B> fill;             // S: the separator's coupling with the next node
-  Block<B> separator;        // sum of S D^{-1} S^T: taken from the separator's diagonal block
-  Block<B> peak;             // largest sizes of the kept fill's entries
-  std::vector<double> kept;  // S D^{-1}, a block a node
-  bool filling = false;
+struct SubdomainBatch<B>::Front {
+  Block<B> update;             // U^T D^{-1} U: subtracted from the next node's diagonal block
+  Block<B> fill;               // S: coupling of the separator with the next node
+  Block<B> separator;          // sum of S D^{-1} S^T: subtracted from the separator's diagonal block
+  Block<B> peak;               // largest magnitudes of the stored fill's entries
+  std::vector<double> stored;  // S D^{-1}, one block per node
+  bool has_fill = false;
 };
 
 template <int B>
-Bundle<B>::Bundle(Extent<B> block, const std::array<Part, parts_a_bundle>& parts)
+SubdomainBatch<B>::SubdomainBatch(Extent<B> block, const std::array<Part, parts_per_batch>& parts)
     : block_(block), parts_(parts), nodes_{parts.front().nodes.first, parts.front().nodes.past} {
   std::ptrdiff_t shortest = chain(0).count;
   std::ptrdiff_t longest = 0;
@@ -33,12 +33,12 @@ Bundle<B>::Bundle(Extent<B> block, const std::array<Part, parts_a_bundle>& parts
     longest = std::max(longest, chain(lane).count);
   }
   for (const Part& part : parts_) nodes_.past = std::max(nodes_.past, part.nodes.past);
-  together_ = std::max<std::ptrdiff_t>(0, shortest - 1);
+  common_steps_ = std::max<std::ptrdiff_t>(0, shortest - 1);
   steps_ = longest;
 }
 
 template <int B>
-bool Bundle<B>::factor(const Slice<B>& slice, PivotRecord& record) {
+bool SubdomainBatch<B>::factor(const Slice<B>& slice, PivotRecord& record) {
   const Block<B> zero(block_);
   std::array<Front, lanes> fronts;
   for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -49,22 +49,22 @@ bool Bundle<B>::factor(const Slice<B>& slice, PivotRecord& record) {
   }
   if (!eliminate_chains(slice, fronts, record)) return false;
   store_fill(fronts);
-  for (std::size_t part = 0; part < parts_a_bundle; ++part) {
+  for (std::size_t part = 0; part < parts_per_batch; ++part) {
     if (parts_[part].middle >= 0 && !eliminate_middle(slice, part, &fronts[2 * part], record)) return false;
     if (parts_[part].middle < 0 && !parts_[part].nodes.empty()) {
       const std::ptrdiff_t separator = parts_[part].nodes.first;
       schur_[part] = {slice.diagonal(separator), parts_[part].followed ? slice.upper(separator) : zero, zero};
     }
   }
-  whole_ = plan(nodes_);
+  full_plan_ = plan(nodes_);
   return true;
 }
 
-// All chains in one loop, for the divisions of one to run while the others wait for their own.
+// All chains are in one loop, so that the divisions of one overlap with those of the others.
 template <int B>
-bool Bundle<B>::eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>& fronts, PivotRecord& record) {
-  const bool shares = steps_ > kept_whole;
-  PeriodSearch search(shares ? marks(slice) : std::vector<std::uint64_t>{});
+bool SubdomainBatch<B>::eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>& fronts, PivotRecord& record) {
+  const bool shares = steps_ > min_steps_to_search;
+  PeriodSearch search(shares ? hashes(slice) : std::vector<std::uint64_t>{});
   stored_.start(steps_);
   lower_.clear();
   inverse_.clear();
@@ -79,7 +79,7 @@ bool Bundle<B>::eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>
     const bool repeats = p > 0 && same_rows(slice, k, p) && same_pivots(slice, k, p);
     if (shares && search.repeated(k, repeats)) {
       k = repeat(slice, k + 1, p, fronts) - 1;
-      search.go_on(k + 1);
+      search.restart(k + 1);
     }
   }
   if (shares) {
@@ -90,19 +90,19 @@ bool Bundle<B>::eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>
 }
 
 template <int B>
-void Bundle<B>::store_fill(const std::array<Front, lanes>& fronts) {
+void SubdomainBatch<B>::store_fill(const std::array<Front, lanes>& fronts) {
   std::size_t entries = 0;
-  for (const Front& front : fronts) entries = std::max(entries, front.kept.size());
-  reach_ = static_cast<std::ptrdiff_t>(entries) / block_.area();
+  for (const Front& front : fronts) entries = std::max(entries, front.stored.size());
+  fill_nodes_ = static_cast<std::ptrdiff_t>(entries) / block_.area();
   fill_.assign(entries, LaneEntry{});
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    for (std::size_t e = 0; e < fronts[lane].kept.size(); ++e) fill_[e].chain[lane] = fronts[lane].kept[e];
+    for (std::size_t e = 0; e < fronts[lane].stored.size(); ++e) fill_[e].chain[lane] = fronts[lane].stored[e];
   }
 }
 
 template <int B>
-TRAVERSE_FLATTEN bool Bundle<B>::eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k, Front& front,
-                                                PivotRecord& record) {
+TRAVERSE_FLATTEN bool SubdomainBatch<B>::eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k,
+                                                        Front& front, PivotRecord& record) {
   Block<B> inverse = slice.diagonal(node(lane, k));
   inverse -= front.update;
   if (!invert(inverse, slice, node(lane, k), record)) return false;
@@ -115,31 +115,31 @@ TRAVERSE_FLATTEN bool Bundle<B>::eliminate_node(const Slice<B>& slice, std::size
     for (int c = 0; c <= r; ++c) last[packed(r, c)].chain[lane] = inverse(r, c);
   }
   front.update = lower * upper;
-  if (front.filling) extend_fill(inverse, upper, front);
+  if (front.has_fill) extend_fill(inverse, upper, front);
   return true;
 }
 
 template <int B>
-void Bundle<B>::extend_fill(const Block<B>& inverse, const Block<B>& upper, Front& front) const {
+void SubdomainBatch<B>::extend_fill(const Block<B>& inverse, const Block<B>& upper, Front& front) const {
   const Block<B> fill = front.fill * inverse;
-  front.filling = false;
+  front.has_fill = false;
   for (std::ptrdiff_t e = 0; e < block_.area(); ++e) {
     const double size = std::abs(fill.data()[e]);
     double& peak = front.peak.data()[e];
     peak = std::max(peak, size);
-    front.filling = front.filling || !(size <= negligible * peak);  // a NaN goes on, to be found
+    front.has_fill = front.has_fill || !(size <= negligible * peak);  // a NaN continues and is detected later
   }
-  if (!front.filling) {
+  if (!front.has_fill) {
     front.fill = Block<B>(block_);
     return;
   }
-  front.kept.insert(front.kept.end(), fill.data(), fill.data() + block_.area());
+  front.stored.insert(front.stored.end(), fill.data(), fill.data() + block_.area());
   front.separator += fill * front.fill.transpose();
   front.fill = -(fill * upper);
 }
 
 template <int B>
-bool Bundle<B>::eliminate_middle(const Slice<B>& slice, std::size_t part, Front* fronts, PivotRecord& record) {
+bool SubdomainBatch<B>::eliminate_middle(const Slice<B>& slice, std::size_t part, Front* fronts, PivotRecord& record) {
   const std::ptrdiff_t middle = parts_[part].middle;
   Block<B>& inverse = middle_inverse_[part];
   inverse = slice.diagonal(middle);
@@ -158,11 +158,11 @@ bool Bundle<B>::eliminate_middle(const Slice<B>& slice, std::size_t part, Front*
   return true;
 }
 
-/// Which chains step together in a window, cut where one begins or ends and where the fill ends.
+/// The chains that are processed together in a window, divided where one begins or ends and where the fill ends.
 template <int B>
-typename Bundle<B>::Plan Bundle<B>::plan(Range window) const {
+typename SubdomainBatch<B>::Plan SubdomainBatch<B>::plan(Range window) const {
   Plan result;
-  std::array<std::ptrdiff_t, 2 * lanes + 2> cuts = {reach_, together_};
+  std::array<std::ptrdiff_t, 2 * lanes + 2> cuts = {fill_nodes_, common_steps_};
   std::size_t count = 2;
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const Run run = result.runs[lane] = chain(lane).run(window, parts_[lane / 2].middle);
@@ -171,13 +171,13 @@ typename Bundle<B>::Plan Bundle<B>::plan(Range window) const {
   }
   std::sort(cuts.begin(), cuts.end());
   for (std::size_t i = 0; i + 1 < count; ++i) {
-    Stretch steps = {cuts[i], cuts[i + 1], 0};
+    StepRange steps = {cuts[i], cuts[i + 1], 0};
     if (steps.from == steps.to) continue;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const Run& run = result.runs[lane];
       if (run.from <= steps.from && steps.to <= run.to) steps.chains |= 1U << lane;
     }
-    if (steps.chains != 0) result.stretches[result.count++] = steps;
+    if (steps.chains != 0) result.ranges[result.count++] = steps;
   }
   return result;
 }
