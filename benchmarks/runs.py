@@ -103,9 +103,10 @@ class Run:
         if done.returncode != 0:
             raise Failed(command, done.stdout)
         self.text = done.stdout
-        self.unknowns = unknowns(done.stdout)
         self.file = file
         with h5py.File(file) as results:
+            notes = results["model/notes"].asstr()[:, 1] if "model/notes" in results else []
+            self.unknowns = unknowns("\n".join([done.stdout, *notes]))
             self.seconds = float(results.attrs["wall_seconds"])
             self.steps = int(results.attrs.get("steps", 0))
 

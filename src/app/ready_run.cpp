@@ -51,7 +51,7 @@ ReadyRun::ReadyRun(Job& given)
                       passage.steps()));
     job.notes.push_back(fmt::format("goes on from t = {:g} s", job.earlier->time));
   }
-  print_notes(job.comm, job.notes);
+  print_notes(job.comm, scene, job.notes);
 }
 
 void ReadyRun::record_rounding() {

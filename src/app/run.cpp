@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "analyses.hpp"
+#include "base/notes.hpp"
 #include "check/check.hpp"
 #include "error_control/trial_runs.hpp"
 #include "prepare.hpp"
@@ -30,9 +31,9 @@ void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
   scene.model.vehicles = VehicleModel::linear;
   scene.model.residual_limit = default_residual_limit(scene);
   notes.push_back(
-      fmt::format("vehicles are linearised as long as the residual is below {:.1g} of their weights; "
-                  "-model_vehicles full keeps the mechanisms",
-                  scene.model.residual_limit));
+      base::detail(fmt::format("vehicles are linearised as long as the residual is below {:.1g} of their weights; "
+                               "-model_vehicles full keeps the mechanisms",
+                               scene.model.residual_limit)));
 }
 
 /// A run that goes on has as many as it had, of as many.

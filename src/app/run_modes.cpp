@@ -60,7 +60,7 @@ int run_modes(Job job) {
   const beam::Beam& beam = *shared.beam;
   const auto [omega1, omega2] = *shared.omega;
   const beam::Rayleigh ab = shared.rayleigh;
-  print_notes(comm, notes);
+  print_notes(comm, scene, notes);
   const beam::ShapePoints points(beam.mesh());
   const modes::Modes found = [&] {
     const results::Stage stage("computation of the natural modes");

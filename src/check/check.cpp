@@ -11,6 +11,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/notes.hpp"
 #include "cost.hpp"
 #include "drawing.hpp"
 #include "results/terminal.hpp"
@@ -189,7 +190,7 @@ void print_runs(const Page& page, const Scene& given, const FirstRun& run) {
 
 void print_notes(const Page& page, const std::vector<std::string>& notes) {
   page.heading("model");
-  for (const std::string& note : notes) fmt::print("  {}\n", note);
+  for (const std::string& note : notes) fmt::print("  {}\n", base::text_of_note(note));
 }
 
 void print_cost(const Page& page, const Scene& given, const FirstRun& run) {

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "base/digest.hpp"
+#include "base/notes.hpp"
 #include "base/one_step_methods.hpp"
 #include "base/regular_file.hpp"
 #include "integrate/integrators.hpp"
@@ -86,7 +87,10 @@ bool ChoiceCache::read(const Scene& scene, std::vector<std::string>& notes, Choi
   }
   choice = std::move(found);
   notes = {"stored choice for the same scene; -accuracy_cache false repeats the trial runs"};
-  for (const std::string& note : stored_notes) notes.push_back(printable(note));
+  for (const std::string& note : stored_notes) {
+    const std::string text = printable(base::text_of_note(note));
+    notes.push_back(base::is_detail(note) ? base::detail(text) : text);
+  }
   return true;
 }
 

@@ -218,6 +218,7 @@ constexpr Row later_rows[] = {
   {"checkpoint_file", text, "", "<output_file>.checkpoint", any, "", 0, "file of the checkpoints; each replaces the one before; none: no checkpoints"},
   {"restart", file, "", "", any, "", 0, "continues from this checkpoint of the same scene; end time and file names may differ"},
 
+  {"verbose", flag, "", "false", any, "", 0, "print the description of the model, and in sweeps the resonance speeds of each train; the results file always has them"},
   {"output_quiet", flag, "", "false", any, "", 0, "no progress display on the terminal"},
 
   {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step; each may be in km/h"},

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/notes.hpp"
 #include "run/quantity.hpp"
 #include "traverse/options/verdict_limit.hpp"
 
@@ -173,7 +174,7 @@ void record_quantities(Recorder& recorder) {
 
 void record_model(const Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder) {
   Pairs rows;
-  for (const std::string& note : notes) rows.emplace_back(std::to_string(rows.size() + 1), note);
+  for (const std::string& note : notes) rows.emplace_back(std::to_string(rows.size() + 1), base::text_of_note(note));
   if (!rows.empty()) recorder.tables({{"/model/notes", rows}});
   record_quantities(recorder);
   if (scene.beam) record_bridge(*scene.beam, recorder);

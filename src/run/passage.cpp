@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "base/notes.hpp"
 #include "integrate/integrator_choice.hpp"
 #include "results/stage.hpp"
 #include "run/axle_load_records.hpp"
@@ -90,12 +91,14 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
       check_steps(scene, plan_, shared.first_period(), stepper_->high_order(), notes);
     method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
   }
-  notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
-                              system_.fleet().members.size(), system_.freedom(), scene.load.forces.size()));
+  notes.push_back(
+      base::detail(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
+                               system_.fleet().members.size(), system_.freedom(), scene.load.forces.size())));
   if (!static_only_)
-    notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s{}", method, plan_.end_time,
-                                plan_.interval * static_cast<double>(plan_.stored),
-                                plan_.ends_at_sample() || scene.sweep ? "" : ", the end's own apart under /end"));
+    notes.push_back(
+        base::detail(fmt::format("integrator {} to {:g} s, samples every {:g} s{}", method, plan_.end_time,
+                                 plan_.interval * static_cast<double>(plan_.stored),
+                                 plan_.ends_at_sample() || scene.sweep ? "" : ", the end's own apart under /end")));
 }
 
 void Passage::add_axle_passages(std::vector<double>& times) const {
@@ -114,8 +117,9 @@ void Passage::limit_to_active_window(std::vector<std::string>& notes) {
                                                                 : 0.0;
   if (tolerance == 0.0) return;
   system_.limit_to_active_window(tolerance, scene_.output.probes);
-  notes.push_back(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",
-                              tolerance, scene_.model.window_tolerance >= 0.0 ? "" : "; -model_window 0 steps all"));
+  notes.push_back(
+      base::detail(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",
+                               tolerance, scene_.model.window_tolerance >= 0.0 ? "" : "; -model_window 0 steps all")));
 }
 
 void Passage::start(std::vector<std::string>& notes) {
@@ -129,7 +133,7 @@ void Passage::start(std::vector<std::string>& notes) {
   for (const std::string& line : system_.start(static_only_ || scene_.start == Start::equilibrium, y, static_only_))
     notes.push_back(line);
   if (scene_.model.vehicles == VehicleModel::linear && !static_only_)
-    for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(line);
+    for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(base::detail(line));
   if (!static_only_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);
 }

@@ -10,6 +10,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "base/notes.hpp"
 #include "results/terminal.hpp"
 
 namespace traverse::app {
@@ -24,10 +25,14 @@ std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const
           {"scene", scene.name}};
 }
 
-void print_notes(MPI_Comm comm, const std::vector<std::string>& notes) {
+void print_notes(MPI_Comm comm, const Scene& scene, const std::vector<std::string>& notes) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  if (rank == 0) results::print_modelled(notes);
+  if (rank != 0) return;
+  std::vector<std::string> lines;
+  for (const std::string& note : notes)
+    if (scene.verbose || !base::is_detail(note)) lines.push_back(base::text_of_note(note));
+  results::print_modelled(lines);
 }
 
 void complain(const Error& error) { (void)std::fputs(fmt::format("traverse: {}\n", error.what()).c_str(), stderr); }

@@ -14,8 +14,8 @@ std::string digest_of(const Scene& scene, std::span<const std::string_view> free
   auto entries = scene.options;
   std::erase_if(entries, [&](const auto& option) {
     const std::string& name = option.first;
-    const bool display_only =
-        name.starts_with("ts_monitor") || name.starts_with("log_") || name.find("_view") != name.npos;
+    const bool display_only = name == "verbose" || name.starts_with("ts_monitor") || name.starts_with("log_") ||
+                              name.find("_view") != name.npos;
     return display_only || std::find(free.begin(), free.end(), name) != free.end();
   });
   std::sort(entries.begin(), entries.end());

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "base/notes.hpp"
 #include "modes/modes.hpp"
 #include "results/stage.hpp"
 
@@ -71,8 +72,8 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
         "gaps "
         "open");
   beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
-  notes.push_back(scene.beam->given ? given_modes_text(*beam) : beam_text(*beam));
-  if (beam->rail() != nullptr) notes.push_back(track_text(*beam));
+  notes.push_back(base::detail(scene.beam->given ? given_modes_text(*beam) : beam_text(*beam)));
+  if (beam->rail() != nullptr) notes.push_back(base::detail(track_text(*beam)));
 }
 
 void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
@@ -96,9 +97,9 @@ void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<s
     rayleigh = modes::rayleigh(omega->first, omega->second, damping.ratios->first, damping.ratios->second);
   beam->set_rayleigh(rayleigh);
   if (omega)
-    notes.push_back(fmt::format(
+    notes.push_back(base::detail(fmt::format(
         "first distinct frequencies {:.6g} and {:.6g} Hz; Rayleigh a = {:.6g} 1/s, b = {:.6g} s",
-        omega->first / (2.0 * std::numbers::pi), omega->second / (2.0 * std::numbers::pi), rayleigh.a, rayleigh.b));
+        omega->first / (2.0 * std::numbers::pi), omega->second / (2.0 * std::numbers::pi), rayleigh.a, rayleigh.b)));
 }
 
 void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
@@ -111,14 +112,15 @@ void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
   else
     modal.emplace(*beam, *statics, modes::bending_basis(*beam, scene.model.modes), scene.damping_of_modes);
   if (scene.by_given_modes() && modal->modes() < scene.beam->given->omega.size())
-    notes.push_back(fmt::format("of these modes the {} lowest", modal->modes()));
+    notes.push_back(base::detail(fmt::format("of these modes the {} lowest", modal->modes())));
   if (scene.by_given_modes()) return;
   const auto hertz = [&](double value) { return value / (2.0 * std::numbers::pi); };
-  notes.push_back(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}", modal->modes(),
-                              hertz(modal->omega().back()), scene.exact_in_time() ? ", exact in time" : "",
-                              static_cast<int>(modal->modes()) > scene.model.modes
-                                  ? fmt::format(" ({} asked for: all copies of the last frequency)", scene.model.modes)
-                                  : ""));
+  notes.push_back(
+      base::detail(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}", modal->modes(),
+                               hertz(modal->omega().back()), scene.exact_in_time() ? ", exact in time" : "",
+                               static_cast<int>(modal->modes()) > scene.model.modes
+                                   ? fmt::format(" ({} asked for: all copies of the last frequency)", scene.model.modes)
+                                   : "")));
 }
 
 double SharedBeam::first_period() const { return omega ? 2.0 * std::numbers::pi / omega->first : 0.0; }

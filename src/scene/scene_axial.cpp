@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/notes.hpp"
 #include "scene_parts.hpp"
 
 namespace traverse::app {
@@ -68,7 +69,8 @@ void decide_axial(const options::Options& o, Scene& scene) {
                               : "acts along x, which needs " + missing);
   if (setting != "auto") {
     scene.beam->axial = setting == "true";
-    scene.notes.push_back(fmt::format("axial unknowns: {}, as requested", scene.beam->axial ? "modelled" : "none"));
+    scene.notes.push_back(
+        base::detail(fmt::format("axial unknowns: {}, as requested", scene.beam->axial ? "modelled" : "none")));
     return;
   }
   const beam::Foundation& foundation = scene.beam->foundation;
@@ -79,9 +81,9 @@ void decide_axial(const options::Options& o, Scene& scene) {
   const std::string action = longitudinal_action(o, scene);
   scene.beam->axial = stiffness && !action.empty();
   if (scene.beam->axial) {
-    scene.notes.push_back("axial unknowns: modelled, because of " + action);
+    scene.notes.push_back(base::detail("axial unknowns: modelled, because of " + action));
   } else if (action.empty()) {
-    scene.notes.emplace_back("axial unknowns: none, nothing acts along the beam");
+    scene.notes.push_back(base::detail("axial unknowns: none, nothing acts along the beam"));
   } else {
     scene.notes.push_back(fmt::format("axial unknowns: none, {} not given ({} would use them)", missing, action));
   }

@@ -34,6 +34,10 @@ contact::Law VehicleReader::law(double radius, const std::string& other) const {
              : kind == "linear" ? contact::LawKind::linear
                                 : contact::LawKind::two_sided;
   law.stiffness = stiffness(law.kind, radius, other);
+  if (law.kind == contact::LawKind::two_sided)
+    for (const char* field : {"friction", "restitution"})
+      if (has(field) && number(field) != 0.0)
+        o_.refuse(key(field), "is only for one-sided contacts, not for law two_sided");
   law.damping = number("damping");
   if (has("restitution")) {
     if (has("damping")) o_.refuse(key("restitution"), "give either restitution or damping");
@@ -44,10 +48,6 @@ contact::Law VehicleReader::law(double radius, const std::string& other) const {
     o_.refuse(key("restitution_law"), "needs " + key("restitution"));
   }
   law.friction = number("friction");
-  if (law.kind == contact::LawKind::two_sided)
-    for (const char* field : {"friction", "restitution"})
-      if (has(field) && number(field) != 0.0)
-        o_.refuse(key(field), "is only for one-sided contacts, not for law two_sided");
   law.transition_speed = number("transition_speed");
   return law;
 }

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/notes.hpp"
 #include "options/data_file.hpp"
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
@@ -144,7 +145,7 @@ void check_courses(const Options& o, Scene& scene) {
   std::string what;
   for (const std::vector<train::Course>* courses : {&scene.train.courses, &scene.load.courses})
     for (const train::Course& course : *courses) what += (what.empty() ? "" : "; ") + course_text(course);
-  scene.notes.push_back("runs: " + what);
+  scene.notes.push_back(base::detail("runs: " + what));
   if (several)
     scene.notes.emplace_back("parallel tracks: all wheels and forces act on the beam's axis; its torsion is neglected");
 }

@@ -28,7 +28,7 @@ base::TimeFunction read_force_table(const Options& o, const std::string& option)
 }  // namespace
 
 bool has_line_loads_or_variation(const Options& o, const Block& block) {
-  for (const char* name : {"moments", "distributed", "table", "frequency"})
+  for (const char* name : {"moments", "distributed", "table", "frequency", "amplitude", "phase", "unbalance"})
     if (const std::string option = block.option(name); o.knows(option) && o.has(option)) return true;
   return false;
 }

@@ -216,6 +216,7 @@ void read_output(const Options& o, Scene& scene) {
   if (scene.output.file == "none") scene.output.file.clear();
   scene.output.interval = o.optional_number("output_interval");
   scene.quiet = o.flag("output_quiet");
+  scene.verbose = o.flag("verbose");
   scene.check = o.flag("check");
   read_probes(o, scene);
   read_filter(o, scene);

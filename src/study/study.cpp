@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/notes.hpp"
 #include "engine/processor.hpp"
 #include "error_control/choice_cache.hpp"
 #include "error_control/mode_choice.hpp"
@@ -83,13 +84,13 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
   describe_runs(study, notes);
   if (known > 0) notes.push_back(fmt::format("{} of them are read from the existing results file", known));
   if (first.has_lanes())
-    notes.push_back(fmt::format("up to {} runs{} are advanced together, one in each lane of {} vectors", first.width(),
-                                study.sweep
-                                    ? ""
-                                    : fmt::format(" that differ in {} only", scenes.mixes_vehicles(first.width())
-                                                                                 ? "speed, track and vehicle parameters"
-                                                                                 : "speed and track"),
-                                engine::instructions()));
+    notes.push_back(base::detail(
+        fmt::format("up to {} runs{} are advanced together, one in each lane of {} vectors", first.width(),
+                    study.sweep ? ""
+                                : fmt::format(" that differ in {} only", scenes.mixes_vehicles(first.width())
+                                                                             ? "speed, track and vehicle parameters"
+                                                                             : "speed and track"),
+                    engine::instructions())));
   else if (!first.lane_obstacle().empty() && !scene.vehicles.empty())
     notes.push_back("runs are computed one by one: " + first.lane_obstacle());
   if (study.refine > 0.0)
@@ -106,7 +107,7 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
   const bool has_cost = model.modes > 0 || model.time_step > 0.0;
   notes.push_back(fmt::format("the {} is computed {}{}", study.sweep ? "sweep" : "study", results::method_of(model),
                               has_cost ? "; estimated time " + results::duration_text(seconds) : ""));
-  if (ranks > 1) notes.push_back(fmt::format("{} ranks share the runs by a common queue", ranks));
+  if (ranks > 1) notes.push_back(base::detail(fmt::format("{} ranks share the runs by a common queue", ranks)));
   if (study.sweep && has_cost && seconds >= long_duration)
     suggest_modes(scene, seconds, ranks, model.accuracy > 0.0, notes);
 }
@@ -249,7 +250,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   Rounds rounds(comm, findings ? scene : given, scenes, model, findings ? findings->width_of_resonance() : 0.0,
                 stored_of(comm, given, model), notes);
   describe(scene, scenes, model, rounds.copy_stored(), ranks, notes);
-  print_notes(comm, notes);
+  print_notes(comm, scene, notes);
   if (findings && scenes.study().refine > 0.0) rounds.add(findings->unresolved_speeds());
 
   const DeferredSignals noted;

@@ -1,6 +1,8 @@
 // Computes resonance speeds for a sweep, their peaks in its table, and the comparison with the rules of EN 1991-2.
 #include "study/sweep_findings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -72,7 +74,9 @@ void SweepFindings::record(results::Recorder& recorder) const {
 }
 
 void SweepFindings::print() const {
-  results::print(scene_.sweep->trains, resonances_, cancellations_);
+  const bool many = scene_.sweep->trains.size() > 1 && !scene_.verbose;
+  if (many && !resonances_.empty()) fmt::print("resonance speeds: printed with -verbose, stored under /resonances\n");
+  results::print(scene_.sweep->trains, many ? std::vector<results::Resonance>() : resonances_, cancellations_);
   if (check_) check_->print();
 }
 

@@ -18,7 +18,7 @@ Eigen::VectorXd solve(SparseLdl& ldl, const Eigen::MatrixXd& A, Eigen::VectorXd 
   ldl.set_zero();
   for (int i = 0; i < n; ++i)
     for (int j = i; j < n; ++j)
-      if (A(i, j) != 0.0) ldl.entries()[ldl.where(j, i)] += A(i, j);
+      if (A(i, j) != 0.0) ldl.entries()[ldl.entry_index(j, i)] += A(i, j);
   ldl.factor();
   ldl.solve(x.data());
   return x;

@@ -27,7 +27,7 @@ Said run_and_listen(const std::string& scene, const Values& options) {
 
 // Nothing acts along the beam but what inclined normal forces have along it, a millionth of them.
 TEST(LeftOut, AxialUnknowns) {
-  const Values stiff = {{"beam_EA", "2e11"}};
+  const Values stiff = {{"beam_EA", "2e11"}, {"verbose", "true"}};
   Said without = run_and_listen(coaches, stiff),
        with = run_and_listen(coaches, stiff + Values{{"model_axial", "true"}});
   EXPECT_NE(without.text.find("axial unknowns: none, nothing acts along the beam"), std::string::npos) << without.text;

@@ -131,7 +131,7 @@ TEST(Study, TrainsInLanesAreThoseOfRunsAlone) {
                         {"study_vary_vehicle_coach_wheelset_1_mass_uniform", "1500,2000"},
                         {"study_draws", "5"}};
   testing::internal::CaptureStdout();
-  Results study = run_yaml(coach, by_elements + draws);
+  Results study = run_yaml(coach, by_elements + draws + Values{{"verbose", "true"}});
   const std::string said = testing::internal::GetCapturedStdout();
   EXPECT_NE(said.find("runs that differ in speed, track and vehicle parameters only are advanced together"), said.npos)
       << said;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -96,7 +97,7 @@ TEST(VaryingLoads, Unbalance) {
 // A ramp that ends: F' t until 0.3 s, then the constant F' 0.3.
 TEST(VaryingLoads, TableOverTime) {
   const TemporaryFolder folder;
-  const std::string table = folder.write("ramp.csv", "t,F\n0,0\n0.3,6e4\n2,6e4\n");
+  const std::string table = folder.write("ramp.csv", "# t,F\n0,0\n0.3,6e4\n2,6e4\n");
   Results run = run_yaml(beam_of("load: {forces: 0, positions: 7.0, speed: 0, table: " + table + "}\n"));
   expect_deflections(run, 2e-5, [](double x, double t) {
     return series(x, [&](int n, double w) {
@@ -157,8 +158,8 @@ TEST(VaryingLoads, StaticLineLoadBetweenNodes) {
     EXPECT_NEAR(deflection[p], exact.deflection, 1e-8 * std::abs(exact.deflection)) << probes[p];
     EXPECT_NEAR(moment[p], exact.moment, 1e-9 * std::abs(exact.moment)) << probes[p];
   }
-  const std::vector<double> supports = run("/supports/vertical");
-  EXPECT_NEAR(supports[0] + supports[1], 2.5e4 * 9.4, 1e-6);
+  const std::vector<double> supports = run("/supports/reaction");
+  EXPECT_NEAR(std::accumulate(supports.begin(), supports.end(), 0.0), 2.5e4 * 9.4, 1e-6);
 }
 
 // A moment M0 at a: M = M0 x/L to its left and M0 (x - L)/L to its right.
@@ -183,11 +184,11 @@ TEST(VaryingLoads, StaticMoment) {
 
 TEST(VaryingLoads, RefuseWhatMakesNoSense) {
   const auto refused = [](const std::string& load) { return message_of([&] { run_yaml(beam_of(load)); }); };
-  EXPECT_EQ(refused("load: {forces: 1, amplitude: 3}\n"), "load_amplitude = 3: needs load_frequency");
-  EXPECT_EQ(refused("load: {forces: 1, frequency: 3}\n"), "load_frequency = 3: needs load_amplitude or load_unbalance");
-  EXPECT_NE(refused("load: {distributed: [3, 2, 1], speed: 1}\n").find("a second end beyond the first"),
-            std::string::npos);
-  EXPECT_NE(refused("load: {distributed: [3, 2], speed: 1}\n").find("three for each line load"), std::string::npos);
+  EXPECT_TRUE(contains(refused("load: {forces: 1, speed: 0, amplitude: 3}\n"), "needs load_frequency"));
+  EXPECT_TRUE(
+      contains(refused("load: {forces: 1, speed: 0, frequency: 3}\n"), "needs load_amplitude or load_unbalance"));
+  EXPECT_TRUE(contains(refused("load: {distributed: [3, 2, 1], speed: 1}\n"), "a second end beyond the first"));
+  EXPECT_TRUE(contains(refused("load: {distributed: [3, 2], speed: 1}\n"), "three for each line load"));
 }
 
 }  // namespace

@@ -127,6 +127,7 @@ struct Scene {
   std::optional<options::NormRules> norm;                    // for static effects and the verdict of EN 1991-2
   std::optional<options::RailLoads> rail_loads;              // of scene_analysis rail
   bool quiet = false;                                        // -output_quiet: no progress display
+  bool verbose = false;                                      // -verbose: details of the model are printed
   bool check = false;                                        // -check: the scene is reported, without a run
   std::vector<std::string> notes;                            // choices with their reasons, one line each
   std::vector<std::string> unusual;                          // the notes on possible but unusual input
