@@ -158,9 +158,11 @@ void Beam::assemble(const Slice& slice) {
   stiffness.add(1.0, beams);
   if (model().strained()) record_strains(slice, springs);
   record_reactions(slice, beams, mass, beam_mass, beam_stiffness, stiffness, damping);
-  const auto is_vertical = [&](int unknown) { return Layout::is_vertical(layout_.kind[index(unknown % block())]); };
-  for (int i = begin; i < end; ++i)
-    weight_.push_back(mass.times(i, [&](int j) { return is_vertical(j) ? -1.0 : 0.0; }));
+  const auto direction_of_weight = [&](int unknown) {
+    const Kind kind = layout_.kind[index(unknown % block())];
+    return Layout::is_vertical(kind) ? -1.0 : Layout::axial(kind) ? -model().gradient : 0.0;
+  };
+  for (int i = begin; i < end; ++i) weight_.push_back(mass.times(i, direction_of_weight));
 
   Rows pattern(slice);
   for (const Rows* rows : {&mass, &beam_stiffness, &stiffness, &damping}) pattern.add_pattern(*rows);

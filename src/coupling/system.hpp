@@ -298,6 +298,7 @@ class System {
   double structure_error(const double* y);
   void load_structure(double t);
   void load_line(std::size_t i, double t);
+  double gradient() const;
   void record_braking();
   bool brakes_track(int wheel) const;
   bool update_braking(double t);

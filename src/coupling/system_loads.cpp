@@ -67,9 +67,13 @@ structure::ElementLoads System::contact_loads() {
   return {fleet_.elements(), element_loads_};
 }
 
-// Whether the force that accelerates the vehicle acts on the track. Wheels with friction transmit it by themselves.
+double System::gradient() const { return structure_ ? beam()->model().gradient : 0.0; }
+
+// Whether the force that accelerates the vehicle, or holds it on an incline, acts on the track. Wheels with friction
+// transmit it by themselves.
 bool System::brakes_track(int wheel) const {
-  if (line_ == nullptr || line_->per_node != 3 || !is_driven(wheel) || law_of_wheel(wheel).constant()) return false;
+  if (line_ == nullptr || line_->per_node != 3 || !is_driven(wheel)) return false;
+  if (law_of_wheel(wheel).constant() && gradient() == 0.0) return false;
   const auto member = static_cast<std::size_t>(fleet_.member(wheel));
   const train::Vehicle& type = input_.types[static_cast<std::size_t>(input_.train.vehicles[member])];
   return std::all_of(type.wheels.begin(), type.wheels.end(),
@@ -104,7 +108,7 @@ bool System::update_braking(double t) {
     const BrakingWheel& wheel = braking_[i];
     const double x = wheel.x + wheel.law.distance(t);
     const bool on = x >= line_->mesh.start() && x <= line_->mesh.end();
-    const double force = on ? -wheel.mass * wheel.law.acceleration(t) : 0.0;
+    const double force = on ? -wheel.mass * (wheel.law.acceleration(t) + gradient() * input_.gravity) : 0.0;
     changed = changed || force != braking_force_[i];
     braking_force_[i] = force;
   }

@@ -12,7 +12,9 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) {
   std::fill_n(y, local_size(), 0.0);
-  const bool loads_known = !equilibrium && static_wheel_loads();
+  // On an incline, the static wheel loads determine the forces along the track that hold the vehicles.
+  const bool loads_known = (!equilibrium || gradient() != 0.0) && static_wheel_loads();
+  if (loads_known) update_braking(0.0);
   if (equilibrium) {
     find_equilibrium(y);
   } else if (structure_ && structure_->deformed_without_traffic()) {

@@ -147,6 +147,8 @@ void check_actuator(const Part& part, const Actuator& actuator) {
 
 void check_model(const MechanismModel& model) {
   if (model.bodies.empty()) throw InputError("vehicle '" + model.name + "' has no body");
+  if (!std::isfinite(model.gradient))
+    throw InputError("vehicle '" + model.name + "': the gradient is not a finite number");
   if (!std::isfinite(model.gravity)) throw InputError("vehicle '" + model.name + "': gravity is not a finite number");
   for (const Body& body : model.bodies) check_body(Part(model, "body", body.name), body);
   for (const Joint& joint : model.joints) check_joint(Part(model, "joint", joint.name), joint);

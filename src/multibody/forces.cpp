@@ -7,7 +7,10 @@ namespace traverse::multibody {
 void Mechanism::compute_forces(MechanismState& s) const {
   s.g.setZero();
   s.dissipation = 0.0;
-  for (int i = 1; i < s.g.size(); i += 3) s.g[i] = -mass_[i] * model_.gravity;
+  for (int i = 1; i < s.g.size(); i += 3) {
+    s.g[i] = -mass_[i] * model_.gravity;
+    s.g[i - 1] = model_.gradient * s.g[i];
+  }
   for (const SpringGeometry& spring : springs_) {
     const PairForce force =
         multibody::spring_force(spring, frame(s, spring.first), frame(s, spring.second), s.dissipation);
@@ -89,7 +92,8 @@ double Mechanism::torsion_spring_moment(const MechanismState& s, int k) const {
 MechanismEnergy Mechanism::energy(const MechanismState& s) const {
   MechanismEnergy e{powers(s)};
   for (int i = 0; i < s.q.size(); ++i) e.kinetic += 0.5 * mass_[i] * s.qd[i] * s.qd[i];
-  for (int i = 1; i < s.q.size(); i += 3) e.potential += mass_[i] * model_.gravity * s.q[i];
+  for (int i = 1; i < s.q.size(); i += 3)
+    e.potential += mass_[i] * model_.gravity * (s.q[i] + model_.gradient * s.q[i - 1]);
   for (const SpringGeometry& spring : springs_) {
     e.strain += spring_strain_energy(spring, frame(s, spring.first), frame(s, spring.second));
   }

@@ -131,6 +131,7 @@ constexpr Row run_rows[] = {
   {"track_bump_height", number, "m", "", any, "", 0, "height of the bump in its middle"},
   {"track_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "seed of the random phases of the roughness"},
   {"track_wavelengths", numbers, "m", "(iso8608 0.1, 100; german 0.5, 80; fra 1.5, 300)", positive, "", 2, "shortest and longest wavelength of the roughness"},
+  {"track_gradient", number, "1", "0", {-1.0, 1.0}, "", 0, "gradient of beam and track, tan of the angle (0.04: rises by 40 per mille to the right); x is along the beam, gravity has a component along it"},
   {"track_dips_x", numbers, "m", "", any, "", 0, "stations of dips, which are added to track_profile"},
   {"track_dips_length", numbers, "m", "", positive, "", 0, "length of each dip; one value applies to all"},
   {"track_dips_depth", numbers, "m", "", any, "", 0, "depth of each dip in its middle, negative: a hump; one value applies to all"},

@@ -138,6 +138,10 @@ void RecoverySection::add_weight(const BeamModel& model, double gravity) {
   const auto end = transverse_load(model.mass, element);
   weight.shear += gravity * end[0];
   weight.moment += gravity * (x * end[0] - end[1]);
+  if (model.gradient != 0.0 && EA > 0.0)
+    integrate(model.mass, element.x, element.x + h, [&](double s, double piece) {
+      add_axial_point_load((s - element.x) / h, -model.gradient * gravity * piece, weight);
+    });
   const Bed* nonlinear_bed = nullptr;
   for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
     if (kind.direction == Direction::vertical && bed.law.nonlinear()) nonlinear_bed = &bed;
@@ -193,9 +197,13 @@ void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const
     r.shear += load.fy;
     r.moment += load.fy * (at.xi - load.xi) * h - load.moment;
   }
-  if (EA <= 0.0) return;
-  r.axial_force += load.fx * (left ? -load.xi : 1.0 - load.xi);
-  r.axial_displacement += load.fx * h / EA * (left ? load.xi * (1.0 - at.xi) : at.xi * (1.0 - load.xi));
+  if (EA > 0.0) add_axial_point_load(load.xi, load.fx, r);
+}
+
+void RecoverySection::add_axial_point_load(double xi, double force, Response& r) const {
+  const bool left = is_left(xi, at.xi);
+  r.axial_force += force * (left ? -xi : 1.0 - xi);
+  r.axial_displacement += force * element.length / EA * (left ? xi * (1.0 - at.xi) : at.xi * (1.0 - xi));
 }
 
 }  // namespace traverse::beam

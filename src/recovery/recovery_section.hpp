@@ -50,6 +50,8 @@ struct RecoverySection {
 
  private:
   void add_point_load(const ElementLoad& load, Response& r) const;
+  /// A force along x (N) at xi.
+  void add_axial_point_load(double xi, double force, Response& r) const;
   void add_foundation(const Line& line);
   void set_up_held_element(const BeamModel& model, const std::vector<InnerSpring>& springs,
                            const std::vector<InnerSpring>& dampers);

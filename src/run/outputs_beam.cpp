@@ -44,11 +44,12 @@ constexpr Row<Balance> balance_rows[] = {
     {"residual", "N, N", of<&Balance::residual>},
 };
 
-/// gravity: for the structure's own weight, m/s2; 0 without it.
-Balance balance_of(const Observed& now, double gravity, bool axial) {
+/// gravity: for the structure's own weight, m/s2; 0 without it. gradient: of the beam.
+Balance balance_of(const Observed& now, double gravity, bool axial, double gradient) {
   const beam::GroundForces& ground = *now.ground;
   Balance b;
   b.load = {0.0, -(gravity * ground.mass())};
+  if (axial) b.load[0] = gradient * b.load[1];
   for (const beam::ElementLoad& l : now.motion.loads) {
     if (axial) b.load[0] += l.fx;
     b.load[1] += l.fy;
@@ -100,9 +101,9 @@ void add_supports(const Source& source, Outputs& outputs) {
 void add_balance(const Source& source, Outputs& outputs) {
   if (source.beam->model().given) return;
   const double gravity = source.scene.self_weight ? source.scene.gravity : 0.0;
-  outputs.add("/balance/", balance_rows, [gravity, axial = source.beam->model().axial](const Observed& now) {
-    return balance_of(now, gravity, axial);
-  });
+  outputs.add("/balance/", balance_rows,
+              [gravity, axial = source.beam->model().axial, gradient = source.beam->model().gradient](
+                  const Observed& now) { return balance_of(now, gravity, axial, gradient); });
 }
 
 void add_rail(const Source& source, Outputs& outputs) {

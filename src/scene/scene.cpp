@@ -79,6 +79,21 @@ void read_limits(const Options& o, Scene& scene) {
   scene.notes.emplace_back("limits has no effect with this scene_analysis");
 }
 
+/// x is along the beam and y perpendicular to it, so that a gradient turns the direction of gravity.
+void read_gradient(const Options& o, Scene& scene) {
+  const double gradient = o.number("track_gradient");
+  if (gradient == 0.0) return;
+  if (scene.beam && (scene.beam->track || scene.beam->given))
+    o.refuse("track_gradient", scene.beam->track ? "allowed without a layered track only"
+                                                 : "given modes have no motion along the beam; allowed: 0");
+  scene.gravity /= std::hypot(1.0, gradient);
+  if (scene.beam) scene.beam->gradient = gradient;
+  for (Vehicle& vehicle : scene.vehicles) {
+    vehicle.mechanism.gravity = scene.gravity;
+    vehicle.mechanism.gradient = gradient;
+  }
+}
+
 /// Checks that the run has an end: the last wheel or force leaves the beam, or the user gives the end time.
 void check_end(const Options& o, const Scene& scene) {
   if (scene.analysis != Analysis::transient || scene.end_time) return;
@@ -175,6 +190,7 @@ Scene read_scene(Options o) {
   read_track(o, scene);
   read_layers(o, scene);
   check_courses(o, scene);
+  read_gradient(o, scene);
   decide_axial(o, scene);
   read_limits(o, scene);
   read_output(o, scene);

@@ -29,6 +29,7 @@ std::string longitudinal_action(const options::Options& o, const Scene& scene) {
   if (present(foundation, beam::Direction::longitudinal)) return "longitudinal foundations";
   if (scene.beam->temperature && scene.beam->temperature->strain() != 0.0) return "temperature";
   if (!option_along_the_track(o, scene).empty()) return "the track's resistance along x";
+  if (scene.beam->gradient != 0.0 && (scene.self_weight || !scene.vehicles.empty())) return "track_gradient";
   if (scene.analysis == Analysis::rail_forces) return "the requested rail forces";
   if (scene.analysis == Analysis::modes) return "the requested modes";
   const auto& courses = scene.train.courses;

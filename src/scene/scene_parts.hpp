@@ -41,7 +41,6 @@ double direction_of(const options::Options& options, const Block& block);
 double entrance(const Scene& scene, double direction);
 /// The speed law of a block's speed_file for a first wheel or force at `front` at t = 0.
 base::SpeedLaw read_speed_file(const options::Options& options, const Block& block, double front);
-/// Whether the blocks need courses: there are several, or one has a variable or negative speed or its own profile.
 /// Whether a load has line loads, moments or a part that varies over time.
 bool has_line_loads_or_variation(const options::Options& options, const Block& block);
 /// A load of moments alone (load_moments), the first at `entrance` without positions.
@@ -52,6 +51,8 @@ void add_moments(const options::Options& options, const Block& block, MovingLoad
 void add_line_loads(const options::Options& options, const Block& block, MovingLoad& load);
 /// load_table and the harmonics of load_frequency; throws InputError with one line.
 train::ForceVariation read_variation(const options::Options& options, const Block& block);
+/// Whether the blocks need courses: there are several, or one has a variable or negative speed, its own profile, line
+/// loads, moments or forces that vary.
 bool needs_courses(const options::Options& options, const std::vector<Block>& blocks);
 /// Whether there are several courses, or a train and a load of which one has a course.
 bool several_courses(const Scene& scene);

@@ -157,8 +157,9 @@ multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) 
   const Eigen::VectorXd& mass = vehicle.mechanism.mass_diagonal();
   multibody::MechanismEnergy e;
   e.kinetic = 0.5 * qd.dot(mass.cwiseProduct(qd));
+  const multibody::MechanismModel& model = vehicle.mechanism.model();
   for (Eigen::Index i = 1; i < q.size(); i += 3)
-    e.potential += mass[i] * vehicle.mechanism.model().gravity * (q0_[i] + q[i]);
+    e.potential += mass[i] * model.gravity * (q0_[i] + q[i] + model.gradient * (q0_[i - 1] + q[i - 1]));
   e.strain = initial_energy_ + r0_.dot(x) + 0.5 * x.dot(K_ * x) - e.potential;
   return e;
 }

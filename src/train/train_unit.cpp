@@ -153,6 +153,7 @@ AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, d
       Unit unit;
       unit.mechanism.name = type.mechanism.name;
       unit.mechanism.gravity = gravity;
+      unit.mechanism.gradient = type.mechanism.gradient;
       all.units.push_back(std::move(unit));
     }
     Unit& unit = all.units.back();

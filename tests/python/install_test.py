@@ -95,7 +95,7 @@ class Install(unittest.TestCase):
         elsewhere = self.folder / "elsewhere"
         elsewhere.mkdir()
         said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-check", cwd=elsewhere)
-        self.assertIn("three_span_half_car: nothing is computed", said)
+        self.assertIn("three_span_half_car: no time steps are computed", said)
         (elsewhere / "options/scenes").mkdir(parents=True)
         shutil.copy(self.scene, elsewhere / "options/scenes/three_span_half_car.yml")  # the nearer one
         said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-check", cwd=elsewhere)

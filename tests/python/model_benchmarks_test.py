@@ -57,7 +57,7 @@ class WorkPrecision(InAFolder):
 
     def test_options_of_a_scene_come_after_its_file(self):
         scene = wp.Scene("two coaches", "three_span_train", 0.02, 0, [4], wanted=[],
-                                     options=wp.TWO_COACHES)
+                         options=wp.TWO_COACHES | {"verbose": "true"})
         case = work_precision.Case(BUILD, self.folder, scene, quick=True)
         point = work_precision.Point(BUILD, self.folder, case.setting(4, 0.02, "genalpha"))
         self.assertIn("vehicles 2,", point.text)

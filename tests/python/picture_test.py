@@ -227,7 +227,7 @@ class PictureTest(unittest.TestCase):
             self.assertLess(low + height, -2.0)  # below the track: the rope is no part of the load
             self.assertAlmostEqual(left + 0.5 * width, 0.0)
             self.assertEqual(picture_model.rods(model, 0)[:, :4].tolist(), [[0.0, 1.5, 0.0, -3.5]])
-        self.assert_within("Swing of what hangs", "Force of the joint", "the vehicle, load", "the vehicle, rope")
+        self.assert_within("Angle of the hanging body from the vertical, positive ahead", "Force of its joint", "the vehicle, load", "the vehicle, rope")
 
     def test_the_load_is_drawn_below_the_bridge(self):
         self.write_crane(0.0 * np.zeros(400))

@@ -76,6 +76,7 @@ struct BeamModel {
   bool axial = true;            // false: no axial unknowns
   double start = 0.0;           // x of the left end, m; 0 except for a rail that begins before the bridge
   double surface_height = 0.0;  // of the running surface above the neutral axis, m: forces along x act at this height
+  double gradient = 0.0;        // of the x axis, tan of its angle: weight has the component -gradient along x
   bool nodes_at_steps = true;   // at steps of EI and mass
   std::array<bool, 2> ground = {true, true};  // whether the rigid running surface continues before and behind the beam
 

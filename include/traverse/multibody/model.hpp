@@ -99,7 +99,8 @@ struct MechanismModel {
   std::vector<Spring> springs;
   std::vector<TorsionSpring> torsion_springs;
   std::vector<Actuator> actuators;
-  double gravity = 9.81;  // m/s2, downward
+  double gravity = 9.81;  // m/s2, along -y
+  double gradient = 0.0;  // of the x axis, tan of its angle: gravity has the component -gradient*gravity along x
 };
 
 }  // namespace traverse::multibody
