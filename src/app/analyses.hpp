@@ -1,5 +1,5 @@
-// How each analysis is carried out. A new one is a function in a file of its own, its line here, and its row in
-// options/analyses.hpp.
+// The table of functions that compute the analyses. A new analysis needs a function in a separate file, its line in
+// this table, and its row in options/analyses.hpp.
 #pragma once
 
 #include <mpi.h>
@@ -18,22 +18,22 @@
 
 namespace traverse::app {
 
-/// A scene that is ready to be computed.
+/// A scene with all data for its computation.
 struct Job {
   MPI_Comm comm;
-  const Scene& scene;  // with everything chosen that was left open
+  const Scene& scene;  // with all selected values
   results::Place place;
   const Accuracy& accuracy;
   SharedBeam& beam;
   std::vector<std::string> notes;
-  const results::Checkpoint* earlier = nullptr;  // that the run goes on from; null: none
+  const results::Checkpoint* earlier = nullptr;  // checkpoint that the run continues; null: none
 };
 
-// Collective. Each writes the results file and the summary, and returns the exit status as `run` does.
-int run_in_time(Job job);  // the motion in time, or rest at t = 0
+// Collective. Each function writes the results file and the summary, and returns the exit status like `run`.
+int run_in_time(Job job);  // the motion in time, or the static equilibrium at t = 0
 int run_modes(Job job);
 int run_rail(Job job);      // forces between rail and bridge along the track
-int run_envelope(Job job);  // the largest static effects of the loads, wherever they stand
+int run_envelope(Job job);  // the largest static effects of the loads over all their positions
 
 struct AnalysisRun {
   options::Analysis analysis;

@@ -18,7 +18,7 @@
 #include "traverse/options/input.hpp"
 #include "traverse/traverse.h"
 
-// Closing frees the scene. The handle itself stays, so that one that is used again is known to be closed.
+// Closing deletes the scene but not the handle, so that calls with a closed handle are detected.
 struct traverse_passage {
   std::unique_ptr<traverse::app::StepByStep> steps;
 };
@@ -29,94 +29,93 @@ using traverse::InputError;
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-std::string said;  // by the last call that failed
+std::string last_error;  // message of the last call that failed
 
-/// Runs `body`; an exception becomes its status, and its message `said`.
+/// Runs `body`. If it throws, stores the message in last_error and returns the status of the exception; otherwise 0.
 template <class Body>
-int status_of(Body&& body) {
+int call_and_catch(Body&& body) {
   try {
     body();
     return 0;
   } catch (const std::exception& failure) {
     const traverse::Error error = traverse::app::as_error(failure);
-    said = error.what();
+    last_error = error.what();
     return error.status();
   }
 }
 
-/// A handle that traverse_open made is never a closed one by chance.
+/// Handles are never freed, so a new handle cannot have the address of a closed one.
 std::list<traverse_passage>& handles() {
   static std::list<traverse_passage> all;
   return all;
 }
 
-traverse::app::StepByStep& open_one(const traverse_passage* passage) {
+traverse::app::StepByStep& require_open(const traverse_passage* passage) {
   if (passage == nullptr) throw InputError("the passage is NULL");
   if (passage->steps == nullptr) throw InputError("the passage is closed");
   return *passage->steps;
 }
 
-/// An argument that must not be NULL.
+/// Returns the pointer; throws InputError if it is NULL.
 template <class T>
-T* there(T* pointer, const char* what) {
+T* require_not_null(T* pointer, const char* what) {
   if (pointer == nullptr) throw InputError(std::string(what) + " is NULL");
   return pointer;
 }
 
-/// What `get` has of an open passage, or `none`.
+/// get(passage) if the passage is open, otherwise `none`; the error is stored.
 template <class Value, class Get>
 Value value_of(const traverse_passage* passage, Value none, Get&& get) {
-  (void)status_of([&] { none = get(open_one(passage)); });
+  (void)call_and_catch([&] { none = get(require_open(passage)); });
   return none;
 }
 
-/// While it lives PETSc does not see its variable of the environment, which is for the program that embeds this
-/// library.
-class WithoutVariable {
+/// Hides an environment variable from PETSc during this object's lifetime; it may belong to the host program.
+class HiddenVariable {
  public:
-  explicit WithoutVariable(const char* name) : name_(name) {
+  explicit HiddenVariable(const char* name) : name_(name) {
     if (const char* value = std::getenv(name)) value_ = value;
     unsetenv(name_);
   }
-  ~WithoutVariable() {
+  ~HiddenVariable() {
     if (value_) setenv(name_, value_->c_str(), 1);
   }
-  WithoutVariable(const WithoutVariable&) = delete;
-  WithoutVariable& operator=(const WithoutVariable&) = delete;
+  HiddenVariable(const HiddenVariable&) = delete;
+  HiddenVariable& operator=(const HiddenVariable&) = delete;
 
  private:
   const char* name_;
   std::optional<std::string> value_;
 };
 
-/// PETSc, SLEPc and MPI, once in a process; none of PETSc's options of a passage before are left.
+/// Starts PETSc, SLEPc and MPI once per process; later calls delete the PETSc options of the previous passage.
 void start_libraries(const std::vector<std::string>& petsc_words) {
   PetscBool running = PETSC_FALSE;
   traverse::base::check(SlepcInitialized(&running));
   if (running == PETSC_TRUE) return traverse::base::check(PetscOptionsClear(nullptr));
   traverse::options::Arguments words(petsc_words);
-  const WithoutVariable text("PETSC_OPTIONS"), yaml("PETSC_OPTIONS_YAML");
+  const HiddenVariable text("PETSC_OPTIONS"), yaml("PETSC_OPTIONS_YAML");
   traverse::app::start_lightly();
   traverse::base::check(SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr));
   traverse::app::started();
-  traverse::base::check(PetscPopSignalHandler());  // signals belong to the program that embeds this library
+  traverse::base::check(PetscPopSignalHandler());  // signals belong to the host program
   traverse::base::check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
   std::atexit([] { SlepcFinalize(); });
 }
 
 traverse::app::Scene scene_of(std::span<const char* const> words) {
   std::vector<std::string> all = {"traverse"};
-  for (const char* word : words) all.emplace_back(there(word, "a word"));
+  for (const char* word : words) all.emplace_back(require_not_null(word, "a word"));
   traverse::options::Arguments arguments(all);
   traverse::options::Input input = traverse::options::read_input(
       *arguments.argc(), *arguments.argv(), {{"model_vehicles", "full", "traverse_open", 0}}, false);
-  if (input.help || input.version) throw InputError("step by step goes one motion in time: leave out -help, -version");
+  if (input.help || input.version) throw InputError("traverse_open computes one run in time; remove -help or -version");
   start_libraries(input.petsc_words);
   traverse::options::put_into_petsc(input);
   return traverse::app::read_scene();
 }
 
-/// The numbers of a dataset at the sample that was reached.
+/// The values of a dataset at the last computed sample.
 std::span<const double> values_of(const traverse::app::StepByStep& steps, const std::string& name) {
   std::size_t first = 0;
   for (const auto& field : steps.layout().fields) {
@@ -125,16 +124,16 @@ std::span<const double> values_of(const traverse::app::StepByStep& steps, const 
   }
   for (const auto& constant : steps.layout().constants)
     if (constant.name == name) return constant.values;
-  throw InputError("there is no quantity " + name + "; traverse_describe names those there are");
+  throw InputError("there is no quantity " + name + "; traverse_describe lists the available quantities");
 }
 
 }  // namespace
 
 int traverse_open(int argc, const char* const* argv, traverse_passage** passage) {
-  return status_of([&] {
-    *there(passage, "passage") = nullptr;
+  return call_and_catch([&] {
+    *require_not_null(passage, "passage") = nullptr;
     if (argc < 0) throw InputError("argc is negative");
-    if (argc > 0) there(argv, "argv");
+    if (argc > 0) require_not_null(argv, "argv");
     auto steps = std::make_unique<traverse::app::StepByStep>(scene_of(std::span(argv, static_cast<std::size_t>(argc))));
     *passage = &handles().emplace_back(traverse_passage{std::move(steps)});
   });
@@ -144,7 +143,7 @@ void traverse_close(traverse_passage* passage) {
   if (passage != nullptr) passage->steps.reset();
 }
 
-const char* traverse_error(void) { return said.c_str(); }
+const char* traverse_error(void) { return last_error.c_str(); }
 
 double traverse_time(const traverse_passage* passage) {
   return value_of(passage, no_number, [](const auto& steps) { return steps.time(); });
@@ -157,7 +156,7 @@ double traverse_interval(const traverse_passage* passage) {
 }
 
 int traverse_advance(traverse_passage* passage, double t) {
-  return status_of([&] { open_one(passage).advance(t); });
+  return call_and_catch([&] { require_open(passage).advance(t); });
 }
 
 size_t traverse_quantities(const traverse_passage* passage) {
@@ -166,9 +165,9 @@ size_t traverse_quantities(const traverse_passage* passage) {
 }
 
 int traverse_describe(const traverse_passage* passage, size_t i, traverse_quantity* quantity) {
-  return status_of([&] {
-    const auto& layout = open_one(passage).layout();
-    there(quantity, "quantity");
+  return call_and_catch([&] {
+    const auto& layout = require_open(passage).layout();
+    require_not_null(quantity, "quantity");
     const auto& fields = layout.fields;
     const auto& constants = layout.constants;
     if (i < fields.size()) {
@@ -184,20 +183,22 @@ int traverse_describe(const traverse_passage* passage, size_t i, traverse_quanti
 }
 
 int traverse_read(const traverse_passage* passage, const char* name, double* values, size_t count) {
-  return status_of([&] {
-    const std::span<const double> found = values_of(open_one(passage), there(name, "name"));
+  return call_and_catch([&] {
+    const std::span<const double> found = values_of(require_open(passage), require_not_null(name, "name"));
     if (found.size() != count)
       throw InputError(std::string(name) + " has " + std::to_string(found.size()) + " numbers, not " +
                        std::to_string(count));
-    if (count > 0) std::copy(found.begin(), found.end(), there(values, "values"));
+    if (count > 0) std::copy(found.begin(), found.end(), require_not_null(values, "values"));
   });
 }
 
 int traverse_set_body_force(traverse_passage* passage, int vehicle, const char* body, double fx, double fy,
                             double moment) {
-  return status_of([&] { open_one(passage).apply_to_body(vehicle, there(body, "body"), {fx, fy, moment}); });
+  return call_and_catch([&] {
+    require_open(passage).apply_to_body(vehicle, require_not_null(body, "body"), {fx, fy, moment});
+  });
 }
 
 int traverse_set_beam_force(traverse_passage* passage, double x, double force) {
-  return status_of([&] { open_one(passage).apply_to_beam(x, force); });
+  return call_and_catch([&] { require_open(passage).apply_to_beam(x, force); });
 }

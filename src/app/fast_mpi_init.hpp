@@ -1,11 +1,11 @@
-// What MPI is told before it starts, so that a single process starts in no time.
+// Settings of MPI before its initialisation, with which a single process starts fast.
 #pragma once
 
 namespace traverse::app {
 
-/// Before MPI starts: sets what is not set in the environment.
+/// Call before MPI_Init. Sets the variables that are not set in the environment.
 void start_lightly();
-/// After that: takes back what would keep mpirun from working when this process starts it.
+/// Call after MPI_Init. Removes the variable that would prevent this process from starting mpirun.
 void started();
 
 }  // namespace traverse::app

@@ -12,7 +12,7 @@ namespace traverse::app {
 
 std::string help_about(const std::string& what) {
   const std::string integrators = integrate::integrators_help();
-  if (what == "integrators" || what == "ts_type") return integrators.substr(1);
+  if (what == "integrators" || what == "ts_type") return integrators.substr(1);  // without the leading newline
   if (what == "man") return options::manual_page(integrators);
   if (what == "bash") {
     std::vector<std::string> types;

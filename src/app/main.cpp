@@ -1,4 +1,4 @@
-// traverse: vehicles crossing flexible beams. See README.md.
+// The program traverse: computes vehicles crossing flexible beams. See README.md.
 #include <slepceps.h>
 
 #include <cerrno>
@@ -24,13 +24,13 @@
 
 namespace {
 
-// The system calls what stands here before it sets up the libraries.
+// The system calls the functions of this section before it initialises the libraries.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = traverse::app::store_ignored_signals;
 
-/// Open MPI's mpirun tells the ranks their number before MPI has started.
+/// Whether this is the first rank. Open MPI's mpirun passes the rank's number in the environment, before MPI_Init.
 bool first_rank() {
   int started = 0, ended = 0;
-  static int rank = [] {  // MPI does not tell it any more when it has ended
+  static int rank = [] {  // stored, because MPI does not return it after MPI_Finalize
     const char* told = std::getenv("OMPI_COMM_WORLD_RANK");
     return told == nullptr ? 0 : std::atoi(told);
   }();
@@ -45,7 +45,7 @@ int complain(const traverse::Error& error) {
   return error.status();
 }
 
-/// `traverse RESULTS.h5 ...` runs again what a results file came from.
+/// `traverse RESULTS.h5 ...` repeats the run that wrote the results file.
 traverse::options::Input read_input(int argc, char** argv) {
   if (argc < 2 || !traverse::results::is_hdf5(argv[1])) return traverse::options::read_input(argc, argv);
   const std::vector<traverse::options::Entry> before = traverse::results::origin_of(argv[1]);
@@ -60,16 +60,16 @@ int run(traverse::options::Input& input) {
     return traverse::app::run(PETSC_COMM_WORLD, traverse::app::read_scene());
   } catch (const traverse::Error& error) {
     return complain(error);
-  } catch (const std::exception& failure) {  // perhaps of this rank alone, and others wait for it
+  } catch (const std::exception& failure) {  // the failure may be on this rank only, and other ranks wait for it
     traverse::app::leave_together(PETSC_COMM_WORLD, traverse::app::as_error(failure));
   }
 }
 
-/// The status of the program, which is no success where its output was lost.
+/// The exit status of the program, which reports lost output as a failure.
 int after_output(int status) {
   const int lost = traverse::app::lost_output();
   if (status != 0 || lost == 0) return status;
-  if (lost == EPIPE) return 128 + SIGPIPE;  // nobody reads any more: no harm, and nothing to say
+  if (lost == EPIPE) return 128 + SIGPIPE;  // the reader has ended: no message is necessary
   return complain(traverse::FileError(std::string("standard output could not be written: ") + std::strerror(lost) +
                                       "; the results file, if one was asked for, is complete"));
 }
@@ -93,13 +93,13 @@ int main(int argc, char** argv) {
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
     traverse::app::started();
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-    traverse::app::install_handlers();  // from PETSc
+    traverse::app::install_handlers();  // replaces the handlers of PETSc
     traverse::app::print_signals(first_rank());
     const int status = run(input);
     (void)SlepcFinalize();
     return after_output(status);
-  } catch (const traverse::Error& error) {  // before MPI has started
-    // Open MPI 5 ends all ranks when one ends: the first one shall have said it.
+  } catch (const traverse::Error& error) {  // before MPI_Init
+    // Open MPI 5 ends all ranks if one rank ends; the others wait until the first rank has printed the message.
     if (!first_rank()) std::this_thread::sleep_for(std::chrono::seconds(1));
     return complain(error);
   } catch (const std::exception& failure) {

@@ -1,4 +1,4 @@
-// What comes before a scene is run: what it left open is chosen, and what its runs share is made ready.
+// Preparation of a run: selection of the numerical model, and computation of the data that all runs of a scene share.
 #pragma once
 
 #include <mpi.h>
@@ -12,11 +12,11 @@
 
 namespace traverse::app {
 
-/// Collective. Fills in what is open of the scene's model, as the accuracy asks.
+/// Collective. Selects the parts of the numerical model that the scene does not prescribe, for the wanted accuracy.
 Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
 
-/// Collective. Damps and prepares the beam, and settles how often responses are looked at. Returns the frequency that
-/// counts where the deck's accelerations are filtered, Hz, else 0.
+/// Collective. Computes the beam's damping and factorisation, and sets the sampling interval of the responses. Returns
+/// the cut-off frequency of the filter for deck accelerations, Hz; 0 without a filter.
 double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

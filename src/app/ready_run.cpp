@@ -1,5 +1,5 @@
-// Brings a run to its initial state: passage and static equilibrium, the state of a checkpoint where the run continues
-// an earlier one, and the checks whether low-pass filters can be applied.
+// Brings a run to its initial state: creates its Passage with the static equilibrium, or reads the state of a
+// checkpoint if the run continues an earlier one, and checks whether low-pass filters can be applied.
 #include "ready_run.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr double rounding_worth_a_note = 1e-9;  // relative, of static deflections
+constexpr double rounding_worth_a_note = 1e-9;  // relative error of static deflections
 
 std::optional<Plan> plan_of(const results::Checkpoint* earlier) {
   if (earlier == nullptr) return std::nullopt;

@@ -1,4 +1,4 @@
-// A passage at its start: all is checked and said, and nothing of the motion is computed yet.
+// A run at its start: the input is checked, the notes are printed, and no motion is computed yet.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 namespace traverse::app {
 
 struct ReadyRun {
-  /// Collective. Of a job that outlives it. InputError where it cannot be run. Prints the notes.
+  /// Collective. The job must outlive this object. Throws InputError if the job cannot be run. Prints the notes.
   explicit ReadyRun(Job& given);
 
   bool goes_on() const { return job.earlier != nullptr; }
@@ -22,12 +22,12 @@ struct ReadyRun {
   int rank = 0;
   Scene scene;
   Accuracy accuracy;
-  double counting;              // Hz: deck accelerations are low-passed there; 0: they are not
-  std::optional<Plan> earlier;  // of the run that it goes on from
+  double counting;              // Hz, cut-off frequency of deck accelerations; 0: no filter
+  std::optional<Plan> earlier;  // plan of the run that this run continues
   Passage passage;
-  bool filters_deck = false, filters_forces = false;  // by low passes
+  bool filters_deck = false, filters_forces = false;  // whether low-pass filters are applied
   std::size_t wheels;
-  std::optional<base::Archive> archive;  // the rest of what the run knew that it goes on from
+  std::optional<base::Archive> archive;  // remaining state of the run that this run continues
 
  private:
   void record_rounding();

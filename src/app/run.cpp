@@ -20,9 +20,9 @@ namespace traverse::app {
 
 namespace {
 
-/// On a long viaduct, whose spans do not touch, the vehicles are nearly all that a step has to move, and linear ones
-/// take a fraction of what mechanisms take. What they neglect is computed; where that is too much the run is repeated
-/// with the mechanisms.
+/// Selects linear vehicles on viaducts with separate spans. There the vehicles cause nearly all the cost of a time
+/// step, and linear vehicles cost a fraction of mechanisms. The linearisation residual is computed; if it exceeds its
+/// limit, the run is repeated with the mechanisms.
 void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
   const bool viaduct = scene.beam && scene.beam->all_separate() && scene.beam->spans.size() > 1;
   if (scene.model.vehicles != VehicleModel::automatic || scene.analysis != Analysis::transient || !viaduct ||
@@ -36,7 +36,7 @@ void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
                                scene.model.residual_limit)));
 }
 
-/// A run that goes on has as many as it had, of as many.
+/// The number of ranks. A continued run has the same number as before, if as many ranks are available as before.
 RankChoice ranks_for(MPI_Comm comm, const Scene& scene, const std::optional<results::Checkpoint>& earlier) {
   RankChoice all;
   MPI_Comm_size(comm, &all.ranks);
@@ -60,7 +60,7 @@ int run(MPI_Comm comm, const Scene& given) {
   const std::optional<results::Checkpoint> earlier = earlier_of(comm, asked);
   results::Place place = claim_outputs(comm, asked);
   if (given.study || given.sweep) return run_study(comm, given, std::move(place));
-  // Chosen before trial runs, which are runs as well, and again when these have chosen the model.
+  // The number is selected before the trial runs, and again for the model that they select.
   const RankChoice at_first = ranks_for(comm, given, earlier);
   return run_on_first(comm, at_first.ranks, [&](MPI_Comm some) {
     Scene scene = asked;

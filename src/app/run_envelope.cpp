@@ -1,4 +1,4 @@
-// The largest static effects of the scene's train and of load models, wherever they stand.
+// The largest static effects of the scene's train and of load models over all their positions.
 #include "analyses.hpp"
 #include "run/norm_run.hpp"
 #include "static_report.hpp"

@@ -1,4 +1,4 @@
-// A run, and its repetition where what was chosen for it does not hold.
+// A run in time, and its repetition if the linear vehicles or the selected time step were not accurate enough.
 #include <fmt/format.h>
 
 #include <optional>
@@ -8,7 +8,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr int most_halvings = 4;  // of a step that was chosen
+constexpr int most_halvings = 4;  // limit of halvings of a selected time step
 
 }  // namespace
 
@@ -20,7 +20,7 @@ int run_in_time(Job job) {
   std::optional<SharedBeam> own;
   if (repeated.with_mechanisms) {
     std::vector<std::string> ignored;
-    scene.model.vehicles = VehicleModel::full;  // in place of linear vehicles
+    scene.model.vehicles = VehicleModel::full;  // instead of linear vehicles
     own.emplace(job.comm, scene, ignored);
   }
   int halvings = goes_on || !scene.step_open ? 0 : most_halvings;

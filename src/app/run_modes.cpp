@@ -28,9 +28,9 @@ modes::Modes given_modes(const beam::Beam& beam, int count, const beam::ShapePoi
   return modes;
 }
 
-/// Each decays by its own ratio; above critical damping as two that do not oscillate.
+/// The damped modes for given damping ratios. A mode above critical damping becomes two modes that do not oscillate.
 modes::DampedModes damped_by_ratios(const modes::Modes& modes) {
-  std::vector<std::pair<std::complex<double>, std::size_t>> found;  // and whose it is
+  std::vector<std::pair<std::complex<double>, std::size_t>> found;  // lambda, and the index of its mode
   for (std::size_t i = 0; i < modes.omega.size(); ++i) {
     const double omega = modes.omega[i], ratio = modes.ratio[i], part = std::sqrt(std::abs(1.0 - ratio * ratio));
     if (ratio < 1.0)
@@ -83,7 +83,7 @@ int run_modes(Job job) {
         "  damped modes are listed below |lambda| = 1/b = {:.6g} rad/s: above it the elements decide, not the beam\n",
         1.0 / std::abs(ab.b));
   if (scene.output.file.empty()) return 0;
-  const DeferredSignals noted;  // a moment, and the file is complete
+  const DeferredSignals noted;  // signals are delayed until the file is complete
   results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
   record_model(scene, notes, recorder);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);

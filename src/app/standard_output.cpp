@@ -29,7 +29,7 @@ ssize_t write_all(void*, const char* text, std::size_t size) {
 
 void guard_standard_output() {
   for (int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) (void)!open("/dev/null", O_RDWR);  // takes the lowest number free
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) (void)!open("/dev/null", O_RDWR);  // gets the lowest free number
   std::FILE* guarded = fopencookie(nullptr, "w", {nullptr, write_all, nullptr, nullptr});
   if (guarded == nullptr) return;
   std::setvbuf(guarded, nullptr, isatty(STDOUT_FILENO) == 1 ? _IOLBF : _IOFBF, BUFSIZ);

@@ -1,13 +1,13 @@
-// Standard output that may fail - a full disk, a reader that has gone - without harm to the run and its results.
+// Standard output whose failure (a full disk, a reader that has ended) does not affect the run and its results.
 #pragma once
 
 namespace traverse::app {
 
-/// Before anything is written or opened: from now on writing to stdout always succeeds, and what could not be written
-/// is remembered. Standard streams that are closed become /dev/null, so that no file of ours takes their place.
+/// Call before anything is written or opened. From then on writing to stdout always succeeds, and the first error is
+/// stored. Closed standard streams are opened as /dev/null, so that no file of the program gets their numbers.
 void guard_standard_output();
 
-/// Writes what is still buffered. The errno of what was lost; 0 when nothing was.
+/// Writes the buffered output. Returns the errno of the first failed write; 0 if no output was lost.
 int lost_output();
 
 }  // namespace traverse::app

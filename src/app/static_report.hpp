@@ -1,4 +1,4 @@
-// How analyses at rest end: verdicts, a table on the terminal, the results file.
+// Output of static analyses: verdicts, a table on the terminal, the results file.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,7 +17,8 @@
 
 namespace traverse::app {
 
-/// Collective. Found: find(verdicts), print(), record(recorder). The exit status.
+/// Collective. Prints and stores the results of a static analysis. Found has the functions find(verdicts), print() and
+/// record(recorder). Returns the exit status.
 template <class Found>
 int report_at_rest(Job& job, const Found& found) {
   const Scene& scene = job.scene;
@@ -32,7 +33,7 @@ int report_at_rest(Job& job, const Found& found) {
     results::print_verdicts(verdicts, scene.unusual);
   }
   if (scene.output.file.empty()) return 0;
-  const DeferredSignals noted;  // a moment, and the file is complete
+  const DeferredSignals noted;  // signals are delayed until the file is complete
   results::Layout layout;
   layout.constants = stations({}, job.beam.beam->mesh().span_ends());
   results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, scene), scene.options);

@@ -1,5 +1,5 @@
-// Advances a passage to a requested time in whole sample intervals, and checks the forces that the calling program
-// applies to bodies and to the beam.
+// Advances a run to a requested time in whole sample intervals, and checks the forces that the calling program applies
+// to bodies and to the beam.
 #include "step_by_step.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr double same_sample = 1e-6;  // of the interval
+constexpr double same_sample = 1e-6;  // relative to the interval: times closer than this are the same sample
 
 void check_goes_in_time(const Scene& scene) {
   const char* other = scene.study                                      ? "a study"
@@ -21,7 +21,7 @@ void check_goes_in_time(const Scene& scene) {
                       : options::in_force().find("restart") != nullptr ? "-restart"
                       : scene.analysis != Analysis::transient          ? "scene_analysis"
                                                                        : nullptr;
-  if (other != nullptr) throw InputError(fmt::format("step by step goes one motion in time: leave out {}", other));
+  if (other != nullptr) throw InputError(fmt::format("traverse_open computes one run in time; remove {}", other));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A scene that somebody else's program takes through time: from sample to sample, with forces set in between.
+// A scene whose motion another program advances from sample to sample, with forces that it may set between samples.
 #pragma once
 
 #include <optional>
@@ -13,27 +13,28 @@
 
 namespace traverse::app {
 
-/// On this process alone. Steps, and with no force set results, are those that `run` has of the same scene.
+/// Runs on this process alone. The time steps are equal to the steps of `run` for the same scene. The results are equal
+/// too if no force is set.
 class StepByStep {
  public:
-  /// Stands at t = 0 then. Throws Error as `run` does, and InputError for a scene that is no motion in time.
+  /// Sets up the state at t = 0. Throws Error like `run`, and InputError for a scene without motion in time.
   explicit StepByStep(const Scene& scene);
 
-  double time() const { return time_; }  // s, of the sample that was reached
+  double time() const { return time_; }  // s, time of the present sample
   double end() const { return passage_->plan().end_time; }
   double interval() const;  // s between samples
 
-  /// Goes to the first sample that is not before t, s; nowhere where that one has been reached. InputError beyond the
-  /// end of the scene, SolverError where a step cannot be taken: then the passage is over.
+  /// Advances to the first sample at or after t, s; does nothing if it is already reached. Throws InputError if t is
+  /// after the end of the scene, and SolverError if a time step cannot be solved: then the run cannot be continued.
   void advance(double t);
 
-  /// What the results file of the scene would hold, and a row of it at the sample that was reached.
+  /// The datasets that the results file of the scene would have, and their values at the present sample.
   const results::Layout& layout() const { return outputs_->layout(); }
   const std::vector<double>& values() const { return values_; }
 
-  /// From here on a constant force (N, N, N m) on a body of a vehicle, numbered as in the train, or a vertical one (N,
-  /// upward) on the beam at a station x (m), in place of the last one there. InputError for what is not there, and for
-  /// a model that takes no such forces.
+  /// Sets a force that is constant from now on: (N, N, N m) on a body of a vehicle, numbered as in the train, or a
+  /// vertical force (N, upward) on the beam at a station x (m). It replaces the previous force there. Throws InputError
+  /// if the body or the station does not exist, and for a model that does not admit such forces.
   void apply_to_body(int vehicle, const std::string& body, const Eigen::Vector3d& action);
   void apply_to_beam(double x, double force);
 
@@ -46,7 +47,7 @@ class StepByStep {
   Accuracy accuracy_;
   Scene scene_;
   SharedBeam shared_;
-  results::Recorder recorder_;  // of nothing
+  results::Recorder recorder_;  // has no file
   std::optional<Passage> passage_;
   std::optional<Outputs> outputs_;
   std::optional<RunObserver> watch_;

@@ -31,7 +31,7 @@
 namespace traverse::app {
 namespace {
 
-/// The natural frequencies that the run is made of: those of its modes, or the pair that damping was taken from.
+/// Stores the natural frequencies of the run's modes, or the pair of frequencies from which damping was computed.
 void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
   if (!shared.omega) return;
   const auto [omega1, omega2] = *shared.omega;
@@ -50,7 +50,7 @@ double total(MPI_Comm comm, double share) {
   return share;
 }
 
-/// The promise against what a refined run gives. False where it is broken.
+/// Compares the error estimates with the results of a refined run. Returns false if an estimate is exceeded.
 bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const ResponseExtremes& peaks) {
   if (!scene.beam) return report_multibody(comm, scene, accuracy);
   const Scene fine = refined(scene);
@@ -70,11 +70,11 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const R
     const bool kept = report_row(quantity_names[i], accuracy.estimates[i], scene.accuracy, error, rank == 0);
     all_kept = kept ? all_kept : 0;
   }
-  MPI_Bcast(&all_kept, 1, MPI_INT, 0, comm);  // low-passed accelerations are known on the first rank alone
+  MPI_Bcast(&all_kept, 1, MPI_INT, 0, comm);  // only the first rank has the low-passed accelerations
   return all_kept != 0;
 }
 
-/// Creates the results file, or takes up that of the run that this one goes on from.
+/// Creates the results file, or opens the file of the run that this run continues.
 results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
   Job& job = ready.job;
   results::Layout layout = outputs.layout();
@@ -92,7 +92,7 @@ results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
   return recorder;
 }
 
-/// Where the run stands that this one goes on from, or that it is at its start.
+/// The checkpoint of the run that this run continues, or a checkpoint at the start.
 results::Checkpoint so_far(const Job& job, results::Repeated repeated) {
   results::Checkpoint checkpoint;
   if (job.earlier != nullptr) checkpoint = *job.earlier;
@@ -101,7 +101,7 @@ results::Checkpoint so_far(const Job& job, results::Repeated repeated) {
   return checkpoint;
 }
 
-/// A passage with everything that watches it.
+/// A run in time with its observer, recorder, checkpoints and progress display.
 class WatchedRun {
  public:
   WatchedRun(ReadyRun& ready, results::Repeated repeated, bool may_shorten);
@@ -120,20 +120,21 @@ class WatchedRun {
 
   ReadyRun& ready_;
   const Scene& scene_;
-  bool may_shorten_;  // steps, after StepTooLong
+  bool may_shorten_;  // whether the run may be repeated with shorter steps after StepTooLong
   Passage& passage_;
   coupling::System& system_;
-  std::optional<DeferredSignals> noted_{std::in_place};  // from here on what is stored is to stay readable
+  std::optional<DeferredSignals> noted_{
+      std::in_place};  // signals are delayed from here on, so that the file remains readable
   Outputs outputs_;
   results::Recorder recorder_;
   RunObserver watch_;
   Checkpoints checkpoints_;
-  double before_, reached_;  // s: of wall time and of motion, of the run that this one goes on from, and so far
+  double before_, reached_;  // s: wall time of the continued run; simulated time reached so far
   results::Progress progress_;
   Clock::time_point begin_ = Clock::now();
   Requests asked_;
   bool reaches_end_ = false;
-  bool repeated_ = false;  // or will be
+  bool repeated_ = false;  // the run is repeated
 };
 
 WatchedRun::WatchedRun(ReadyRun& ready, results::Repeated repeated, bool may_shorten)
@@ -216,7 +217,7 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   return summary;
 }
 
-/// The promises that do not hold, in words.
+/// The error estimates that are invalid, in words.
 std::vector<std::string> WatchedRun::withdraw() {
   Accuracy& accuracy = ready_.accuracy;
   return {accuracy.invalidate_by_contact_loss(watch_.losses()),
@@ -225,7 +226,7 @@ std::vector<std::string> WatchedRun::withdraw() {
           accuracy.invalidate_at_end(watch_.ends_unsettled())};
 }
 
-/// Where the scene asks for it; with its own verdicts.
+/// The comparison with EN 1991-2 if the scene requests it; its verdicts are appended to `verdicts`.
 std::optional<norm::NormCheck> WatchedRun::judge_by_norm(std::vector<results::Verdict>& verdicts) {
   if (!scene_.norm) return std::nullopt;
   norm::NormCheck check = norm_check(scene_, {static_train("train", system_.weights().all())});
@@ -235,7 +236,7 @@ std::optional<norm::NormCheck> WatchedRun::judge_by_norm(std::vector<results::Ve
   return check;
 }
 
-/// What no summary holds.
+/// Prints notes that are not part of the summary.
 void WatchedRun::say_what_happened(bool by_signal) const {
   if (!prints()) return;
   if (const auto& crowded = system_.fleet().unmodelled_contact(); crowded.contact >= 0) {

@@ -1,4 +1,4 @@
-// A passage that is watched, recorded and summed up.
+// A run in time with its observer, its recording and its summary.
 #pragma once
 
 #include <string>
@@ -7,20 +7,20 @@
 
 namespace traverse::app {
 
-/// Whether a run has to be taken again, and how. mechanisms: linear vehicles were out of balance by more than
-/// NumericalModel::residual_limit; shorter_steps: StepTooLong.
+/// Whether a run must be repeated, and how. mechanisms: the residual of linear vehicles exceeded
+/// NumericalModel::residual_limit; shorter_steps: StepTooLong was thrown.
 enum class Retry { none, mechanisms, shorter_steps };
 
 struct RunEnd {
-  int status = 0;  // of the program, where the run is not taken again
+  int status = 0;  // exit status of the program if the run is not repeated
   Retry again = Retry::none;
-  std::string why;    // of shorter_steps: the message of StepTooLong
-  double step = 0.0;  // s, of these: the longest step that was taken
+  std::string why;    // message of StepTooLong, for shorter_steps
+  double step = 0.0;  // s, longest computed time step, for shorter_steps
 };
 
-/// Collective. Computes the motion in time, or rest where the loads stand, and writes results and summary. InputError,
-/// SolverError and FileError as the program ends with. repeated: which checkpoints note; may_shorten: StepTooLong is
-/// not thrown but returned as shorter_steps.
+/// Collective. Computes the motion in time, or the static equilibrium under the loads at t = 0, and writes results and
+/// summary. Throws InputError, SolverError and FileError, with which the program ends. repeated: stored in checkpoints.
+/// may_shorten: StepTooLong is not thrown but returned as shorter_steps.
 RunEnd run_once(Job& job, results::Repeated repeated, bool may_shorten);
 
 }  // namespace traverse::app

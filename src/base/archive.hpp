@@ -32,8 +32,8 @@ class Archive {
   void same(Values&... values) {
     of(0, values...);
   }
-  /// Values that a rank has computed itself and would compute again with the same result, except for rounding. On a
-  /// different number of ranks they are not read.
+  /// Values of one rank that it would compute again with the same result, except for rounding. On a different number of
+  /// ranks they are not read.
   template <class... Values>
   void cache(Values&... values) {
     of(no_owner, values...);

@@ -17,8 +17,8 @@ class Digest {
   void add(std::string_view text) {
     for (const char c : text) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211U;
   }
-  /// Adds whole numbers instead of single bytes; the digest differs from that of the bytes and needs an eighth of the
-  /// time. A product changes higher bits only: without the shift, two changed signs would cancel.
+  /// Adds whole numbers instead of single bytes. The digest differs from the digest of the bytes and needs an eighth of
+  /// the time. A product changes higher bits only: without the shift, two changed signs would cancel.
   void add(std::span<const double> numbers) {
     for (const double number : numbers) {
       value_ = (value_ ^ std::bit_cast<std::uint64_t>(number)) * 1099511628211U;

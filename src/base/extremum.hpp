@@ -18,7 +18,7 @@ struct Extreme {
   }
 };
 
-inline constexpr int samples_kept = 5;  // of a curve, the latest one last
+inline constexpr int samples_kept = 5;  // number of stored samples of a curve, the latest one last
 
 namespace {
 
@@ -53,7 +53,7 @@ inline Value extreme_between(const double* x, const Value* y, int i, const Stenc
   const double before = x[i] - x[l], after = x[r] - x[i];
   const Value middle = y[i], rise = (middle - y[l]) / before, fall = (y[r] - middle) / after;
   const Value slope = (rise * after + fall * before) / (before + after), quadratic = (fall - rise) / (before + after);
-  offset = -0.5 * slope / quadratic;  // of the parabola, slope s + quadratic s^2 above the middle
+  offset = -0.5 * slope / quadratic;  // vertex of the parabola slope s + quadratic s^2 above the middle
   const Value of_three = middle + 0.5 * slope * offset;
   if (!five) return of_three;
   // The curve above the parabola is (s - s1) s (s - s3) (c + d (s - s0)), which interpolates the outer two samples too.

@@ -9,7 +9,7 @@ namespace traverse::base {
 
 inline constexpr char detail_mark = '\t';
 
-/// A line that describes the model and that nobody has to act on.
+/// A line that describes the model and requires no action of the user.
 inline std::string detail(const std::string& text) { return detail_mark + text; }
 inline bool is_detail(std::string_view note) { return note.starts_with(detail_mark); }
 /// The text of a note without a mark.

@@ -31,8 +31,8 @@ struct StepRule {
   Weights a_in_v{}, a_in_w{};
   Weights a_next{};  // the next step's A_0
   Weights power{};   // s: weights of the integral over the step of a power at the accelerations' states
-  /// The result of the step minus that of an embedded method of one order less, as an estimate of the step's error; all
-  /// 0 without such a method. error_in_a is the error of w over the length of the step.
+  /// The result of the step minus the result of an embedded method of one order less, as an estimate of the step's
+  /// error; all 0 without such a method. error_in_a is the error of w over the length of the step.
   Weights error_in_v{}, error_in_w{}, error_in_a{};
 };
 
@@ -45,7 +45,7 @@ struct Method {
 };
 
 /// The implicit part of the additive Runge-Kutta method ARK4(3)6L[2]SA (Kennedy and Carpenter 2003): order 4, L-stable,
-/// five implicit stages. Its coefficients are those of PETSc's ARKIMEX 4, fully implicit.
+/// five implicit stages. Its coefficients are equal to PETSc's ARKIMEX 4, fully implicit.
 Method esdirk4();
 /// Generalised-alpha with all forces at the end of the step (Wood, Bossak and Zienkiewicz 1980): order 2, one stage.
 /// Each step multiplies oscillations that are fast within a step by `radius` (0..1). 1: the trapezoidal rule.
@@ -53,7 +53,7 @@ Method generalised_alpha(double radius);
 
 /// A parameter of a method, read from an option.
 struct MethodParameter {
-  const char* option = nullptr;  // with its dash; null: no parameter
+  const char* option = nullptr;  // option with its dash; null: no parameter
   const char* words = "";
   double value = 0.0;  // default
   double least = 0.0, most = 0.0;

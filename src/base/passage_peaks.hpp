@@ -1,4 +1,4 @@
-// The peaks of one passage of a train, independent of the solver that computed it.
+// The peaks of one run of a train over the bridge, independent of the solver that computed it.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,17 @@
 
 namespace traverse::base {
 
-/// Magnitudes at a station: m, m/s2, N m, m/s2.
+/// The peaks at a station, magnitudes: m, m/s2, N m, m/s2.
 struct ProbePeaks {
   Extreme deflection, acceleration, moment;
-  Extreme low_passed{};  // of the acceleration, if it was filtered
+  Extreme low_passed{};  // peak of the low-passed acceleration, if it was filtered
 };
 
 struct PassagePeaks {
   std::vector<ProbePeaks> peaks;
-  double least_wheel_force = 0.0, greatest_wheel_force = 0.0;  // N, of all wheels
-  double contact_losses = 0.0, longest_loss = 0.0;             // of all wheels; number, and s to within a step
+  double least_wheel_force = 0.0, greatest_wheel_force = 0.0;  // least and greatest force of all wheels, N
+  double contact_losses = 0.0,
+         longest_loss = 0.0;  // all wheels: number of losses; longest duration, s, with an error of up to one time step
 };
 
 }  // namespace traverse::base

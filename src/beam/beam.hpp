@@ -71,11 +71,11 @@ class Beam {
   /// Frees M, K and C, most of the memory of a long beam, after a BeamOperator has read them; they are null afterwards.
   /// The matrices of foundation and track remain. Free memory is returned to the operating system.
   void release_matrices();
-  Mat mass() const { return mass_; }                      // M_aa, with that of a layered track
+  Mat mass() const { return mass_; }                      // M_aa, with the mass of a layered track
   Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
   Mat springs() const { return springs_; }                // K* without the beams: foundation, track layers; or null
-  Mat dampers() const { return foundation_damping_; }     // of foundation and track layers; or null
-  Mat beam_mass() const { return beam_mass_; }            // of the bridge alone
+  Mat dampers() const { return foundation_damping_; }     // damping of foundation and track layers; or null
+  Mat beam_mass() const { return beam_mass_; }            // mass of the bridge alone
   Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
   Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
   /// Stiffness and damping matrix of each kind of foundation of section 3; null if the scene has no such kind.
@@ -103,8 +103,8 @@ class Beam {
   /// load on held unknowns too. At separate spans the reactions of both spans are added.
   void reactions(const double* v, const double* w, const double* a, const double* P,
                  std::vector<std::array<double, 3>>& out) const;
-  /// Adds `factor` times a static reaction (component 0 fx, 1 fy, 2 moment), as a linear form of this rank's nodal
-  /// displacements, to `forces`. Loads on the held unknowns are not included.
+  /// Adds the coefficients of this rank's nodal displacements in `factor` times a static reaction (component 0 fx, 1
+  /// fy, 2 moment) to `forces`. Loads on the held unknowns are not included.
   void add_reaction_form(int span_end, int component, double factor, double* forces) const;
 
  private:
@@ -140,7 +140,7 @@ class Beam {
   std::vector<char> fixed_;
   Rayleigh rayleigh_;
   base::Handle<Mat> mass_, beam_mass_, beam_stiffness_, springs_, stiffness_, damping_;
-  base::Handle<Mat> foundation_damping_;             // of all kinds together, with the pattern of the mass; or null
+  base::Handle<Mat> foundation_damping_;             // sum of all kinds, with the pattern of the mass; or null
   std::vector<double> weight_;                       // nodal forces of self-weight for a gravity of 1 m/s2, this rank
   std::vector<std::pair<int, double>> settlements_;  // settlements of held unknowns of the whole beam, ascending
   std::vector<double> imposed_, strain_forces_;

@@ -11,7 +11,7 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double node_tolerance = 1e-6;  // of an element's length: largest distance of a joint from its node
+constexpr double node_tolerance = 1e-6;  // largest distance of a joint from its node, relative to an element's length
 
 std::string text_of(double value) {
   char text[32];
@@ -57,7 +57,7 @@ void for_sleepers(const BeamModel& model, Visit visit) {
 }
 
 /// Checks a value that must be positive at a sleeper. The message names the option of the whole track or of the last
-/// stretch that sets it.
+/// TrackStretch that sets it.
 void check_at(double value, double x, const LayeredTrack& track, const char* name) {
   if (value > 0.0) return;
   std::string option = "track_" + std::string(name);

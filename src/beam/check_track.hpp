@@ -5,7 +5,7 @@
 
 namespace traverse::beam {
 
-/// Throws InputError if it cannot; the message names the option or the sleeper, the value and what is allowed.
+/// Throws InputError if it cannot; the message names the option or the sleeper, the value and the allowed values.
 void check_track(const BeamModel& model);
 
 }  // namespace traverse::beam

@@ -30,7 +30,7 @@ Cubic cubic_through(double h, Response response) {
   return {c[0], c[1] / h, c[2] / (h * h), c[3] / (h * h * h)};
 }
 
-/// The same polynomial in powers of x - d.
+/// The polynomial c in powers of x, rewritten in powers of x - d.
 inline Cubic shifted(const Cubic& c, double d) {
   return {c[0] + d * (c[1] + d * (c[2] + d * c[3])), c[1] + d * (2.0 * c[2] + 3.0 * d * c[3]), c[2] + 3.0 * d * c[3],
           c[3]};

@@ -1,4 +1,4 @@
-// Evaluates a piecewise linear table along the beam, which has a step where a station occurs twice, and checks its
+// Evaluates a piecewise linear table along the beam, whose value jumps where a station occurs twice, and checks its
 // rows.
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,8 @@ Distribution::Distribution(std::vector<double> x, std::vector<double> values, co
 
 double Distribution::at(double x, double inside) const {
   if (x_.empty()) return values_.front();
-  // The interval (right - 1, right) of the table that contains x; at a station the one on the side of `inside`.
+  // The interval (right - 1, right) of the table that contains x; at a station the one on the side of
+  // `inside`, an x inside the element.
   const auto it = inside < x ? std::lower_bound(x_.begin(), x_.end(), x) : std::upper_bound(x_.begin(), x_.end(), x);
   if (it == x_.begin()) return values_.front();
   if (it == x_.end()) return values_.back();

@@ -11,8 +11,8 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double rotary_factor =
-    32.0;  // times rho I/(m h^2): from 1 on the rotary inertia keeps the mass with the whole first term positive
+// If 32 rho I/(m h^2) >= 1, the mass matrix remains positive definite with the full first term of add_shear_mass.
+constexpr double rotary_factor = 32.0;
 
 template <std::size_t N>
 void add_outer(std::array<double, N * N>& matrix, double c, const std::array<double, N>& s) {
@@ -46,13 +46,14 @@ void add_shear_stiffness(const Distribution& GA, const Element& e, Transverse& s
   integrate(GA, e.x, e.x + e.length, [&](double, double weight) { add_outer<4>(stiffness, weight, gamma); });
 }
 
-/// Adds to the mass the response of the element to its own inertia that a constant gamma neglects, to fourth order in
-/// the element's length: with s = shear/(1 + shear) and means over the element
-///   m h^2/12 v' gamma + s rho I (h^2/12 theta'^2 - theta gamma/shear).
-/// The first term is that of the mean of consistent and lumped mass of a bar. It is reduced where the rotary inertia
-/// would not keep the mass positive.
+/// Adds to the mass the effect of inertia inside the element on gamma and theta, which a constant gamma neglects; the
+/// frequency error is then of fourth order (theory.md, "Shear and rotary inertia"). With s = 12 EI/(GA h^2),
+/// f = s/(1 + s) and means over the element:
+///   m h^2/12 v' gamma + f rho I (h^2/12 theta'^2 - theta gamma/s).
+/// The first term is that of the mean of consistent and lumped mass of a bar. Its factor is reduced if the mass matrix
+/// would otherwise not be positive definite.
 void add_shear_mass(const BeamModel& model, const Element& e, Transverse& mass) {
-  const double h = e.length, s = e.shear / (1.0 + e.shear);
+  const double h = e.length, f = e.shear / (1.0 + e.shear);
   const auto gamma = shear_strain(h, e.shear);
   const auto add_pair = [&](double factor, const std::array<double, 4>& other) {
     for (std::size_t i = 0; i < 4; ++i)
@@ -66,10 +67,10 @@ void add_shear_mass(const BeamModel& model, const Element& e, Transverse& mass) 
     const auto theta = rotation(xi, h, e.shear);
     rotary += weight;
     for (std::size_t i = 0; i < 4; ++i) rotary_load[i] += weight * theta[i];
-    add_outer<4>(mass, s * h * h / 12.0 * weight, hermite(xi, h, e.shear).curvature);
+    add_outer<4>(mass, f * h * h / 12.0 * weight, hermite(xi, h, e.shear).curvature);
   });
   add_pair(std::min(1.0, rotary_factor * rotary / (total_mass * h * h)) * total_mass * h / 12.0, {-1.0, 0.0, 1.0, 0.0});
-  add_pair(-s / e.shear, rotary_load);
+  add_pair(-f / e.shear, rotary_load);
 }
 
 Axial axial_stiffness_of(const Distribution& EA, const Element& e) {
@@ -139,8 +140,8 @@ std::array<double, 4> strain_load(const BeamModel& model, const Element& element
   std::array<double, 4> load{};
   if (curvature == 0.0) return load;
   integrate(model.EI, element.x, element.x + element.length, [&](double x, double weight) {
-    const auto form = hermite((x - element.x) / element.length, element.length, element.shear).curvature;
-    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * curvature * form[i];
+    const auto curvature_shape = hermite((x - element.x) / element.length, element.length, element.shear).curvature;
+    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * curvature * curvature_shape[i];
   });
   return load;
 }

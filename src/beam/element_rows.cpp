@@ -46,7 +46,7 @@ void ElementRows::add_run(const Run& run, int first, int past, const Planes& x, 
   for (int begin = 0; begin <= nodes;) {
     const solve::Stored& stored = run.stored.at(first + begin);
     const int end = static_cast<int>(std::min<std::ptrdiff_t>(nodes + 1, stored.row_end(first + begin) - first));
-    const std::ptrdiff_t place = stored.place(first + begin) - begin;
+    const std::ptrdiff_t place = stored.storage_index(first + begin) - begin;
     const auto coefficients_from = [&](std::size_t i) { return run.coefficients[i].data() + place; };
     const double *h = coefficients_from(0), *A = coefficients_from(1), *B = coefficients_from(2),
                  *C = coefficients_from(3), *D = coefficients_from(4), *S = coefficients_from(5);

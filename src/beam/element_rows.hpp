@@ -13,7 +13,7 @@ namespace traverse::beam {
 
 class ElementRows {
  public:
-  /// Whether the beam has neither hinges nor expansion devices, whose nodes have an additional unknown.
+  /// Whether the beam has no hinges and no expansion devices, whose nodes have an additional unknown.
   static bool fit(const Beam& beam) {
     const auto& place = beam.layout().place;
     return place[theta_right] < 0 && place[rail_theta_right] < 0 && place[rail_u_right] < 0;
@@ -31,7 +31,7 @@ class ElementRows {
   struct Run {
     int u, v, theta;  // places in a column
     std::array<std::vector<double>, numbers> coefficients;
-    solve::StoredSteps stored;
+    solve::StoredSequence stored;
   };
   static Run run_of(const Beam& beam, const Line& line);
   template <bool axial>

@@ -11,7 +11,7 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double rank_tolerance = 1e-10;  // of the largest pivot: conditions are linearly dependent
+constexpr double rank_tolerance = 1e-10;  // relative to the largest pivot: below it conditions are linearly dependent
 
 /// Neighbouring pieces that are one body or a chain of bodies.
 struct Part {
@@ -63,7 +63,8 @@ std::vector<std::pair<double, double>> bed_ranges(const Bed& bed, const Part& pa
   return stretches;
 }
 
-/// Linear forms of the deflections at the part's stations x, as rows, that must be zero.
+/// Linear combinations of the deflections at the part's stations x that must be zero; each row has the coefficients of
+/// one.
 class Conditions {
  public:
   explicit Conditions(const Part& part) : part_(part), unknowns_(static_cast<Eigen::Index>(part.x.size())) {}
@@ -75,7 +76,8 @@ class Conditions {
   }
   void add_zero_slope(double x, bool from_left) { add(piece_of(x, from_left), -1.0, 1.0); }
 
-  /// The motions that satisfy all conditions, one per column. Those of a free body are vertical and about its middle.
+  /// The motions that satisfy all conditions, one per column. A free body has a vertical motion and one about its
+  /// middle.
   Eigen::MatrixXd motions() const {
     if (rows_.empty() && unknowns_ == 2) return Eigen::Matrix2d{{1.0, -1.0}, {1.0, 1.0}};
     if (rows_.empty()) return Eigen::MatrixXd::Identity(unknowns_, unknowns_);

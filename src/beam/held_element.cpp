@@ -89,7 +89,7 @@ std::vector<double> HeldElement::ends() const {
   return ends;
 }
 
-// The line of the infinite beam, and four decaying waves that make both ends clamped.
+// The influence line of the infinite beam, plus four decaying waves by which both ends are clamped.
 HeldElement::Line HeldElement::line(double xi, bool rotation) const {
   Line line{xi, rotation};
   if (lambda_ == 0.0) return line;

@@ -1,5 +1,5 @@
-// End forces of the elements from left to right, in double or extended precision: those on the left end from the
-// stiffness, those on the right end from equilibrium of the element.
+// End forces of the elements from left to right, in double or extended precision. The forces on the left end follow
+// from the stiffness, the forces on the right end from equilibrium of the element.
 #include "beam/internal_forces.hpp"
 
 #include <iterator>
@@ -41,12 +41,12 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
   return run;
 }
 
-// Processes the elements from left to right and keeps the forces of an element on its right node for the next step.
+// Processes the elements from left to right and keeps the forces of an element on its right node for the next element.
 template <class Real, bool axial>
 void InternalForces::add_run(const Run& run, double sign, const double* x, const double* left, const double* right,
                              double* r) const {
   const std::ptrdiff_t b = block_, v = run.v, theta = run.theta, u = run.u;
-  double force = 0.0, moment = 0.0, along = 0.0;  // of the element to the left of a node, on the node
+  double force = 0.0, moment = 0.0, along = 0.0;  // forces of the element on the left of a node, acting on the node
   const double* x1 = run.first < 0 ? left : x + run.first * b;
   for (std::ptrdiff_t i = 0, column = run.first; i < std::ssize(run.elements); ++i, ++column) {
     const Stiffness& s = run.elements[static_cast<std::size_t>(i)];

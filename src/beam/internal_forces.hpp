@@ -26,7 +26,7 @@ class InternalForces {
   /// Along x: S (u2 - u1). All zero between separate spans.
   struct Stiffness {
     double h, A, B, C, D, S;
-    std::ptrdiff_t theta1, u1;  // their places in the left column, which differ at a hinge or an expansion device
+    std::ptrdiff_t theta1, u1;  // indices in the left column, which differ at a hinge or an expansion device
   };
   struct Run {
     int first = 0;  // local column of its first element's left node; -1: a column of the neighbour rank

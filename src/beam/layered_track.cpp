@@ -66,7 +66,8 @@ std::vector<Sleeper> sleepers_of(const Line& bridge, int first, int past) {
     s.rail_node = node;
     s.on_bridge = s.x >= bridge.mesh.start() - rounding && s.x <= bridge.mesh.end() + rounding;
     s.side = s.on_bridge ? 0 : s.x < bridge.mesh.start() ? -1 : 1;
-    // At two separate spans the right-hand one, as in the numbering, independent of the rounding of x.
+    // Between two separate spans the sleeper is on the right-hand span, as in the numbering, independent of the
+    // rounding of x.
     if (s.on_bridge) s.at = on_grid(bridge.mesh.locate(s.x + rounding));
     s.values = track.at(s.x);
     s.missing = !track.has_sleeper(s.x);

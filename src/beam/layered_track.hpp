@@ -13,7 +13,7 @@ struct Sleeper {
   int side = 0;  // -1 on the ground before the bridge, 0 on it, 1 on the ground behind it
   Station at;    // on the bridge
   TrackValues values;
-  bool missing = false;        // neither sleeper nor pads
+  bool missing = false;        // there are no sleeper and no pads
   bool sleeper_moves = false;  // it has a separate unknown
   bool ballast_moves = false;  // the ballast's mass has a separate unknown
 
@@ -25,8 +25,8 @@ struct Sleeper {
   bool slides() const { return values.slides_at > 0.0; }
   /// The longitudinal spring in the matrices: only the damper of a sleeper that slides.
   Spring linear_longitudinal() const { return slides() ? Spring{0.0, values.longitudinal.c} : values.longitudinal; }
-  /// The unknowns of the sleeper and of the ballast's mass. On the ground the latter uses the place of the bridge's
-  /// deflection, unless the ballast has a separate unknown on the bridge too.
+  /// The unknowns of the sleeper and of the ballast's mass. On the ground the ballast's mass uses the place of the
+  /// bridge's deflection, unless the ballast has a separate unknown on the bridge too.
   int unknown(const Layout& layout) const { return rail_node * layout.block + layout.place[sleeper]; }
   int ballast_unknown(const Layout& layout) const { return rail_node * layout.block + layout.ballast_place(); }
 };
@@ -34,7 +34,7 @@ struct Sleeper {
 /// The sleepers whose rail node is among the columns [first, past), from left to right.
 std::vector<Sleeper> sleepers_of(const Line& bridge, int first, int past);
 
-/// Releases the existing unknowns of a sleeper's column: those of the sleeper and of the ballast's mass.
+/// Releases the existing unknowns of the sleeper and of the ballast's mass in the sleeper's column.
 void release_sleeper(const Sleeper& sleeper, const Layout& layout, Slice& slice);
 
 /// Adds the masses of sleepers and ballast and the springs and dampers of all layers.

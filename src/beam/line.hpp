@@ -50,7 +50,7 @@ struct Layout {
   static bool of_bridge(Kind k) { return k == Kind::u || k == Kind::v || k == Kind::theta || k == Kind::theta_right; }
 };
 
-/// Beam elements among the columns: those of the bridge, or those of the rail.
+/// Beam elements among the columns: the elements of the bridge, or the elements of the rail.
 struct Line {
   Line(BeamModel model, const Layout& layout, bool rail, int first_column);
 
@@ -59,7 +59,7 @@ struct Line {
   int first_column = 0;  // column of its first node
   int block = 0;
   int per_node = 2;            // unknowns per node of an element: (v, theta), or (u, v, theta)
-  std::array<int, 5> place{};  // of u, v, theta, theta_right, u_right in a column; -1: does not exist
+  std::array<int, 5> place{};  // index of u, v, theta, theta_right, u_right in a column; -1: it does not exist
 
   /// The elements with a node among `count` columns from the first: [first, past).
   std::pair<int, int> elements_at(int first, int count) const;

@@ -1,5 +1,5 @@
-// Creates nodes and elements from the pieces of the spans, records kinks and steps of the running surface, and finds
-// the element at a station by bisection over the pieces.
+// Creates nodes and elements from the pieces of the spans, records kinks and jumps in height of the running surface,
+// and finds the element at a station by bisection over the pieces.
 #include "beam/mesh.hpp"
 
 #include <algorithm>

@@ -12,7 +12,7 @@ namespace traverse::beam {
 struct Element {
   int left = 0;  // left node; the right one is left + 1
   int span = 0;
-  double x = 0.0;       // of the left node, m
+  double x = 0.0;       // station of the left node, m
   double length = 0.0;  // m
   double EI = 0.0;      // at its middle, N m2
   double shear = 0.0;   // 12 EI/(GA length^2) at its middle; 0: no shear deformation
@@ -50,7 +50,7 @@ class Mesh {
 
   /// Stations at which the beam's slope or deflection may jump: its ends, separate joints, hinges; ascending.
   const std::vector<double>& kinks() const { return kinks_; }
-  /// Kinks at which the surface may have a step, because no rigid support holds both sides at one height.
+  /// Kinks at which the surface may have a jump in height, because no rigid support holds both sides at one height.
   const std::vector<double>& steps() const { return steps_; }
   /// Whether the rigid surface continues before the beam's start and behind its end.
   bool ground_before() const { return ground_[0]; }
@@ -66,7 +66,7 @@ class Mesh {
   std::vector<double> span_ends_, kinks_, steps_;
   std::vector<std::pair<int, int>> nodes_at_;
   std::vector<double> piece_ends_;  // left end of each range of equal elements, and the beam's end
-  std::vector<int> first_element_;  // of each range, and one past the last element
+  std::vector<int> first_element_;  // first element of each range; the last entry is the number of elements
 };
 
 }  // namespace traverse::beam

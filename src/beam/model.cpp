@@ -16,7 +16,7 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double min_distance = 1e-3;  // m, between nodes and between span ends
+constexpr double min_distance = 1e-3;  // m, least distance of nodes and of span ends
 constexpr double max_shear = 1e11;     // 12 EI/(GA h^2), with a relative rounding error of 1e-5
 
 std::string number(double value) {

@@ -1,5 +1,5 @@
 // Lists point foundations with a nonlinear law, Gauss points of nonlinear beds, and sleepers that hang or slide, each
-// with its displacement as a linear form of the unknowns.
+// with its displacement as a linear combination of the unknowns.
 #include "beam/nonlinear_points.hpp"
 
 #include <algorithm>

@@ -26,15 +26,15 @@ struct NonlinearPoint {
   double k = 0.0, c = 0.0;  // N/m, N s/m, or N m/rad, N m s/rad
   FoundationLaw law;
   int above = -1,
-      below = -1;  // of a hanging sleeper: its unknown and that of the ballast below it (-1: the bridge or the ground);
-                   // of a sliding sleeper: the rail's unknown along x, and -1
+      below = -1;         // hanging sleeper: its unknown and the unknown of the ballast below it (-1: the bridge or the
+                          // ground); sliding sleeper: the rail's unknown along x, and -1
   bool on_bridge = true;  // acts on the bridge, at `at`
   Sliding sliding = {};   // replaces the law for a sleeper or a bearing that slides
-  double height = 0.0;    // m above the bridge's axis, of a sliding sleeper
-  double depth = 0.0;     // m below the bridge's axis, of a point of a list
+  double height = 0.0;    // height of a sliding sleeper above the bridge's axis, m
+  double depth = 0.0;     // depth of a point of a list below the bridge's axis, m
 };
 
-/// The nonlinear points on the elements [first, past) of the bridge: the points of the lists, then those of beds,
+/// The nonlinear points on the elements [first, past) of the bridge: the points of the lists, then the points of beds,
 /// element by element.
 std::vector<NonlinearPoint> nonlinear_points(const Line& bridge, int first, int past);
 
@@ -48,8 +48,8 @@ std::vector<NonlinearPoint> hanging_sleepers(const Line& bridge, const Layout& l
 /// The sliding sleepers, with columns and indices as above.
 std::vector<NonlinearPoint> sliding_sleepers(const Line& bridge, const Layout& layout, int first, int past);
 
-/// The displacement at a point as a sum of shape*unknown: that of the beam, or of a sleeper relative to the layer
-/// below.
+/// The displacement at a point as a sum of shape*unknown: the displacement of the beam, or the displacement of a
+/// sleeper relative to the layer below.
 struct NonlinearShape {
   static constexpr std::size_t most = 7;
   int count = 0;

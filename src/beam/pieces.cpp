@@ -1,4 +1,4 @@
-// Division of a beam at span ends, hinges and steps of EI and mass, and below a layered track.
+// Division of a beam into pieces at span ends, hinges and jumps of EI and mass, and below a layered track.
 #include <algorithm>
 #include <cmath>
 
@@ -8,11 +8,11 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double rounding = 1e-9;  // of an element's length: closer stations are equal
+constexpr double rounding = 1e-9;  // relative to an element's length: closer stations are equal
 
-constexpr double min_piece = 0.2;  // of an element's length: steps closer to another division are ignored
+constexpr double min_piece = 0.2;  // relative to an element's length: jumps closer to another division are ignored
 
-/// The steps of EI or mass between `left` and `right` at which the beam is divided; none if there are too many for the
+/// The jumps of EI or mass between `left` and `right` at which the beam is divided; none if there are too many for the
 /// elements.
 std::vector<double> steps_between(const BeamModel& model, double left, double right, double element) {
   std::vector<double> steps = model.EI.steps(left, right), selected;
@@ -25,7 +25,7 @@ std::vector<double> steps_between(const BeamModel& model, double left, double ri
   return 2.0 * static_cast<double>(selected.size()) * element <= right - left ? selected : std::vector<double>();
 }
 
-/// Divides the last piece at steps of EI or mass, where the curvature jumps.
+/// Divides the last piece at jumps of EI or mass, where the curvature jumps too.
 void divide_at_steps(const BeamModel& model, std::vector<Piece>& pieces) {
   const Piece whole = pieces.back();
   const double element = model.spans[whole.span] / model.elements[whole.span];
@@ -104,8 +104,8 @@ std::vector<Piece> pieces_between(const std::vector<double>& x) {
   return pieces;
 }
 
-/// The mass of a sleeper that moves with the bridge: that of its ballast, or without ballast that of the sleeper. It is
-/// the mean of all sleepers on the bridge.
+/// The mass per sleeper that moves with the bridge: the mass of its ballast, or without ballast the mass of the
+/// sleeper. It is the mean of all sleepers on the bridge.
 double mass_on_bridge(const BeamModel& model, const LayeredTrack& track) {
   const auto mass = [&](double x) {
     const TrackValues values = track.at(x);

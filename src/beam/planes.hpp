@@ -7,14 +7,14 @@
 
 namespace traverse::beam {
 
-/// The arrays, indexed by the unknown's place in a column.
+/// The arrays, by the unknown's index in a column.
 using Planes = std::array<double*, kinds>;
 
 /// Largest number of nodes of one call with planes.
 inline constexpr int tile = 128;
 
-/// Number of nodes per step of a product. As many values behind those of a call may be read; their values are
+/// Number of nodes that a product processes at a time. A call may read as many values behind its own ones; they are
 /// arbitrary.
-inline constexpr int nodes_per_step = 32;
+inline constexpr int nodes_per_chunk = 32;
 
 }  // namespace traverse::beam

@@ -1,5 +1,5 @@
-// The displacement that a foundation resists at a station, as a form of the element's unknowns. Only this file and the
-// functions of beds below distinguish the directions of foundations.
+// The displacement that a foundation resists at a station, as a linear combination of the element's unknowns. Only this
+// file and the functions of beds below distinguish the directions of foundations.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@ struct PointShape {
   std::array<double, 4> shape{};
 };
 PointShape shape_at(const Line& line, Direction direction, const Station& at);
-/// The same for a point of the foundation: at a depth below the axis of a span end the beam moves along x by u +
-/// depth*theta.
+/// Unknowns and shapes at a point of the foundation. At a depth below the axis of a span end the displacement along x
+/// is u + depth*theta.
 PointShape shape_at(const Line& line, Direction direction, const Station& at, double depth);
 
 /// Integral of density(x) s s^T over the element, s the shape of a direction: the matrix of a bed (eqs. 27, 29, 36,
 /// 38).
 Transverse bed_matrix(Direction direction, const Distribution& density, const Element& element);
-/// Integral of density(x) s: the resultant of a bed as a form of the unknowns.
+/// Integral of density(x) s: the coefficients of the unknowns in the resultant of a bed.
 std::array<double, 4> bed_form(Direction direction, const Distribution& density, const Element& element);
 
 }  // namespace traverse::beam

@@ -9,7 +9,7 @@ namespace traverse::beam {
 
 void Beam::record_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
                             const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping) {
-  // By symmetry, the entry of the held row in a free column equals that of the free row in the held column.
+  // By symmetry, the entry of the held row in a free column equals the entry of the free row in the held column.
   const auto record_column = [&](std::size_t slot, int unknown, int held) {
     if (!slice.owns(unknown) || slice.held(unknown)) return;
     const ReactionTerm term{slot,

@@ -1,11 +1,12 @@
-// Moment, shear and axial force at one section of an element as linear forms of the element's nodal values.
+// Moment, shear and axial force at one section of an element as linear combinations of the element's nodal values.
 #pragma once
 
 #include "beam/element.hpp"
 
 namespace traverse::beam {
 
-/// Forms for one matrix of the element (K_e, C_e or M_e): coefficients of (v1, theta1, v2, theta2) and (u1, u2).
+/// The coefficients of (v1, theta1, v2, theta2) and (u1, u2) in these forces, for one matrix of the element (K_e, C_e
+/// or M_e).
 ///
 /// The element's matrix determines the forces at its left end; the loads between the left end and the section at x are
 /// added. With the end forces f = (K v)_1, m = (K v)_2, forces q and moments c at stations s:
@@ -48,7 +49,7 @@ inline bool is_left(double xi, double section) { return xi < section || (xi == s
 
 /// Deflection at xi of an element clamped at both ends under a unit force at `load`, m/N. shear: 12 EI/(GA h^2).
 double fixed_end_by_force(double xi, double load, double h, double EI, double shear = 0.0);
-/// The same under a unit moment, counter-clockwise, m/(N m).
+/// Deflection at xi of an element clamped at both ends under a unit counter-clockwise moment at `load`, m/(N m).
 double fixed_end_by_moment(double xi, double load, double h, double EI, double shear = 0.0);
 /// The deflection, or the rotation, at xi of a clamped Timoshenko element with h = 1 and EI = 1 under a unit force, or
 /// a unit moment, at `load`.

@@ -5,7 +5,7 @@
 namespace traverse::beam {
 namespace {
 
-/// Adds gamma to a form, because the slopes at both ends are the rotations plus gamma.
+/// Adds gamma to the coefficients of a displacement, because the slopes at both ends are the rotations plus gamma.
 void add_strain(std::array<double, 4>& form, const std::array<double, 4>& gamma) {
   const double slope_sum = form[1] + form[3];
   for (std::size_t i = 0; i < 4; ++i) form[i] += slope_sum * gamma[i];

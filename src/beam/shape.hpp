@@ -17,10 +17,11 @@ struct Hermite {
 /// cubic: exact for constant EI and GA, without locking (Friedman and Kosmatka 1993). 0: Bernoulli-Euler.
 Hermite hermite(double xi, double h, double shear = 0.0);
 
-/// The shear strain gamma = v' - theta of an element as a form of (v1, theta1, v2, theta2).
+/// The coefficients of (v1, theta1, v2, theta2) in the shear strain gamma = v' - theta of an element.
 std::array<double, 4> shear_strain(double h, double shear);
 
-/// Rotation theta of the sections as a form of (v1, theta1, v2, theta2): the slope minus the shear strain.
+/// The coefficients of (v1, theta1, v2, theta2) in the rotation theta of the sections: the slope minus the shear
+/// strain.
 std::array<double, 4> rotation(double xi, double h, double shear);
 
 /// Axial shape functions phi_1, phi_2.

@@ -8,7 +8,7 @@ namespace traverse::beam {
 namespace {
 
 constexpr int min_per_span = 24, min_total = 200;
-constexpr double node_tolerance = 1e-9;  // of an element: a station this close to a node is the node
+constexpr double node_tolerance = 1e-9;  // relative to an element's length: a station this close to a node is the node
 
 /// The number of elements of each span.
 std::vector<int> elements_of_spans(const Mesh& mesh) {

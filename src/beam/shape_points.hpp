@@ -15,7 +15,7 @@ class ShapePoints {
   struct Point {
     double x = 0.0;  // m
     int node = -1;   // -1: inside an element
-    Station at;      // of a node: an element that ends at it
+    Station at;      // station; for a node it is the end of an adjacent element
   };
 
   /// The nodes, points inside elements of spans with few elements, and the stations `additional`. Ascending.

@@ -6,7 +6,7 @@
 namespace traverse::beam {
 namespace {
 
-constexpr double station_rounding = 1e-9;  // of the sleepers' spacing
+constexpr double station_rounding = 1e-9;  // tolerance of stations, relative to the sleepers' spacing
 
 const Distribution* k_of(const std::optional<Layer>& layer) { return layer ? &layer->k : nullptr; }
 const Distribution* c_of(const std::optional<Layer>& layer) { return layer ? &layer->c : nullptr; }

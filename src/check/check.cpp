@@ -241,7 +241,7 @@ void print_page(const Scene& given, const FirstRun& run, const std::vector<std::
 int run_check(MPI_Comm comm, const Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  const FirstRun run(given);  // not collective; the same on every rank
+  const FirstRun run(given);  // not collective; every rank computes the same
   const std::vector<Axle> axles = axles_of(run);
   StaticResponse response;
   if (run.scene.beam) response = static_response(run);

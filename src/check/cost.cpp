@@ -24,9 +24,9 @@ namespace {
 // Measured values; benchmarks/check_estimates.py compares the estimates with measurements.
 constexpr double program_bytes = 6.5e7;  // bytes, of the program with its libraries
 constexpr double active_spans = 24.0;    // number of active spans of a long bridge
-constexpr double petsc_factor = 2.0;     // ratio of the cost to that of the program's own integrators
+constexpr double petsc_factor = 2.0;     // ratio of the cost to the cost of the program's own integrators
 constexpr double equivalent_runs = 8.0;  // number of runs with the first step that cost as much as all trial runs
-// Ratio of the necessary number of modes to that of EN 1990, with and without low-pass of the accelerations.
+// Ratio of the necessary number of modes to the number of EN 1990, with and without low-pass of the accelerations.
 constexpr double modes_low_passed = 4.0, modes_unfiltered = 10.0;
 constexpr double bytes_per_number = 8.0;
 constexpr double bytes_per_peak = 200.0;  // bytes for each run of a sweep and probe

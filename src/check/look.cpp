@@ -1,5 +1,5 @@
-// Assembles beam, modes and passage of the first run of a scene or study, with the first mesh and step of the trial
-// runs, and computes the first natural frequencies.
+// Assembles beam, modes and coupled system (Passage) of the first run of a scene or study, with the first mesh and step
+// of the trial runs, and computes the first natural frequencies.
 #include "look.hpp"
 
 #include <fmt/format.h>

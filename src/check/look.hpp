@@ -16,12 +16,12 @@ struct FirstRun {
   FirstRun(const FirstRun&) = delete;
   FirstRun& operator=(const FirstRun&) = delete;
 
-  Scene whole;                      // as given; for a study its first scene, with all speeds in its sweep
+  Scene whole;                      // the scene of the user; for a study its first scene, with all speeds in its sweep
   Scene scene;                      // its first run
   std::vector<std::string> notes;   // notes on the model
   std::vector<std::string> choice;  // choice of mesh and step
-  bool has_trial_runs = false;      // trial runs choose mesh and step, starting from those of `scene`
-  double first_step = 0.0, longest_step = 0.0, trial_window = 0.0;  // s; the last one: of a trial run
+  bool has_trial_runs = false;      // trial runs choose mesh and step, starting from mesh and step of `scene`
+  double first_step = 0.0, longest_step = 0.0, trial_window = 0.0;  // s; trial_window: duration of a trial run
   std::unique_ptr<SharedBeam> shared;
   std::unique_ptr<Passage> passage;  // at its start; null for an analysis of modes
   std::vector<double> frequencies;   // Hz, the first distinct ones of the bridge

@@ -66,7 +66,7 @@ void compute_deflection(norm::StaticBridge& bridge, const std::vector<norm::Load
   }
 }
 
-/// The largest static displacement of one side of a step under the trains, in magnitude.
+/// The largest magnitude of the static displacement on one side of a surface jump under the trains.
 double largest_displacement(norm::StaticBridge& bridge, double x, const std::vector<norm::LoadModel>& trains) {
   const norm::InfluenceLine line = bridge.lines_at(x)[0];
   return std::max(greatest_of(line, trains), greatest_of(line.times(-1.0), trains));

@@ -22,11 +22,11 @@ std::vector<Axle> axles_of(const FirstRun& run);
 struct SupportForce {
   double x = 0.0;  // m
   bool spring = false;
-  double dead_load = 0.0;              // by the bridge's own weight
-  double least = 0.0, greatest = 0.0;  // by the train or forces, over all their positions
+  double dead_load = 0.0;              // force by the bridge's own weight
+  double least = 0.0, greatest = 0.0;  // force by the train or moving forces, over all their positions
 };
 
-/// A step of the running surface: the largest by settlements and loads, over all positions of the loads.
+/// The largest jump in height of the running surface by settlements and loads, over all positions of the loads.
 struct SurfaceStep {
   double x = 0.0, height = 0.0;  // m
 };

@@ -22,7 +22,7 @@ constexpr double unit_ratio = 31.6227766;  // ratio of frequencies for a factor 
 constexpr double bounds_margin = 2.0;      // factor of the bounds
 constexpr double high_damping = 0.1;
 constexpr double large_deflection = 1.0 / 300.0;   // relative to the span
-constexpr double reported_step = 1e-4;             // m: of the running surface
+constexpr double reported_step = 1e-4;             // m: jump of the running surface
 constexpr double earth = 9.81, near_earth = 0.05;  // m/s2
 constexpr double min_time_share = 0.99;            // relative to the time until the train has left
 constexpr double min_load_share = 1e-3;            // relative to the mean: smallest wheel load

@@ -56,7 +56,7 @@ double duration_of_impact(const ElasticLaw& law, double mass, double speed) {
   return std::numbers::pi * sum / parts;
 }
 
-/// The same at a total penetration, of which the local compliance has a part.
+/// The elastic force at a total penetration, which includes the deflection of the local compliance.
 Elastic elastic(const Law& law, double penetration) {
   if (law.local_compliance == 0.0) return surface_force(law, penetration);
   const auto [force, slope] = surface_force(law, surface_penetration(law, penetration));

@@ -9,9 +9,10 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double converged_deviation = 1e-12;  // of the weight: remaining deviation from the law
-constexpr double renewal_deviation = 1e-6;     // of the weight: deviation above which the tangent is computed again
-constexpr double negligible = 1e-9;            // coupling of two rows over their own responses, which A neglects
+constexpr double converged_deviation = 1e-12;  // remaining deviation from the law, relative to the weight
+constexpr double renewal_deviation =
+    1e-6;                            // deviation above which the tangent is computed again, relative to the weight
+constexpr double negligible = 1e-9;  // coupling of two rows over their own responses, which A neglects
 
 // The force of the linearised law at the evaluated kinematics, minus the force at the kinematics stored in the contact.
 double force_correction(const train::Contact& c, bool normal) {

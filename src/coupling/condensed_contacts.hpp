@@ -5,9 +5,9 @@
 //
 //   P delta + A (F(delta) - F_ref) = c,   A = H + P W,   P = 1 - H D0
 //
-// H is the compliance of the vehicles at their contacts, W that of the beam, and c the displacement of the vehicles
-// under unchanged contact forces. D0 is the tangent of the contact law that H includes; it is zero except in statics.
-// Penetration rates and sliding speeds change by shift times delta.
+// H is the compliance of the vehicles at their contacts, W the compliance of the beam, and c the displacement of the
+// vehicles under unchanged contact forces. D0 is the tangent of the contact law that H includes; it is zero except in
+// statics. Penetration rates and sliding speeds change by shift times delta.
 #pragma once
 
 #include <Eigen/Dense>
@@ -45,8 +45,8 @@ class CondensedContacts {
 
   /// Computes the contact forces by Newton's method from the kinematics stored in the contacts, and stores the solution
   /// in the contacts. loaded: the geometry was evaluated with the beam under the present contact forces, otherwise
-  /// under none. Returns the remaining deviation of a force from the last tangent of the law, over the vehicle's
-  /// weight.
+  /// under no contact forces. Returns the remaining deviation of a force from the last tangent of the law, over the
+  /// vehicle's weight.
   double solve(double shift, bool loaded, int most_iterations);
 
   /// The computed change of the force by the last tangent of the law.

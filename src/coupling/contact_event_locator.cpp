@@ -35,7 +35,7 @@ double ContactEventLocator::trial() {
 
 double ContactEventLocator::end() const { return found_ ? end_ : nearest(); }
 
-// Just before a closing, just after an opening; but the step has a positive length.
+// The end just before a closing or just after an opening; the step must have a positive length.
 double ContactEventLocator::nearest() const { return change_.gain && low_ > from_ ? low_ : high_; }
 
 void ContactEventLocator::end_at(double end) {

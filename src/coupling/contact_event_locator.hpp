@@ -29,7 +29,7 @@ class ContactEventLocator {
   train::Change change_;
   double from_, full_end_;                                // start and end of the whole step
   double low_, high_;                                     // no change before low_, a change before high_
-  contact::Kinematics low_kinematics_, high_kinematics_;  // of the contact at these times
+  contact::Kinematics low_kinematics_, high_kinematics_;  // kinematics of the contact at these times
   double tolerance_;
   double time_tolerance_;  // s, of this contact
   bool found_ = false;

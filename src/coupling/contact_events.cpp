@@ -23,8 +23,8 @@ double refinement(const train::Separations& separations, int contact, const cont
 
 }  // namespace
 
-// The elastic energy of contacts that open while they are compressed, minus that of such contacts that close again or
-// are no longer compressed, J.
+// The elastic energy of contacts that open while they are compressed, minus the energy of such contacts that close
+// again or are no longer compressed, J.
 double ContactEvents::record_released() {
   double lost = 0.0;
   for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {

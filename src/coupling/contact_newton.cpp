@@ -9,20 +9,21 @@ namespace traverse::coupling {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int reuse_iterations = 4;           // of a stage with reused matrices
+constexpr int reuse_iterations = 4;           // limit of iterations of a stage with reused matrices
 constexpr int most_tangents = 20;             // iterations on the contact laws in one iteration
-constexpr double smooth_tolerance = 1e-10;    // of the weight: remaining error of forces
-constexpr double friction_tolerance = 1e-12;  // the same with friction, whose tangent is steep near sticking
+constexpr double smooth_tolerance = 1e-10;    // remaining error of forces, relative to the weight
+constexpr double friction_tolerance = 1e-12;  // this error with friction, whose tangent is steep near sticking
 constexpr double static_tolerance = 1e-13;
-constexpr double best_ratio = 1e-4;     // least ratio of two successive changes that is assumed
-constexpr double poor_ratio = 1e-3;     // of successive residuals or changes: the matrices are computed again
-constexpr double first_share = 0.1;     // of the ratio of a stage's first changes: the part due to reused matrices
-constexpr double growth = 1.1;          // of a ratio that is assumed again without a measurement
-constexpr double measurable = 1e-8;     // of the weight: larger changes determine a ratio
-constexpr double safety = 0.1;          // of the tolerance: a smaller predicted second change is not computed
-constexpr double least_decrease = 0.1;  // of the previous ratio: least new ratio
+constexpr double best_ratio = 1e-4;  // least ratio of two successive changes that is assumed
+constexpr double poor_ratio =
+    1e-3;  // ratio of successive residuals or changes above which the matrices are computed again
+constexpr double first_share = 0.1;     // part of the ratio of a stage's first changes that is due to reused matrices
+constexpr double growth = 1.1;          // factor of a ratio that is assumed again without a new measurement
+constexpr double measurable = 1e-8;     // relative to the weight: a ratio is computed only from larger changes
+constexpr double safety = 0.1;          // relative to the tolerance: a smaller predicted second change is not computed
+constexpr double least_decrease = 0.1;  // least new ratio over the previous one
 constexpr int not_comparable = -1;
-constexpr double rounding = 1e-9;  // of the weight: a smaller change that does not decrease is rounding
+constexpr double rounding = 1e-9;  // relative to the weight: a smaller change that does not decrease is due to rounding
 
 }  // namespace
 
@@ -180,7 +181,7 @@ void ContactNewton::clear_residual(train::Fleet& fleet, int k) {
   for (const train::ContactRow& row : contacts_.rows_of(k)) row.contact->touch.kinematics = row.contact->kinematics;
 }
 
-// At the stored contact forces.
+// The residual of a vehicle at the stored contact forces.
 bool ContactNewton::find_residual(train::MovingVehicle& vehicle, int k) {
   vehicle.Q.setZero();
   for (const train::ContactRow& row : contacts_.rows_of(k)) {

@@ -42,8 +42,8 @@ struct StageData {
 
 class ContactNewton {
  public:
-  /// Collective if ranks share the vehicles. x (freedom values, those of this rank) is the initial guess and then the
-  /// solution, which the vehicles are set to. False if the iteration does not converge.
+  /// Collective if ranks share the vehicles. x (the freedom values of this rank) is the initial guess and then the
+  /// solution, to which the vehicles are set. Returns false if the iteration does not converge.
   bool solve(train::Fleet& fleet, const StageData& stage, double* x);
   /// Whether all wheels are on their patches at the solution.
   bool in_place() const { return in_place_; }
@@ -53,7 +53,7 @@ class ContactNewton {
   double last_change() const { return change_; }
   /// The vehicle with this largest value.
   std::size_t worst_vehicle() const;
-  /// Reads or writes what later stages reuse.
+  /// Reads or writes the data that later stages reuse.
   void keep(base::Bytes& bytes) {
     bytes(contacts_, loads_, tolerance_, change_, contraction_, second_, single_evaluation_, in_place_, ratio_);
   }
@@ -84,13 +84,13 @@ class ContactNewton {
   CondensedContacts contacts_;
   std::vector<double> loads_, before_, v_, w_, p_, pd_, pdd_;
   std::vector<double> moved_;  // change of x since the vehicles were set
-  double tolerance_ = 0.0;     // of the weight
+  double tolerance_ = 0.0;     // tolerance of forces, relative to the weight
   double change_ = 0.0;
   double contraction_ = 1.0;  // expected ratio of the next change to the last one
   /// The ratio of a stage's second change to its first one, measured in the last stage with reused matrices. If the
   /// predicted second change is negligible, the stage ends after one evaluation.
   struct SecondChange {
-    double ratio = 1.0, first = 1.0;  // second change over first one, first one
+    double ratio = 1.0, first = 1.0;  // ratio of the second change to the first one; the first change
     int loaded_contacts = -1;         // contacts with force in that stage; -1: not comparable
     bool negligible(int contacts, double change, double limit);
     void record(int contacts, double change, double next);

@@ -10,12 +10,13 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double steepest = 0.05;  // slope; beams have much smaller ones
-// Of a step: the least duration of a turn; a shorter one would cost digits of accelerations.
+constexpr double steepest = 0.05;  // slope; the slopes of beams are much smaller
+// The least duration of a turn as a fraction of a step. A shorter step would make the accelerations inaccurate by
+// rounding.
 constexpr double least_turn = 1e-5;
-constexpr double negligible_turn = 1e-9;  // of a step: kinks with a shorter turn are ignored
-// Of the duration of the turn. margin: steps end so far outside of the turn that none ends on its wrong side. passed:
-// the tolerance for the difference of an end from its predicted time.
+constexpr double negligible_turn = 1e-9;  // fraction of a step: kinks with a shorter turn are ignored
+// Fractions of the duration of the turn. margin: the distance of the ends of steps from the turn, so that no step ends
+// inside it. time_tolerance: the allowed difference between the end of a step and its predicted time.
 constexpr double margin = 0.02, time_tolerance = 0.01;
 
 }  // namespace
@@ -27,13 +28,13 @@ void KinkEvents::list_kinks(const std::vector<base::SpeedLaw>& laws, double end,
   if (structure_ == nullptr) return;
   for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
     const train::WheelContact& c = fleet_.wheels[i];
-    if (c.is_further || c.sharp) continue;  // located by its contact points
+    if (c.is_further || c.may_touch_several_points) continue;  // located by the wheel's contact points
     if (laws[i].direction() == 0.0) continue;
     for (const double x : structure_->line().mesh.kinks()) {
       const double t = laws[i].time_of(x - fleet_.coordinates(c).x());
       if (!(t >= 0.0 && t <= end)) continue;
       const double speed = std::abs(laws[i].speed(t));
-      if (speed > 0.0) kinks_.push_back({t, static_cast<int>(i), x, speed});  // otherwise it is at rest there
+      if (speed > 0.0) kinks_.push_back({t, static_cast<int>(i), x, speed});  // otherwise the wheel is at rest there
     }
   }
   std::sort(kinks_.begin(), kinks_.end(), [](const Kink& a, const Kink& b) { return a.time < b.time; });
@@ -43,12 +44,12 @@ double KinkEvents::longest_turn(const Kink& kink) const {
   return steepest * fleet_.wheel(fleet_.wheels[kink.wheel]).radius / kink.speed;
 }
 
-// The start and the end of the turn, predicted from the state at t.
+// The times of the start and the end of the turn, predicted from the state at t.
 std::array<double, 2> KinkEvents::turning_times(const Kink& kink, double t, const double* v, const double* w) {
   const beam::Mesh& mesh = structure_->line().mesh;
   const train::WheelContact& c = fleet_.wheels[kink.wheel];
-  enum { x, speed, radius, numbers };
-  std::array<double, numbers> state{};
+  enum { x, speed, radius, state_size };
+  std::array<double, state_size> state{};
   int rank = 0;
   MPI_Comm_rank(comm_, &rank);
   if (share_.distributed() ? fleet_.owns(c) : rank == 0) {
@@ -58,7 +59,7 @@ std::array<double, 2> KinkEvents::turning_times(const Kink& kink, double t, cons
     const bool in_contact = penetration > 0.0 || c.law.kind == contact::LawKind::two_sided;
     state[radius] = in_contact ? fleet_.wheel(c).radius - penetration : 0.0;
   }
-  MPI_Allreduce(MPI_IN_PLACE, state.data(), numbers, MPI_DOUBLE, MPI_SUM, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, state.data(), state_size, MPI_DOUBLE, MPI_SUM, comm_);
   const double infinite = std::numeric_limits<double>::infinity();
   if (state[speed] == 0.0 || state[radius] == 0.0) return {infinite, infinite};  // without motion or contact
   const double centre_time = t + (kink.x - state[x]) / state[speed];             // the centre is above the kink
@@ -67,9 +68,9 @@ std::array<double, 2> KinkEvents::turning_times(const Kink& kink, double t, cons
   structure_->gather(elements_, v, w, v_, w_);
   const auto per_node = static_cast<std::size_t>(structure_->per_node());
   const std::size_t left = 2 * per_node - 1, right = left + per_node;
-  const auto turning_time = [&](bool on_beam, std::size_t rotation, double aside) {
+  const auto turning_time = [&](bool on_beam, std::size_t rotation, double toward) {
     const double beam_slope = on_beam ? v_[rotation] + w_[rotation] * (centre_time - t) : 0.0;
-    const double slope = beam_slope + fleet_.profile(c).at(std::nextafter(kink.x, aside)).slope;
+    const double slope = beam_slope + fleet_.profile(c).at(std::nextafter(kink.x, toward)).slope;
     return centre_time - state[radius] * slope / std::hypot(1.0, slope) / state[speed];
   };
   std::array<double, 2> times = {turning_time(kink.x > mesh.start(), left, -infinite),
@@ -82,25 +83,27 @@ std::array<double, 2> KinkEvents::turning_times(const Kink& kink, double t, cons
   return {middle - half_width, middle + half_width};
 }
 
-std::optional<KinkEvents::KinkPassage> KinkEvents::next(double t, double h, const double* v, const double* w) {
+std::optional<KinkEvents::KinkEvent> KinkEvents::next(double t, double h, const double* v, const double* w) {
   while (next_ < kinks_.size() && kinks_[next_].time + longest_turn(kinks_[next_]) < t) ++next_;
-  std::optional<KinkPassage> next;
+  std::optional<KinkEvent> next;
   for (std::size_t i = next_; i < kinks_.size(); ++i) {
     const double longest = longest_turn(kinks_[i]);
     if (kinks_[i].time - longest > t + h) break;
     const std::array<double, 2> times = turning_times(kinks_[i], t, v, w);
-    const double gap = time_tolerance * (times[1] - times[0]);
+    const double tolerance = time_tolerance * (times[1] - times[0]);
     for (int end = 0; end < 2; ++end) {
       const double at = times[static_cast<std::size_t>(end)];
-      if (std::abs(at - kinks_[i].time) < 2.0 * gap) continue;  // a step ends there in any case
-      if (at > t + gap && at < t + h - gap && (!next || at < next->time)) next = KinkPassage{at, gap, i, end};
+      if (std::abs(at - kinks_[i].time) < 2.0 * tolerance)
+        continue;  // the passage of the wheel's centre is already an event
+      if (at > t + tolerance && at < t + h - tolerance && (!next || at < next->time))
+        next = KinkEvent{at, tolerance, i, end};
     }
   }
   return next;
 }
 
-double KinkEvents::time_of(const KinkPassage& passage, double t, const double* v, const double* w) {
-  return turning_times(kinks_[passage.kink], t, v, w)[static_cast<std::size_t>(passage.end)];
+double KinkEvents::time_of(const KinkEvent& event, double t, const double* v, const double* w) {
+  return turning_times(kinks_[event.kink], t, v, w)[static_cast<std::size_t>(event.end)];
 }
 
 }  // namespace traverse::coupling

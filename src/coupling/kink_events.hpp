@@ -21,28 +21,29 @@ namespace traverse::coupling {
 
 class KinkEvents {
  public:
-  /// structure: null if there is none, and then no kinks.
+  /// structure: null without a structure; then there are no kinks.
   KinkEvents(MPI_Comm comm, structure::Structure* structure, const train::Fleet& fleet,
              const train::VehicleShare& share)
       : comm_(comm), structure_(structure), fleet_(fleet), share_(share) {}
 
-  /// Lists the kinks that the fleet's wheels, moving by `laws`, pass until `end`. Before the first step; step: the
-  /// longest.
+  /// Lists the kinks that the fleet's wheels, moving by `laws`, pass until `end`. Called before the first step; step:
+  /// the longest step, s.
   void list_kinks(const std::vector<base::SpeedLaw>& laws, double end, double step);
 
-  /// A wheel begins or ends to turn about a kink: the time, and the tolerance for the end of a step there.
-  struct KinkPassage {
+  /// The time at which a wheel begins (end = 0) or ends (end = 1) to turn about a kink, and the tolerance for the end
+  /// of a step there.
+  struct KinkEvent {
     double time = 0.0, tolerance = 0.0;  // s
     std::size_t kink = 0;
     int end = 0;
   };
   /// Collective. The first such time within h s after t, predicted from the accepted state v, w at t.
-  std::optional<KinkPassage> next(double t, double h, const double* v, const double* w);
-  /// Collective. The same time computed at the end of a step, which the vehicles are set to.
-  double time_of(const KinkPassage& passage, double t, const double* v, const double* w);
+  std::optional<KinkEvent> next(double t, double h, const double* v, const double* w);
+  /// Collective. The same time computed from the state at the end of a step, to which the vehicles are set.
+  double time_of(const KinkEvent& event, double t, const double* v, const double* w);
 
  private:
-  /// A wheel's centre passes a kink of the surface.
+  /// The passage of a wheel's centre over a kink of the surface.
   struct Kink {
     double time = 0.0;   // s
     int wheel = 0;       // index in Fleet::wheels
@@ -59,8 +60,8 @@ class KinkEvents {
   std::vector<Kink> kinks_;  // ascending in time
   double longest_step_ = 0.0;
   std::size_t next_ = 0;       // the first kink that may not have been passed
-  std::vector<int> elements_;  // on both sides of a kink
-  std::vector<double> v_, w_;  // of these
+  std::vector<int> elements_;  // the elements on both sides of a kink
+  std::vector<double> v_, w_;  // displacements and rates of these elements
 };
 
 }  // namespace traverse::coupling

@@ -14,19 +14,19 @@ namespace traverse::coupling {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr int positions = 2000;            // of the weights along their path
+constexpr int positions = 2000;            // number of positions of the weights along their path
 constexpr double constant_distance = 0.5;  // m: weights whose distances change by less move as one train
 
 }  // namespace
 
 // The deflection of a station under a unit downward force on the line of the wheels, over the position of the force. By
-// the theorem of Maxwell and Betti it is the deflection of that line under a load: the linear form of the nodal values
-// of the station's element that gives the deflection at the station. A force on that element adds a deflection between
-// its nodes.
+// the theorem of Maxwell and Betti it is the deflection of that line under a load. The nodal forces of this load are
+// the coefficients of the nodal values of the station's element in the deflection at the station. A force on that
+// element adds a deflection between its nodes.
 struct QuasiStaticResponse::InfluenceLine {
   double station = 0.0;
   std::vector<double> nodal;             // deflection and rotation at both ends of every element, on every rank
-  std::optional<beam::Recovery> inside;  // of the station; none if wheels run on a rail
+  std::optional<beam::Recovery> inside;  // recovery inside the station's element; none if wheels run on a rail
   double weight_deflection = 0.0;        // m: deflection under the beam's own weight
 
   double at(const beam::Mesh& mesh, double x) const {
@@ -44,7 +44,7 @@ struct QuasiStaticResponse::InfluenceLine {
     if (length == 0.0) return at(mesh, x);
     const double from = std::max(x - 0.5 * length, mesh.start()), to = std::min(x + 0.5 * length, mesh.end());
     if (!(to > from)) return 0.0;
-    constexpr double position = 0.7745966692414834;  // of Gauss' rule with three points
+    constexpr double position = 0.7745966692414834;  // position of the outer points of Gauss' rule with three points
     double sum = 0.0;
     const auto add = [&](double left, double right) {
       const double middle = 0.5 * (left + right), half = 0.5 * (right - left);

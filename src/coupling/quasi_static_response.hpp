@@ -22,12 +22,12 @@ struct StaticLoad {
 
 class QuasiStaticResponse {
  public:
-  /// structure: null if there is none, and then no deflections. gravity: on the structure's mass, m/s2; 0: no
-  /// self-weight.
+  /// structure: null without a structure; then there are no deflections. gravity: gravity on the structure's mass,
+  /// m/s2; 0: no self-weight.
   QuasiStaticResponse(MPI_Comm comm, structure::Structure* structure, double gravity)
       : comm_(comm), structure_(structure), gravity_(gravity) {}
 
-  /// weights: of the fleet's wheels in their order, then of the moving forces.
+  /// weights: the weights on the fleet's wheels in their order, then the moving forces.
   void set(std::vector<StaticLoad> weights, std::size_t wheels) {
     weights_ = std::move(weights);
     wheels_ = wheels;

@@ -11,7 +11,7 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr int most_placements = 4;  // of the wheels on elements within one stage
+constexpr int most_placements = 4;  // limit of assignments of wheels to elements in one stage
 
 }  // namespace
 
@@ -141,7 +141,7 @@ void System::evaluate_fleet(double t, const double* y) {
   fleet_.contact_forces();
   fleet_.contact_loads();
   pdd_.resize(fleet_.freedom());
-  flags_ = fleet_.worn() ? train::VehicleShare::worn : 0U;
+  flags_ = fleet_.badly_conditioned() ? train::VehicleShare::badly_conditioned : 0U;
   try {
     for (train::MovingVehicle& vehicle : fleet_.own())
       vehicle.dynamics->accelerations(vehicle, pdd_.data() + vehicle.offset);
@@ -240,7 +240,7 @@ System::Solution System::solve_coupled(const StageTime& at, Terms terms) {
   }
 }
 
-// From p_predicted_, pd_predicted_ and the initial guess in x_ to the solution in x_.
+// Solves the stage from p_predicted_, pd_predicted_ and the initial guess in x_; the solution is stored in x_.
 bool System::stage_of_fleet(const StageTime& at) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   const auto [first, past] = fleet_.own_coordinates();

@@ -61,11 +61,11 @@ struct SystemInput {
   double gravity = 9.81;
   bool self_weight = false;       // gravity acts on the beam too
   int impact_steps = 20;          // least number of steps in an impact; 0: no limit
-  bool local_compliance = false;  // the deflection of a bridge's elements between their nodes under wheels
+  bool local_compliance = false;  // whether a bridge's elements deflect between their nodes under wheels
 };
 
-/// The terms of G: all; or, for implicit-explicit integrators, the beam with the moving forces (implicit), or vehicles
-/// and contacts (explicit).
+/// The included terms of G: all terms, or for implicit-explicit integrators the terms of the beam with the moving
+/// forces (implicit) or of the vehicles and contacts (explicit).
 enum class Terms { all, beam, contact };
 
 /// Stored energies and the integrals of the powers, J.
@@ -77,15 +77,15 @@ struct Energy {
 /// An accepted instant, complete on every rank except for the nodal values.
 struct Observation {
   structure::NodalMotion beam;
-  std::vector<beam::ElementLoad> loads;  // of wheels and forces, on their line
+  std::vector<beam::ElementLoad> loads;  // loads of wheels and forces, on their line
   /// All concentrated loads on the bridge: `loads` if they run on the bridge, and the nonlinear foundation. Inside an
   /// element a bed is represented by forces at its integration points.
   std::vector<beam::ElementLoad> bridge_loads;
   Energy energy;
 };
 
-/// The structure by elements, with the self-weight of the scene; null without a beam. `shared`: the operator of the
-/// beam if there is one already, with its factorisations.
+/// The structure by elements, with the self-weight of the scene; null without a beam. `shared`: an existing operator of
+/// the beam with its factorisations; null: a new operator is created.
 std::unique_ptr<structure::Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
                                                   std::shared_ptr<structure::BeamOperator> shared = nullptr);
 
@@ -102,7 +102,7 @@ class System {
   /// structure: null for a mechanism alone or for vehicles on rigid ground. Throws InputError for a wheel that would
   /// touch the profile at more points than the model allows.
   System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, SystemInput input);
-  /// The same with a structure by_elements.
+  /// A system whose structure is computed by_elements.
   System(MPI_Comm comm, const beam::Beam* beam, const SystemInput& input)
       : System(comm, by_elements(beam, input), input) {}
   ~System();
@@ -150,21 +150,22 @@ class System {
   void begin_motion(const structure::Method& method);
   /// Whether reject_step may follow a step.
   void store_steps(bool store) { store_steps_ = store; }
-  /// Collective. Before the first step from a state, and after a change of the state from outside.
+  /// Collective. Call before the first step from a state, and after a change of the state from outside.
   void restart_motion(double t, double* y);
   /// Collective. One step of h from t. If a stage has no solution, y is unchanged and the result is false. Spans that
   /// do not touch those under the loads are computed in accept(). `good_enough` is called after all stages are solved;
   /// if it returns false, the step is treated as not solved.
   bool step_motion(double t, double h, double* y, const std::function<bool()>& good_enough = {});
-  /// Collective. Before the first step: the errors of steps will be requested. InputError if there is no scale for the
-  /// errors.
+  /// Collective. Call before the first step if the errors of steps will be requested. InputError if there is no scale
+  /// for the errors.
   void measure_errors();
   /// Collective. The dimensionless error of the step from y whose stages are solved, estimated by its embedded method.
-  /// It is the larger of two values: for the structure the square root of the error's energy over that of the static
-  /// deflection under the weights; for the worst vehicle the root mean square of the errors of its masses'
-  /// accelerations over gravity plus these accelerations.
+  /// It is the larger of two values. For the structure: the square root of the ratio of the error's energy to the
+  /// energy of the static deflection under the weights. For the worst vehicle: the root mean square of the errors of
+  /// its masses' accelerations, relative to gravity plus these accelerations.
   double step_error(const double* y);
-  /// Whether acceleration() is valid: not if the acceleration of the method differs from that of the state.
+  /// Whether acceleration() is valid: false if the acceleration of the method differs from the acceleration of the
+  /// state.
   bool provides_acceleration() const {
     return motion_ && motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
   }
@@ -178,9 +179,9 @@ class System {
   /// energies and nodal loads are not computed.
   void observe(double t, const double* y, const double* a, Observation& out, bool all = true);
 
-  /// Between two steps: applies constant forces from now on, in addition to those of the scene: Fleet::apply, and a
-  /// vertical force (N, upward) at a station (m) of the beam that wheels run on, which replaces an earlier one there.
-  /// InputError if there is no such beam or station.
+  /// Applies constant forces from now on, in addition to the forces of the scene. Call between two steps.
+  /// apply_to_body: see Fleet::apply. apply_to_beam: a vertical force (N, upward) at a station (m) of the beam on which
+  /// wheels run; it replaces an earlier force there. InputError if there is no such beam or station.
   void apply_to_body(int member, int body, const Eigen::Vector3d& action);
   void apply_to_beam(double x, double force);
   /// Determines which moving forces are on the beam during the next step, which ends at known events. The middle of the
@@ -209,20 +210,20 @@ class System {
   double leaving_time() const;
   /// Contact events, at which steps have to end.
   const ContactEvents& contacts() const { return events_; }
-  /// Before the first step: lists the kinks that wheels with a prescribed speed pass until `end`. step: the longest
-  /// step.
+  /// Lists the kinks of the running surface that wheels with a prescribed speed pass until `end`. Call before the first
+  /// step. step: the longest time step.
   void list_kinks(double end, double step) {
     std::vector<base::SpeedLaw> laws(fleet_.wheels.size());
     for (std::size_t i = 0; i < laws.size(); ++i)
       if (is_driven(static_cast<int>(i))) laws[i] = law_of_wheel(static_cast<int>(i));
     kink_events_.list_kinks(laws, end, step);
   }
-  /// KinkEvents::next and time_of at a state y.
-  std::optional<KinkEvents::KinkPassage> next_kink(double t, double h, const double* y) {
+  /// KinkEvents::next and KinkEvents::time_of at the state y.
+  std::optional<KinkEvents::KinkEvent> next_kink(double t, double h, const double* y) {
     return kink_events_.next(t, h, y, y + n_);
   }
-  double time_of(const KinkEvents::KinkPassage& passage, double t, const double* y) {
-    return kink_events_.time_of(passage, t, y, y + n_);
+  double time_of(const KinkEvents::KinkEvent& event, double t, const double* y) {
+    return kink_events_.time_of(event, t, y, y + n_);
   }
 
   /// The weights of the wheels in the initial state, and the moving forces.
@@ -314,7 +315,7 @@ class System {
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
   std::unique_ptr<structure::Structure> structure_;  // null: none
-  const beam::Line* line_;                           // of wheels and forces; null without a structure
+  const beam::Line* line_;                           // line on which wheels and forces move; null without a structure
   int n_;                                            // the structure's unknowns on this rank
   SystemInput input_;
   train::Fleet fleet_;
@@ -324,12 +325,12 @@ class System {
   QuasiStaticResponse weights_;
   ContactNewton newton_;
 
-  std::vector<beam::ElementLoad> loads_;                // of the moving forces on the beam
-  std::vector<BrakingWheel> braking_;                   // of trains whose speed is prescribed and changes
+  std::vector<beam::ElementLoad> loads_;                // loads of the moving forces on the beam
+  std::vector<BrakingWheel> braking_;                   // wheels of trains whose speed is prescribed and changes
   std::vector<double> braking_force_;                   // N along x on the line, during the step
   std::map<double, double> applied_;                    // N by station, m: the forces of apply_to_beam
   bool applied_changed_ = false;                        // since the last step
-  std::vector<char> on_beam_;                           // of each moving force, during the step
+  std::vector<char> on_beam_;                           // whether each moving force is on the beam during the step
   std::string unsupported_;                             // known reason why there is no static equilibrium
   std::vector<double> p_, c_p_, pdd_;                   // p, p' and their c, p'', the same on all ranks
   std::vector<double> pd_;                              // initial p' of a stage's Newton iteration
@@ -337,7 +338,7 @@ class System {
   std::vector<double> evaluated_;                       // p of the last state of the fleet
   double evaluated_time_ = 0.0;
   unsigned flags_ = 0;         // flags of VehicleShare for that state or for the end of a step
-  std::vector<double> v_, w_;  // of elements, 2*per_node each
+  std::vector<double> v_, w_;  // displacements and rates of elements, 2*per_node each
   std::vector<double> element_loads_;
   std::vector<structure::Reach> reaches_;
   std::unique_ptr<Motion> motion_;              // null before begin_motion

@@ -39,14 +39,15 @@ bool System::accept(double t, double* y) {
   if (fleet_.vehicles.empty()) return false;
   set_vehicles(t, y);
   const double lost = events_.accept(t);
-  const bool worn = share_.distributed() ? (flags_ & train::VehicleShare::worn) != 0 : fleet_.worn();
-  if (worn) evaluate_fleet(t, y);
+  const bool badly_conditioned =
+      share_.distributed() ? (flags_ & train::VehicleShare::badly_conditioned) != 0 : fleet_.badly_conditioned();
+  if (badly_conditioned) evaluate_fleet(t, y);
   bool renewed = fleet_.accept();
-  if (worn && share_.distributed()) {
+  if (badly_conditioned && share_.distributed()) {
     renewed = share_.exchange(renewed ? train::VehicleShare::renewed : 0U) != 0;
     if (renewed) share_.partitions(fleet_);
   }
-  if (renewed) fleet_.number(t);
+  if (renewed) fleet_.assign_coordinates(t);
   if (rank_ == 0) y[2 * (n_ + fleet_.freedom())] += lost;
   if (!renewed) return lost != 0.0;
   if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());

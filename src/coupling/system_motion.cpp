@@ -10,7 +10,7 @@ namespace traverse::coupling {
 namespace {
 
 constexpr double same_position = 1e-9;  // m or rad: the last stage is at the end of the step
-constexpr double same_length = 1e-10;   // relative, of steps whose ends are rounded
+constexpr double same_length = 1e-10;   // relative difference of lengths of steps whose ends are rounded
 
 }  // namespace
 
@@ -181,7 +181,7 @@ void System::finish_step(double* y) {
   Motion& m = *motion_;
   const structure::StepRule& rule = m.method.step;
   const auto [first, past] = fleet_.own_coordinates();
-  flags_ = by_passes_ || !fleet_.worn() ? 0U : train::VehicleShare::worn;
+  flags_ = by_passes_ || !fleet_.badly_conditioned() ? 0U : train::VehicleShare::badly_conditioned;
   for (int i = first; !by_passes_ && i < past; ++i) {
     m.p[i] += rule.w_in_v * m.pd[i];
     for (int j = 0; j < rule.known; ++j) {
@@ -221,7 +221,7 @@ void System::finish_passes() {
   if (!train_->ends_with_stage()) flags_ |= train::VehicleShare::moved;
 }
 
-// p, p' and p'' at the end of the step, of all vehicles.
+// Exchanges p, p' and p'' of all vehicles at the end of the step.
 void System::share_step() {
   Motion& m = *motion_;
   const auto freedom = [this](int k) { return fleet_.vehicles[k].freedom(); };

@@ -6,7 +6,7 @@
 
 namespace traverse::coupling {
 
-// Whether a step by passes has given the fleet the wheels' positions and forces at t.
+// Whether a step by passes has copied the wheels' positions and forces at t to the fleet.
 bool System::contacts_are_known(double t) const {
   return by_passes_ && t == evaluated_time_ && train_->ends_with_stage() && surface_height() == 0.0 &&
          std::none_of(fleet_.wheels.begin(), fleet_.wheels.end(), [](const auto& wheel) { return wheel.further > 0; });

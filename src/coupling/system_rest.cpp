@@ -16,7 +16,7 @@ namespace {
 constexpr double first_tie = 1e3, last_tie = 1e-2;
 constexpr double softer = 0.5, stiffer = 8.0;  // factors after a step with a solution, and after one without
 constexpr int most_ties = 200;
-constexpr double balanced_acceleration = 0.02;  // of gravity: remaining forces of the ties
+constexpr double balanced_acceleration = 0.02;  // remaining forces of the ties, as acceleration relative to gravity
 constexpr double rail_offset = 1e-3;            // m: half the distance for the derivative of the rail's deflection
 constexpr double rigid_tie = 1e10;              // 1/s2, tie of the vehicles' positions
 
@@ -125,8 +125,9 @@ void System::restart_from(std::vector<double> p) {
   const auto f = static_cast<std::ptrdiff_t>(fleet_.freedom());
   std::copy_n(p.begin(), f, p_predicted_.begin());
   std::fill(x_.begin(), x_.end(), 0.0);
-  if (!fleet_.set(0.0, p_predicted_.data(), pd_predicted_.data()) || !fleet_.worn() || !fleet_.accept()) return;
-  fleet_.number(0.0);
+  if (!fleet_.set(0.0, p_predicted_.data(), pd_predicted_.data()) || !fleet_.badly_conditioned() || !fleet_.accept())
+    return;
+  fleet_.assign_coordinates(0.0);
   std::fill(p_predicted_.begin(), p_predicted_.end(), 0.0);
 }
 

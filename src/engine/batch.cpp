@@ -88,7 +88,7 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
   task_.beam = &beam_;
   task_.peaks = &peaks_;
   task_.distance = arrays_.distance.data();
-  task_.second = arrays_.second.data();
+  task_.touches_two_patches = arrays_.touches_two_patches.data();
   task_.work = arrays_.add(2 * static_cast<std::size_t>(train_.coordinates));
   double *speed = arrays_.add(1), *end_time = arrays_.add(1), *failed = arrays_.add(1);
   for (std::size_t l = 0; l < arrays_.lanes; ++l) {
@@ -139,7 +139,7 @@ void Batch::start_structure() {
   const int lanes = static_cast<int>(arrays_.lanes);
   for (int k = 0; k < 2 * train_.per_node; ++k) train_.offset[k] = structure_.offset_[k] * lanes;
   train_.ground = static_cast<int>(columns * block) * lanes;
-  train_.shears = structure_.shears_;
+  train_.shears = structure_.has_shear_;
   train_.nodal = beam_.v_stage = arrays_.add(nodal);
   train_.dissipated = train_.drive_power = nullptr;
   train_.converged = arrays_.add(arrays_.blocks.size());
@@ -232,15 +232,15 @@ void Batch::prepare_peaks() {
   peaks_.greatest = arrays_.add(1);
   std::fill_n(peaks_.least, arrays_.lanes, 1e300);
   std::fill_n(peaks_.greatest, arrays_.lanes, -1e300);
-  peaks_.lost_at = arrays_.add(wheels);
-  std::fill_n(peaks_.lost_at, rows(wheels), -1.0);
-  peaks_.losses = arrays_.add(1);
-  peaks_.longest = arrays_.add(1);
-  peaks_.inner = arrays_.add(n);
-  peaks_.lagging = arrays_.add(n);
+  peaks_.contact_lost_time = arrays_.add(wheels);
+  std::fill_n(peaks_.contact_lost_time, rows(wheels), -1.0);
+  peaks_.contact_loss_count = arrays_.add(1);
+  peaks_.longest_contact_loss = arrays_.add(1);
+  peaks_.interior_moment = arrays_.add(n);
+  peaks_.interior_moment_lagged = arrays_.add(n);
   peaks_.lag = structure_.beam_.rayleigh().b;
-  peaks_.departure = arrays_.add(arrays_.blocks.size());
-  peaks_.farthest = arrays_.add(static_cast<std::size_t>(train_.coordinates));
+  peaks_.largest_residual_root = arrays_.add(arrays_.blocks.size());
+  peaks_.coordinates_at_largest = arrays_.add(static_cast<std::size_t>(train_.coordinates));
 }
 
 void Batch::set_step(double ds) {
@@ -264,24 +264,25 @@ void Batch::store_accelerations() {
 
 void Batch::run() {
   constexpr double same_step = 1e-10;  // far above the rounding errors of differences of distances
-  const std::vector<BatchStretch>& stretches = plan_.stretches;
-  const bool keeps = std::any_of(stretches.begin(), stretches.end(), [](const BatchStretch& s) { return s.keeps; });
+  const std::vector<EqualSteps>& equal_steps = plan_.equal_steps;
+  const bool stores_accelerations =
+      std::any_of(equal_steps.begin(), equal_steps.end(), [](const EqualSteps& s) { return s.stores_accelerations; });
   const auto any_running = [&] {
     return std::any_of(task_.failed, task_.failed + arrays_.lanes,
                        [](double failure) { return static_cast<int>(failure) == none; });
   };
   TRAVERSE_LANES_CALL(start_batch_peaks(task_));
-  if (keeps) store_accelerations();
+  if (stores_accelerations) store_accelerations();
   double from = 0.0;
   bool new_step = true;
-  for (const BatchStretch& stretch : stretches) {
-    const double ds = (stretch.to - from) / static_cast<double>(stretch.steps);
+  for (const EqualSteps& series : equal_steps) {
+    const double ds = (series.to - from) / static_cast<double>(series.steps);
     if (std::abs(ds - ds_) > same_step * ds) {
       set_step(ds);
       new_step = true;
     }
-    for (long k = 0; k < stretch.steps; ++k) {
-      const double at = from + static_cast<double>(k) * ds, to = k + 1 < stretch.steps ? at + ds : stretch.to;
+    for (long k = 0; k < series.steps; ++k) {
+      const double at = from + static_cast<double>(k) * ds, to = k + 1 < series.steps ? at + ds : series.to;
       activate_vehicles(to);
       if (ds_before_ != ds || new_step) arrays_.set_guesses(plan_.method, ds_before_ / ds);
       for (int stage = 0; stage < train_.stages; ++stage) {
@@ -292,10 +293,10 @@ void Batch::run() {
       TRAVERSE_LANES_CALL(finish_batch_step(task_, to));
       ds_before_ = ds;
     }
-    if (stretch.kink) TRAVERSE_LANES_CALL(end_peaks_at_kink(task_));
-    if (stretch.keeps) store_accelerations();
+    if (series.ends_at_event) TRAVERSE_LANES_CALL(end_peaks_at_kink(task_));
+    if (series.stores_accelerations) store_accelerations();
     if (!any_running()) break;
-    from = stretch.to;
+    from = series.to;
   }
   TRAVERSE_LANES_CALL(finish_batch(task_));
 }
@@ -305,19 +306,20 @@ std::vector<BatchResult> Batch::results() const {
   const std::size_t n = structure_.probes_.size();
   for (std::size_t l = 0; l < count_; ++l) {
     BatchResult& r = results[l];
-    r.trouble = static_cast<Trouble>(static_cast<int>(task_.failed[l]));
+    r.failure = static_cast<RunFailure>(static_cast<int>(task_.failed[l]));
     const auto peak = [&](std::size_t row) {
       return base::Extreme{peaks_.peak[rows(row) + l], peaks_.peak_time[rows(row) + l]};
     };
     for (std::size_t p = 0; p < n; ++p) r.peaks.push_back({peak(p), peak(n + p), peak(2 * n + p)});
-    r.kept = stored_accelerations_[l];
+    r.accelerations = stored_accelerations_[l];
     r.least_wheel_force = peaks_.least[l];
     r.greatest_wheel_force = peaks_.greatest[l];
-    r.contact_losses = peaks_.losses[l];
-    r.longest_loss = peaks_.longest[l];
+    r.contact_losses = peaks_.contact_loss_count[l];
+    r.longest_loss = peaks_.longest_contact_loss[l];
     for (const VehicleBlock& b : arrays_.blocks)
       for (int i = 0; i < b.freedom; ++i)
-        r.farthest.push_back(peaks_.farthest[rows(static_cast<std::size_t>(b.first_coordinate + i)) + l]);
+        r.coordinates_at_largest.push_back(
+            peaks_.coordinates_at_largest[rows(static_cast<std::size_t>(b.first_coordinate + i)) + l]);
   }
   return results;
 }

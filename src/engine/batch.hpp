@@ -27,8 +27,8 @@ class BatchStructure {
   /// The reason why a structure cannot be computed in a batch; empty: it can. modal: its modes, null for elements.
   static std::string obstacle(const beam::Beam& beam, const structure::ModalBridge* modal);
 
-  /// The fleet's wheels at their positions on the structure; rest: nodal displacements without them; probes in m;
-  /// gravity for the self-weight, m/s2 (0: none). Beam and modes must outlive this object.
+  /// The fleet's wheels at their positions on the structure; rest: nodal displacements at rest, without the wheels;
+  /// probes in m; gravity for the self-weight, m/s2 (0: none). Beam and modes must outlive this object.
   BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
                  const std::vector<double>& rest, const std::vector<double>& probes, double gravity);
   BatchStructure(const BatchStructure&) = delete;
@@ -46,47 +46,49 @@ class BatchStructure {
 
   const beam::Beam& beam_;
   const structure::ModalBridge* modal_;
-  const beam::Line& line_;  // of the wheels
+  const beam::Line& line_;  // the line that carries the wheels
   BeamTask task_;           // without the arrays of the runs
   std::vector<double> mass_, damping_, stiffness_, dead_load_, shape_;
   std::vector<char> held_;
   std::vector<int> first_column_;
-  int offset_[most_nodal] = {};  // of an element's unknowns, from its first column
+  int offset_[most_nodal] = {};  // offset of each unknown of an element from its first column
   Surfaces surfaces_;
   std::vector<ProbeForms> probes_;
-  std::deque<std::vector<double>> numbers_;  // of the probes' forms
-  std::deque<std::vector<int>> lists_;       // of the probes' unknowns
+  std::deque<std::vector<double>> numbers_;  // storage for the coefficients of probes_
+  std::deque<std::vector<int>> lists_;       // storage for the indices of unknowns of probes_
   std::vector<double> kinks_;
-  bool shears_ = false;
+  bool has_shear_ = false;
 };
 
 /// A series of equal steps.
-struct BatchStretch {
+struct EqualSteps {
   double to = 0.0;  // m travelled since t = 0, at the end
   long steps = 0;
-  bool kink = true;    // at the end a wheel is at a kink of the surface or a probe
-  bool keeps = false;  // accelerations at the end are stored
+  bool ends_at_event = true;          // whether a wheel is at a kink of the surface or at a probe at the end
+  bool stores_accelerations = false;  // whether accelerations at the end are stored
 };
 
 /// One run: a train in its initial state, on its own track. The vehicles of all runs differ in parameter values only.
 struct BatchRun {
   const train::Fleet* fleet = nullptr;
-  const track::HeightTable* track = nullptr;   // with the same stations in all runs
-  const std::vector<double>* state = nullptr;  // structure at t = 0, v and w; w for the fleet's speed
-  double speed = 0.0, end_time = 0.0;          // m/s; s: end of the peaks' interval
+  const track::HeightTable* track = nullptr;  // with the same stations in all runs
+  // Displacements v and velocities w of the structure at t = 0; w belongs to the fleet's speed and is scaled to
+  // `speed`.
+  const std::vector<double>* state = nullptr;
+  double speed = 0.0, end_time = 0.0;  // m/s; s: end of the peaks' interval
 };
 
 struct BatchPlan {
   const BatchStructure* structure = nullptr;
-  structure::Method method;  // for steps of 1 s
-  std::vector<BatchStretch> stretches;
+  structure::Method method;  // coefficients for a step of 1 s, scaled to each run's step
+  std::vector<EqualSteps> equal_steps;
   double level_until = 0.0;  // m: up to here track and ground are level and rigid; vehicles are at rest
 };
 
 struct BatchResult : base::PassagePeaks {
-  Trouble trouble = none;
-  std::vector<double> kept;      // accelerations, a row of probes at each stored instant
-  std::vector<double> farthest;  // coordinates of every vehicle at its largest departure
+  RunFailure failure = none;
+  std::vector<double> accelerations;           // at each stored instant those of all probes
+  std::vector<double> coordinates_at_largest;  // for each vehicle the coordinates at its largest linearisation residual
 };
 
 /// At most as many runs as there are lanes (best_width()).

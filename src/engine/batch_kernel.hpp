@@ -11,14 +11,15 @@ namespace traverse::engine {
 namespace {
 
 inline constexpr int most_passes = 60;
-inline constexpr double height_reach = 2e-5;  // m: the parabola of a track is exact within this distance
+inline constexpr double height_reach =
+    2e-5;  // m: contacts that move less than this reuse the parabola of the track's height
 
 /// Sets the patches of a wheel in one lane.
-inline void place_wheel(const BatchTask& t, int at, int lane) {
-  TrainTask& train = *t.train;
-  const BeamTask& beam = *t.beam;
-  const SurfaceTable& table = t.surface[t.table[at]];
-  int& k = t.interval[at];
+inline void place_wheel(const BatchTask& task, int at, int lane) {
+  TrainTask& train = *task.train;
+  const BeamTask& beam = *task.beam;
+  const SurfaceTable& table = task.surface[task.table[at]];
+  int& k = task.interval[at];
   k = find_interval(table, train.along[at], k);
   set_patches(train, at, table.patches[k]);
   for (int n = 0; n < 2; ++n) {
@@ -30,7 +31,7 @@ inline void place_wheel(const BatchTask& t, int at, int lane) {
   }
 }
 
-/// Calls use(structure), with BeamRows of its block size or ModalRows.
+/// Calls function(structure) with the BeamRows of the task's block size or with its ModalRows.
 template <class Use>
 void with_structure(BeamTask& task, Use use) {
   if (task.shape != nullptr)
@@ -46,9 +47,9 @@ void with_structure(BeamTask& task, Use use) {
 }
 
 /// Sets the patches of the wheels that have left theirs, or of all wheels. Returns whether there were any.
-inline bool place_wheels(const BatchTask& t, bool all) {
+inline bool place_wheels(const BatchTask& task, bool all) {
   bool moved = false;
-  TrainTask& train = *t.train;
+  TrainTask& train = *task.train;
   for (int i = 0; i < train.wheels; ++i) {
     const Row x = rows(train.along)[i];
     const RowMask out = (x < rows(train.from)[i]) | (x > rows(train.to)[i]);
@@ -57,10 +58,10 @@ inline bool place_wheels(const BatchTask& t, bool all) {
     bool second_used = false;
     for (int l = 0; l < lanes; ++l) {
       const int at = i * lanes + l;
-      if (all || Rows::is_set(out, l)) place_wheel(t, at, l);
-      second_used |= t.surface[t.table[at]].patches[t.interval[at]].candidates > 1;
+      if (all || Rows::is_set(out, l)) place_wheel(task, at, l);
+      second_used |= task.surface[task.table[at]].patches[task.interval[at]].candidates > 1;
     }
-    t.second[i] = second_used ? 1 : 0;
+    task.touches_two_patches[i] = second_used ? 1 : 0;
     for (SurfacePatch& p : train.patch) {
       const int* slot = p.slot + i * lanes;
       bool contiguous_slots = slot[0] != train.ground, ground = !contiguous_slots;
@@ -75,11 +76,11 @@ inline bool place_wheels(const BatchTask& t, bool all) {
 }
 
 /// Computes track heights for contacts that have moved farther than `within`. Returns the lanes with such contacts.
-inline RowMask interpolate_heights(const BatchTask& t, double within) {
-  const HeightTable& track = t.heights;
+inline RowMask interpolate_heights(const BatchTask& task, double within) {
+  const HeightTable& track = task.heights;
   RowMask moved{};
   if (track.stations == 0) return moved;
-  TrainTask& train = *t.train;
+  TrainTask& train = *task.train;
   const double per = 1.0 / track.distance, last = static_cast<double>(track.stations - 1);
   const long stride = track.shared ? 1 : lanes;
   for (int i = 0; i < train.wheels; ++i) {
@@ -100,45 +101,47 @@ inline RowMask interpolate_heights(const BatchTask& t, double within) {
       Rows::numbers(h1)[l] = values[2 * stride];
       Rows::numbers(s1)[l] = values[3 * stride];
     }
-    const Row second = 3.0 * (h1 - h0) - 2.0 * s0 - s1, third = s0 + s1 - 2.0 * (h1 - h0);
+    const Row c2 = 3.0 * (h1 - h0) - 2.0 * s0 - s1, c3 = s0 + s1 - 2.0 * (h1 - h0);
     const auto store = [&](double* to, Row value) { rows(to)[i] = outside ? value : rows(to)[i]; };
     store(train.profile_station, x);
-    store(train.h, h0 + u * (s0 + u * (second + u * third)));
-    store(train.h_x, per * (s0 + u * (2.0 * second + 3.0 * u * third)));
-    store(train.h_xx, per * per * (2.0 * second + 6.0 * u * third));
+    store(train.h, h0 + u * (s0 + u * (c2 + u * c3)));
+    store(train.h_x, per * (s0 + u * (2.0 * c2 + 3.0 * u * c3)));
+    store(train.h_xx, per * per * (2.0 * c2 + 6.0 * u * c3));
   }
   return moved;
 }
 
-/// distance: m that all runs have travelled; new_step: the length of steps has changed.
+/// Solves one implicit stage in all lanes: predicts, then iterates structure and contact forces until they converge;
+/// failures are written to task.failed. distance: m that all runs have travelled; new_step: the length of steps has
+/// changed.
 template <Surface kind>
-void solve_batch_stage(const BatchTask& t, int stage, double distance, bool new_step) {
-  TrainTask& train = *t.train;
-  BeamTask& beam = *t.beam;
+void solve_batch_stage(const BatchTask& task, int stage, double distance, bool new_step) {
+  TrainTask& train = *task.train;
+  BeamTask& beam = *task.beam;
   const Row rate = row(train.stage[stage].rate), displacement = row(train.stage[stage].displacement);
-  for (int k = 0; k < train.blocks; ++k) *rows(t.distance[k]) = Rows::fill(distance);
+  for (int k = 0; k < train.blocks; ++k) *rows(task.distance[k]) = Rows::fill(distance);
   combine(stage + 1, train.stage[stage], 0, beam.unknowns, beam.v, beam.w, beam.a, rows(beam.v_predicted),
           rows(beam.w_predicted));
-  predict(train, stage, t.work);
-  const bool moved = place_wheels(t, new_step);
-  interpolate_heights(t, 0.0);
-  Row& failed = *rows(t.failed);
+  predict(train, stage, task.work);
+  const bool moved = place_wheels(task, new_step);
+  interpolate_heights(task, 0.0);
+  Row& failed = *rows(task.failed);
   with_structure(beam, [&](const auto& structure) {
     if (moved) structure.set_window(train, rate, displacement);
     structure.find_residual(rate, displacement);
     structure.begin_passes();
-    RowMask open = failed == Row{};
+    RowMask iterating = failed == Row{};
     for (int k = 0; k < train.blocks; ++k) rows(train.converged)[k] = Row{};
-    for (int pass = 0; Rows::any(open); ++pass) {
+    for (int pass = 0; Rows::any(iterating); ++pass) {
       structure.clear_loads();
       add_loads<kind>(train);
-      structure.solve(displacement, open);
-      const Changes changes = update_forces<kind>(train, open);
-      failed = open & changes.fallen ? Rows::fill(below_surface) : failed;
-      open &= (changes.most > train.tolerance) | interpolate_heights(t, height_reach);
-      open &= failed == Row{};
+      structure.solve(displacement, iterating);
+      const Changes changes = update_forces<kind>(train, iterating);
+      failed = iterating & changes.below_surface ? Rows::fill(below_surface) : failed;
+      iterating &= (changes.largest_change > train.tolerance) | interpolate_heights(task, height_reach);
+      iterating &= failed == Row{};
       if (pass < most_passes) continue;
-      failed = open ? Rows::fill(not_converged) : failed;
+      failed = iterating ? Rows::fill(not_converged) : failed;
       break;
     }
     structure.end_passes();

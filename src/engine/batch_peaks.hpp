@@ -65,27 +65,28 @@ inline void evaluate_probes(const BatchTask& t, double before) {
   const Row h = (s.distance[latest] - before) / row(t.speed);
   for (int k = 0; k < n; ++k) {
     const ProbeForms& p = t.probe[k];
-    Row deflection = Rows::fill(p.constant[0]), inner = Rows::fill(p.constant[1]);
+    Row deflection = Rows::fill(p.constant[0]), interior_moment = Rows::fill(p.constant[1]);
     const double* const state[3] = {beam.v, beam.w, beam.a[0]};
     for (int d = 0; d < 3; ++d) {
       deflection += product(p, p.deflection[d], state[d]);
-      inner += product(p, p.moment[d], state[d]);
+      interior_moment += product(p, p.moment[d], state[d]);
     }
-    add_wheels(t, p, deflection, inner);
-    Row &known = rows(s.inner)[k], &lagging = rows(s.lagging)[k];
+    add_wheels(t, p, deflection, interior_moment);
+    Row &known = rows(s.interior_moment)[k], &lagged_moment = rows(s.interior_moment_lagged)[k];
     if (s.lag <= 0.0 || s.samples == 1) {
-      lagging = inner;
+      lagged_moment = interior_moment;
     } else {
       Row decay{};
       for (int l = 0; l < lanes; ++l) Rows::numbers(decay)[l] = __builtin_exp(-Rows::numbers(h)[l] / s.lag);
-      const Row late = s.lag * (inner - known) / h;
-      lagging = inner - late + (lagging - known + late) * decay;
+      const Row late = s.lag * (interior_moment - known) / h;
+      lagged_moment = interior_moment - late + (lagged_moment - known + late) * decay;
     }
-    known = inner;
+    known = interior_moment;
     response[k] = deflection;
     response[n + k] = product(p, p.acceleration, beam.a[0]);
-    response[2 * n + k] = product(p, p.nodal_moment, beam.v) + lagging;
-    response[3 * n + k] = product(p, p.nodal_moment, beam.w) + (s.lag > 0.0 ? (inner - lagging) / s.lag : Row{});
+    response[2 * n + k] = product(p, p.nodal_moment, beam.v) + lagged_moment;
+    response[3 * n + k] =
+        product(p, p.nodal_moment, beam.w) + (s.lag > 0.0 ? (interior_moment - lagged_moment) / s.lag : Row{});
   }
   Row sum{};
   for (int i = 0; i < beam.unknowns; ++i) sum += rows(beam.v)[i];
@@ -208,14 +209,15 @@ inline void record_losses(const BatchTask& t, RowMask counts) {
   const Row now = s.distance[latest] / row(t.speed), before = s.distance[latest - 1] / row(t.speed);
   for (int j = 0; j < t.train->wheels; ++j) {
     const Row force = rows(s.force[latest])[j];
-    Row& lost_at = rows(s.lost_at)[j];
-    const RowMask lost = counts & (force <= 0.0) & (lost_at < 0.0), found = (force > 0.0) & (lost_at >= 0.0);
+    Row& contact_lost_time = rows(s.contact_lost_time)[j];
+    const RowMask lost = counts & (force <= 0.0) & (contact_lost_time < 0.0),
+                  found = (force > 0.0) & (contact_lost_time >= 0.0);
     if (!Rows::any(lost | found)) continue;
-    Row &losses = rows(s.losses)[0], &longest = rows(s.longest)[0];
-    losses += lost ? Rows::fill(1.0) : Row{};
-    const Row loss_duration = now - lost_at;
-    longest = found & (loss_duration > longest) ? loss_duration : longest;
-    lost_at = lost ? before : found ? Rows::fill(-1.0) : lost_at;
+    Row &contact_loss_count = rows(s.contact_loss_count)[0], &longest_contact_loss = rows(s.longest_contact_loss)[0];
+    contact_loss_count += lost ? Rows::fill(1.0) : Row{};
+    const Row loss_duration = now - contact_lost_time;
+    longest_contact_loss = found & (loss_duration > longest_contact_loss) ? loss_duration : longest_contact_loss;
+    contact_lost_time = lost ? before : found ? Rows::fill(-1.0) : contact_lost_time;
   }
 }
 
@@ -232,20 +234,20 @@ inline void update_wheel_forces(const BatchTask& t, RowMask counts, bool moved) 
   record_losses(t, counts);
 }
 
-/// Records the coordinates of vehicles at their largest departure from the state of linearisation.
+/// Records the coordinates of each vehicle at the largest upper bound of its linearisation residual.
 inline void record_departures(const BatchTask& t) {
   const PeakState& s = *t.peaks;
   for (int k = 0; k < t.train->blocks; ++k) {
     const VehicleBlock& b = t.train->block[k];
     if (*b.active == 0) continue;
-    Row departure{}, &most = rows(s.departure)[k];
+    Row residual_root{}, &most = rows(s.largest_residual_root)[k];
     for (int i = b.first_coordinate; i < b.first_coordinate + b.freedom; ++i)
-      departure += rows(t.roots)[i] * Rows::magnitude(rows(t.train->x)[i]);
-    const RowMask larger = departure > most;
+      residual_root += rows(t.roots)[i] * Rows::magnitude(rows(t.train->x)[i]);
+    const RowMask larger = residual_root > most;
     if (!Rows::any(larger)) continue;
-    most = larger ? departure : most;
+    most = larger ? residual_root : most;
     for (int i = b.first_coordinate; i < b.first_coordinate + b.freedom; ++i)
-      rows(s.farthest)[i] = larger ? rows(t.train->x)[i] : rows(s.farthest)[i];
+      rows(s.coordinates_at_largest)[i] = larger ? rows(t.train->x)[i] : rows(s.coordinates_at_largest)[i];
   }
 }
 

@@ -128,7 +128,7 @@ void BatchStructure::find_columns() {
   task_.transverse[1] = offset_[line_.per_node - 1];
   for (int e = 0; e < line_.mesh.elements(); ++e) {
     first_column_.push_back(line_.first_column + line_.mesh.element(e).left);
-    shears_ = shears_ || line_.mesh.element(e).shear != 0.0;
+    has_shear_ = has_shear_ || line_.mesh.element(e).shear != 0.0;
   }
   task_.elements = line_.mesh.elements();
   task_.first_column = first_column_.data();

@@ -1,6 +1,6 @@
 // A batch of runs as plain arrays: the train and the structure of all runs (train_task.hpp, beam_task.hpp), the surface
-// of its wheels, and the observed responses. Lane l of every row belongs to run l. All runs have the same steps in
-// distance, so that wheels reach ends of spans, kinks and probes in the same step.
+// of its wheels, and the observed responses. A row has one number for each SIMD lane; lane l belongs to run l. All runs
+// have the same steps in distance, so that wheels reach ends of spans, kinks and probes in the same step.
 #pragma once
 
 #include "base/extremum.hpp"
@@ -17,15 +17,15 @@ struct HeightTable {
   const double* values = nullptr;      // [station][height, slope*distance], m: numbers if shared, else rows
 };
 
-/// The response of a station: linear forms of `count` unknowns of the structure (beam::StationForms).
+/// The response of a station: linear combinations of `count` unknowns of the structure (beam::StationForms).
 struct ProbeForms {
   int count = 0;
   const int* unknown = nullptr;
-  const double* deflection[3] = {};      // of v, w and a, m
-  const double* acceleration = nullptr;  // of a, m/s2
-  const double* nodal_moment = nullptr;  // of v, N m
-  const double* moment[3] = {};          // other parts of the moment, of v, w and a, N m
-  double constant[2] = {};               // of self-weight and temperature: deflection, moment
+  const double* deflection[3] = {};      // m: coefficients of v, w and a
+  const double* acceleration = nullptr;  // m/s2: coefficients of a
+  const double* nodal_moment = nullptr;  // N m: coefficients of v
+  const double* moment[3] = {};          // N m: other parts of the moment, coefficients of v, w and a
+  double constant[2] = {};               // deflection and moment due to self-weight and temperature
   double from = 1.0, to = 0.0, x = 0.0;  // m: ends of the element, if wheels run on it; station
   /// The contributions of a force or a moment at xi of the element, left and right of the station, to deflection and
   /// moment: coefficients of the powers of xi.
@@ -44,16 +44,17 @@ struct PeakState {
   double* peak = nullptr;                        // [deflections, accelerations, moments]: magnitudes
   double* peak_time = nullptr;                   // s
   double *least = nullptr, *greatest = nullptr;  // N: a row
-  double* lost_at = nullptr;                     // s: time when each wheel lost contact; negative: in contact
-  double *losses = nullptr, *longest = nullptr;  // a row: number of losses of contact; longest loss, s
-  double *inner = nullptr, *lagging = nullptr;   // N m, of every probe: moment of loads and inertia; its elastic part
-                                                 // with viscous lag (viscous_lag.hpp)
-  double lag = 0.0;                              // s
-  double* departure = nullptr;  // for each block: largest bound of the root of its linearisation residual
-  double* farthest = nullptr;   // coordinates at that time
+  double* contact_lost_time = nullptr;           // s: for each wheel; negative: in contact
+  double *contact_loss_count = nullptr, *longest_contact_loss = nullptr;  // rows: 1; s
+  // N m, for each probe: moment from loads and inertia inside the element, before and after the lag of b M' damping
+  // (viscous_lag.hpp).
+  double *interior_moment = nullptr, *interior_moment_lagged = nullptr;
+  double lag = 0.0;                          // s
+  double* largest_residual_root = nullptr;   // for each block: largest upper bound of sqrt(linearisation residual)
+  double* coordinates_at_largest = nullptr;  // coordinates of the vehicles at that time
 };
 
-enum Trouble { none = 0, below_surface = 1, not_converged = 2, not_finite = 3 };
+enum RunFailure { none = 0, below_surface = 1, not_converged = 2, not_finite = 3 };
 
 struct BatchTask {
   TrainTask* train = nullptr;
@@ -63,10 +64,10 @@ struct BatchTask {
   const int* table = nullptr;  // index of each wheel's surface
   int* interval = nullptr;     // index of the wheel's interval in its surface
   HeightTable heights;
-  double* const* distance = nullptr;  // a row for each block: VehicleBlock::distance
-  char* second = nullptr;             // TrainTask::second
-  double* failed = nullptr;           // a row: Trouble
-  double* work = nullptr;             // two rows for each coordinate
+  double* const* distance = nullptr;    // a row for each block: VehicleBlock::distance
+  char* touches_two_patches = nullptr;  // TrainTask::touches_two_patches
+  double* failed = nullptr;             // a row: RunFailure
+  double* work = nullptr;               // two rows for each coordinate
 
   int probes = 0, kinks = 0;
   const ProbeForms* probe = nullptr;

@@ -13,7 +13,7 @@
 namespace traverse::engine {
 namespace {
 
-/// For blocks of `Size` unknowns; 0: any size.
+/// The structure with blocks of `Size` unknowns; 0: any size.
 template <int Size>
 struct BeamRows {
   BeamTask& t;
@@ -32,7 +32,7 @@ struct BeamRows {
       if (k < behind) use(right - k - 1, right - k, right - k - 1);
     }
   }
-  /// The same in the opposite order.
+  /// The same pairs as inwards(), in the opposite order.
   template <class Use>
   void outwards(int left, int right, int to_left, int to_right, Use use) const {
     const int before = to_left - left, behind = right - to_right;
@@ -167,7 +167,7 @@ struct BeamRows {
   }
   /// Subtracts the contribution of an eliminated neighbour from the diagonal block.
   void subtract_neighbour(int pair, int further, int nearer, Row rate, Row displacement) const {
-    Row coupling[most_block * most_block];  // of the nearer column's rows with the further one
+    Row coupling[most_block * most_block];  // coupling of the nearer column's rows with the further column
     couple(pair, nearer > further, rate, displacement, coupling);
     const Row* F = factor(pair);
     Row* to = pivot(nearer);
@@ -228,12 +228,13 @@ struct BeamRows {
       if (t.held[static_cast<long>(column) * b + j] != 0) pivot(column)[j * b + j] = Row{};
   }
 
-  /// Stores the coupling block of J for the pair, by rows: of the right column with the left one, or the reverse.
+  /// Stores the coupling block of J for the pair, by rows: the rows of the right column with the left column, or the
+  /// reverse.
   void couple(int pair, bool rows_of_right, Row rate, Row displacement, Row* to) const {
     const double* m = t.mass + (2L * pair + 1) * bb;
     const double *d = t.damping + (2L * pair + 1) * bb, *k = t.stiffness + (2L * pair + 1) * bb;
     const char* held = t.held + static_cast<long>(pair) * b;
-    for (int i = 0; i < b; ++i)  // of the left column
+    for (int i = 0; i < b; ++i)  // unknown i of the left column
       for (int j = 0; j < b; ++j) {
         const int at = i + b * j;
         to[rows_of_right ? j * b + i : i * b + j] =
@@ -243,7 +244,8 @@ struct BeamRows {
 
   /// Computes the inverse of J within the band, column by column from the middle, at the elements' transverse unknowns.
   void find_compliance(Row displacement) const {
-    Row* inverse = rows(t.inverse);  // of every column's block, then of every pair's: rows of the nearer one
+    Row* inverse =
+        rows(t.inverse);  // blocks of all columns, then blocks of all pairs with the rows of the nearer column
     Row* const pairs = inverse + static_cast<long>(t.columns) * bb;
     for (int i = 0; i < bb; ++i) inverse[static_cast<long>(t.middle) * bb + i] = pivot(t.middle)[i];
     outwards(0, t.columns - 1, t.middle, t.middle, [&](int pair, int further, int nearer) {
@@ -267,7 +269,7 @@ struct BeamRows {
       const int c = t.first_column[e];
       const Row *left = inverse + static_cast<long>(c) * bb, *right = left + bb,
                 *with = pairs + static_cast<long>(c) * bb;
-      const bool of_right = c < t.middle;     // the rows of `with`
+      const bool of_right = c < t.middle;     // whether the block `with` has the rows of the right column
       const auto entry = [&](int i, int j) {  // i <= j among v1, theta1, v2, theta2
         if (j < 2) return left[o[i] * b + o[j]];
         if (i >= 2) return right[o[i - 2] * b + o[j - 2]];

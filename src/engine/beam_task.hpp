@@ -11,16 +11,16 @@ inline constexpr int most_unknowns_of_a_column = 8;
 /// M a + C w + K v = P + forces of wheels, with block tridiagonal matrices that all runs share.
 struct BeamTask {
   int block = 2, columns = 0;  // unknowns of a column
-  int unknowns = 0;            // block columns, or number of modes
+  int unknowns = 0;            // block*columns, or number of modes
   const double *mass = nullptr, *damping = nullptr,
                *stiffness = nullptr;         // [column][2]: blocks by columns, of its
                                              // unknowns, and of these with the next column's
   bool proportional = false;                 // C = by_mass M + by_stiffness K
   double by_mass = 0.0, by_stiffness = 0.0;  // 1/s, s
   const char* held = nullptr;                // for each unknown: whether a support holds it
-  const double* dead = nullptr;  // for each unknown, N and N m: P; by modes the displacements under P, m and rad
+  const double* dead = nullptr;  // for each unknown: P, N and N m; by modes the displacements under P, m and rad
 
-  // By modes, otherwise null: their values at every nodal unknown; 2 sigma, 1/s, and omega^2, 1/s2.
+  // Only by modes, otherwise null: the modes' values at every nodal unknown; 2 sigma, 1/s, and omega^2, 1/s2.
   const double *shape = nullptr, *modal_damping = nullptr, *modal_stiffness = nullptr;
   char* under_wheels = nullptr;   // for each column: ModalRows::set_window
   double* modal_stage = nullptr;  // a row for each mode: its coordinate under the forces of the last pass
@@ -30,20 +30,20 @@ struct BeamTask {
   // first to last includes the middle.
   int first = 0, middle = 0, last = 0;
   double *pivot = nullptr, *factor = nullptr;
-  double* inverse = nullptr;  // of J, within the band: for each column, then for each pair
+  double* inverse = nullptr;  // inverse of J within the band: a block for each column, then one for each pair
 
   // A row for each unknown: m, rad and their rates. v_stage and work always have nodal unknowns.
   double *v = nullptr, *w = nullptr, *a[most_kept] = {};
   double *v_predicted = nullptr, *w_predicted = nullptr;
-  double* v_stage = nullptr;   // under the forces of the last pass: TrainTask::nodal
+  double* v_stage = nullptr;   // displacements under the forces of the last pass: TrainTask::nodal
   double* residual = nullptr;  // P - C w - K v of the predicted state
-  double* solution = nullptr;  // of the stage: accelerations, without the part in BeamRows::find_residual
+  double* solution = nullptr;  // accelerations of the stage, without the part in BeamRows::find_residual
   double* work = nullptr;      // loads, then solutions
   // The upper half of the compliance matrix of every element at its transverse unknowns, row by row; off-diagonal
   // entries twice: 10 rows for each element.
   double* compliance = nullptr;
   int elements = 0, transverse[2] = {0, 1};  // indices of v and theta in a column
-  const int* first_column = nullptr;         // of each element
+  const int* first_column = nullptr;         // first column of each element
 };
 
 }  // namespace traverse::engine

@@ -5,7 +5,7 @@
 namespace traverse::engine {
 namespace {
 
-/// For functions called for every wheel: values remain in registers.
+/// Inlines functions that are called for every wheel, so that values remain in registers.
 #define TRAVERSE_INLINE inline __attribute__((always_inline))
 
 // NOLINTBEGIN: vector types have no other spelling

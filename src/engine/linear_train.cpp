@@ -23,13 +23,13 @@ TRAVERSE_LANES_DECLARE(void set_train_step(const TrainTask& task);
 
 namespace {
 
-constexpr double tolerance = 1e-11;  // of a vehicle's weight: expected further change of forces
-constexpr double rounding = 1e-9;    // of the weight: a smaller change that does not decrease is rounding
-constexpr int most_passes = 60;      // of a stage
+constexpr double tolerance = 1e-11;  // expected further change of forces, relative to a vehicle's weight
+constexpr double rounding = 1e-9;  // relative to the weight: a smaller change that does not decrease is due to rounding
+constexpr int most_passes = 60;    // limit of passes in a stage
 constexpr double best_contraction = 1e-3;
-constexpr double measurable = 1e-10;      // of the weight: larger changes determine a contraction
-constexpr double growth = 1.1;            // of a contraction that is used again without a measurement
-constexpr double relevant_growth = 1.05;  // times the departure: a tenth more residual
+constexpr double measurable = 1e-10;      // relative to the weight: a contraction is computed only from larger changes
+constexpr double growth = 1.1;            // factor of a contraction that is used again without a new measurement
+constexpr double relevant_growth = 1.05;  // growth of the departure by which the residual grows by a tenth
 constexpr double profile_reach = 2e-5;    // m: the parabola of the profile is exact within this distance
 
 }  // namespace
@@ -195,11 +195,11 @@ void LinearTrain::set_contact_field(const structure::ContactField& field, const 
     moved_[i] = 0;
     for (int k = 0; k < 2; ++k) put_on_element(task_.patch[k], wheel_[i], patches_[i]->patch[k].element, own);
   }
-  std::fill(arrays_.second.begin(), arrays_.second.end(), 0);
+  std::fill(arrays_.touches_two_patches.begin(), arrays_.touches_two_patches.end(), 0);
   for (std::size_t i = 0; i < wheel_.size(); ++i)
-    if (patches_[i]->candidates > 1) arrays_.second[wheel_[i] / arrays_.lanes] = 1;
+    if (patches_[i]->candidates > 1) arrays_.touches_two_patches[wheel_[i] / arrays_.lanes] = 1;
   for (SurfacePatch& p : task_.patch)
-    for (std::size_t row = 0; row < arrays_.second.size(); ++row) {
+    for (std::size_t row = 0; row < arrays_.touches_two_patches.size(); ++row) {
       const int* slot = p.slot + row * arrays_.lanes;
       const bool ground = std::all_of(slot, slot + arrays_.lanes, [&](int at) { return at == task_.ground; });
       p.slot_order[row] = ground ? all_ground : scattered;
@@ -289,7 +289,7 @@ void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
   }
 }
 
-// Wheel by wheel, as another processor may have another number of lanes.
+// The archive is written wheel by wheel, because another processor may have another number of lanes.
 void LinearTrain::keep(base::Bytes& bytes) {
   const auto numbers = [&](auto* of_lanes, const std::vector<std::size_t>& places) {
     auto list = std::vector<std::remove_pointer_t<decltype(of_lanes)>>(places.size());

@@ -20,13 +20,13 @@ class LinearTrain {
   /// The reason why a fleet cannot be computed as a linear train; empty: it can.
   static std::string obstacle(const train::Fleet& fleet);
 
-  /// mesh: of the line that wheels run on, null for rigid ground only; per_node: unknowns of one of its nodes;
-  /// surface_height: m above its axis.
+  /// mesh: mesh of the line on which wheels run, null for rigid ground only; per_node: unknowns of one of its nodes;
+  /// surface_height: height of the surface above its axis, m.
   LinearTrain(const train::Fleet& fleet, const beam::Mesh* mesh, int per_node, double surface_height);
 
   /// Sets the method, scaled to steps of h seconds.
   void set_method(const structure::Method& method, double h);
-  /// Starts from p, p', p'' of the fleet's coordinates and the corresponding contact forces.
+  /// Starts from p, p' and p'' of the fleet and the corresponding contact forces.
   void restart(const train::Fleet& fleet, const double* p, const double* pd, const double* pdd);
   void begin_step();
 
@@ -80,31 +80,31 @@ class LinearTrain {
   TrainArrays arrays_;
   TrainTask& task_ = arrays_.task;
   std::vector<double> roots_,
-      largest_departure_;                   // for each entry of p: residual_roots; largest departure of each vehicle
-  std::vector<std::size_t> first_entry_;    // for each vehicle: its first coordinate in p, and the end
-  std::vector<std::size_t> coordinate_;     // for each entry of p: its index in arrays of coordinates
-  std::vector<std::size_t> entry_, wheel_;  // for each wheel: index in Fleet::wheels, and in arrays of wheels
+      largest_departure_;                       // residual_roots for each entry of p; largest departure of each vehicle
+  std::vector<std::size_t> first_entry_;        // for each vehicle: its first coordinate in p, and the end
+  std::vector<std::size_t> coordinate_;         // for each entry of p: its index in arrays of coordinates
+  std::vector<std::size_t> entry_, wheel_;      // for each wheel: index in Fleet::wheels, and in arrays of wheels
   std::vector<const track::Profile*> profile_;  // for each wheel; null: level
-  double* work_ = nullptr;                      // for predictions
+  double* work_ = nullptr;                      // work array for predictions
 
   const beam::Mesh* mesh_;
   std::vector<double> borders_;  // m, ascending: between two of them a wheel has the same patches, without tables
   bool always_places_ = false;   // wheels may leave the end of the surface
   structure::Method method_;
-  double length_ = 0.0, length_before_ = 0.0;   // s, of this step and of the previous one
-  double last_time_ = 0.0, time_before_ = 0.0;  // s, of the last two stages
+  double length_ = 0.0, length_before_ = 0.0;   // lengths of this step and of the previous step, s
+  double last_time_ = 0.0, time_before_ = 0.0;  // times of the last two stages, s
   std::size_t stage_ = 0;
   bool ends_with_stage_ = true;
   std::vector<int> elements_;
-  std::optional<Surfaces> surfaces_;                // if wheels remain on the surface and have one contact point each
-  std::vector<std::size_t> table_;                  // for each wheel: index of its table
-  std::vector<int> interval_;                       // for each wheel: index of its entry in the table
-  std::vector<WheelPatches> found_;                 // from the fleet, if there are no tables
-  std::vector<const WheelPatches*> patches_;        // for each wheel
-  std::vector<double> speed_;                       // m/s, of each wheel's vehicle
-  std::vector<char> moved_;                         // the wheel's patches have changed since set_contact_field
-  const structure::ContactField* field_ = nullptr;  // of the last set_contact_field; null: none
-  structure::ContactField no_field_;                // without elements
+  std::optional<Surfaces> surfaces_;          // only if wheels remain on the surface and have one contact point each
+  std::vector<std::size_t> table_;            // for each wheel: index of its table
+  std::vector<int> interval_;                 // for each wheel: index of its entry in the table
+  std::vector<WheelPatches> found_;           // patches from the fleet, if there are no tables
+  std::vector<const WheelPatches*> patches_;  // for each wheel
+  std::vector<double> speed_;                 // speed of each wheel's vehicle, m/s
+  std::vector<char> moved_;                   // the wheel's patches have changed since set_contact_field
+  const structure::ContactField* field_ = nullptr;  // field of the last set_contact_field; null: none
+  structure::ContactField no_field_;                // contact field without elements
   double change_ = 0.0, contraction_ = 1.0;
   int passes_ = 0;
   bool converged_ = false, placed_ = false;

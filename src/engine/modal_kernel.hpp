@@ -33,7 +33,7 @@ struct ModalRows {
     }
   }
 
-  /// The modal forces without those of wheels.
+  /// The modal forces without the forces of wheels.
   void find_residual(Row /*rate*/, Row /*displacement*/) const {
     const Row *v = rows(t.v_predicted), *w = rows(t.w_predicted);
     for (int i = 0; i < t.unknowns; ++i)

@@ -6,7 +6,8 @@
 
 namespace traverse::engine {
 
-inline constexpr double classes_an_octave = 4.0;  // of speeds: steps are at most a fifth shorter than requested
+inline constexpr double classes_an_octave =
+    4.0;  // classes of speeds; time steps are at most a fifth shorter than requested
 
 inline int speed_class(double speed) {
   return static_cast<int>(std::floor(classes_an_octave * std::log2(speed) + 1e-9));

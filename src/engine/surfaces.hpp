@@ -16,7 +16,7 @@ void copy_patches(const WheelPatches& patches, train::WheelContact& c);
 
 class Surfaces {
  public:
-  /// For wheels that never leave the surface and have one contact point each.
+  /// The tables of wheels that never leave the surface and have one contact point each.
   explicit Surfaces(const train::Fleet& fleet);
 
   /// One table for each radius.

@@ -13,9 +13,10 @@
 namespace traverse::engine {
 namespace {
 
-constexpr int most_freedom = 64;       // of a vehicle; the matrices of larger ones are mostly zero
-constexpr double least_before = 1e-3;  // of a step: with a shorter previous step rounding would be extrapolated
-constexpr double same = 1e-13;         // of the largest entry: equal except for rounding
+constexpr int most_freedom = 64;  // limit for a vehicle; matrices of larger vehicles are mostly zero
+constexpr double least_before =
+    1e-3;  // least previous step relative to the present one: from a shorter one rounding would be extrapolated
+constexpr double same = 1e-13;  // relative to the largest entry: entries are equal except for rounding
 
 bool in_block_with(const train::MovingVehicle& a, const train::MovingVehicle& b) {
   const auto same_law = [](const train::Wheel& x, const train::Wheel& y) { return x.law.kind == y.law.kind; };
@@ -91,7 +92,7 @@ std::string TrainArrays::obstacle(const train::Fleet& fleet) {
     }
   }
   for (const train::WheelContact& wheel : fleet.wheels)
-    if (wheel.sharp) return "a wheel may touch the track at several points";
+    if (wheel.may_touch_several_points) return "a wheel may touch the track at several points";
   return {};
 }
 
@@ -343,7 +344,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   task.dissipated = add(most_kept);
   task.drive_power = add(most_kept);
   hertz_.assign(wheels, 1);
-  second.assign(wheels, 0);
+  touches_two_patches.assign(wheels, 0);
   level.assign(wheels, 1);
   // Lanes without a vehicle: wheels far above level ground.
   for (std::size_t i = 0; i < wheels * lanes; ++i) {
@@ -388,7 +389,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   task.stiffness = stiffness;
   task.per_scale = per_scale;
   task.hertz = hertz_.data();
-  task.second = second.data();
+  task.touches_two_patches = touches_two_patches.data();
   task.level = level.data();
 }
 

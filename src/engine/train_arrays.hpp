@@ -39,23 +39,24 @@ class TrainArrays {
   /// Sets the contact of the wheel with that index to its initial state.
   void start_contact(std::size_t at, const train::WheelContact& c);
 
-  /// Zeros with the lifetime of this object: so many rows, so many integers.
+  /// Allocates rows, or integers, that are zero and exist as long as this object.
   double* add(std::size_t rows);
   int* add_integers(std::size_t rows);
 
   const std::size_t lanes = best_width();  // numbers of a row
   TrainTask task;
   std::vector<VehicleBlock> blocks;
-  std::vector<double*> distance;    // m travelled, for the lanes of every block
-  std::vector<double*> speed;       // m/s, for the lanes of every block
-  std::vector<char> second, level;  // one for each row of wheels, as in TrainTask
-  std::deque<char> active;          // one for each block: VehicleBlock::active
+  std::vector<double*> distance;                 // m travelled, for the lanes of every block
+  std::vector<double*> speed;                    // m/s, for the lanes of every block
+  std::vector<char> touches_two_patches, level;  // one for each row of wheels, as in TrainTask
+  std::deque<char> active;                       // one for each block: VehicleBlock::active
 
  private:
   void fill_block(std::size_t block, const std::vector<const train::MovingVehicle*>& vehicles);
   bool equal_matrices(const VehicleBlock& a, const VehicleBlock& b) const;
   SparseRows sparse(const std::vector<Eigen::MatrixXd>& of_lanes);
-  PairedRows paired(const std::vector<Eigen::MatrixXd>& A, const std::vector<Eigen::MatrixXd>& B);  // of lanes
+  PairedRows paired(const std::vector<Eigen::MatrixXd>& A,
+                    const std::vector<Eigen::MatrixXd>& B);  // matrices of the lanes
   void make_rows(std::span<const std::vector<const train::MovingVehicle*>> vehicles);
 
   std::vector<std::unique_ptr<Aligned>> numbers_;  // memory of the task's arrays

@@ -13,10 +13,10 @@ double update_train_forces(const TrainTask& task) {
   const RowMask all = Row{} == Row{};
   const Changes changes =
       is_flat(task) ? update_forces<Surface::flat>(task, all) : update_forces<Surface::general>(task, all);
-  if (Rows::any(changes.fallen)) return -1.0;
+  if (Rows::any(changes.below_surface)) return -1.0;
   double largest = 0.0;
   for (int l = 0; l < lanes; ++l)
-    if (!(Rows::numbers(changes.most)[l] <= largest)) largest = Rows::numbers(changes.most)[l];
+    if (!(Rows::numbers(changes.largest_change)[l] <= largest)) largest = Rows::numbers(changes.largest_change)[l];
   return largest;
 }
 void end_train_stage(const TrainTask& task, int stage, bool kinematics) {

@@ -24,16 +24,17 @@
 namespace traverse::engine {
 namespace {
 
-/// Whether the surface is at the axis, on elements that have neither shear nor axial unknowns.
+/// Whether the surface is at the axis of elements without shear and without axial unknowns.
 inline bool is_flat(const TrainTask& task) { return task.per_node == 2 && task.surface_height == 0.0 && !task.shears; }
 
 struct Touched {
   Row depth, up, along;   // m: the penetration; direction from the surface to the centre
-  Row station, xi, turn;  // of the point: m, in the element, rotation of the section
-  RowMask fallen;         // the centre is below the surface, and not beside its end
+  Row station, xi, turn;  // contact point: station in m, position in the element, rotation of the section
+  RowMask below_surface;  // the centre is below the surface, and not beside its end
 };
 
-inline constexpr int closest_steps = 1;  // of Newton's method in a pass: the point moves little between passes
+inline constexpr int closest_steps =
+    1;  // iterations of Newton's method in a pass: the point moves little between passes
 
 /// The point of the patch closest to the centre, which is at `along` and a radius above `up`. The penetration is
 /// computed from e, the height of the centre above the surface minus the radius: e is small and keeps its digits.
@@ -60,12 +61,12 @@ TRAVERSE_INLINE Touched closest(const TrainTask& task, const SurfacePatch& p, in
   const Row distance = Rows::root(dx * dx + dy * dy), inverse = 1.0 / distance;
   const Row depth = -(e * (radius + dy) + dx * dx) / (radius + distance);
   const RowMask beside = ((s == low) | (s == high)) & (depth < 0.0);
-  const RowMask fallen = ((dy <= 0.0) & ~beside) | (distance != distance);
-  return {depth, dy * inverse, dx * inverse, origin + s, at.xi, at.turn, fallen};
+  const RowMask below_surface = ((dy <= 0.0) & ~beside) | (distance != distance);
+  return {depth, dy * inverse, dx * inverse, origin + s, at.xi, at.turn, below_surface};
 }
 
 inline constexpr double least_root = 1e-6;  // m^0.5: initial guess for the next contact after a loss
-inline constexpr int most_steps = 60;       // of a contact's own Newton iteration
+inline constexpr int most_steps = 60;       // limit of a contact's own Newton iterations
 inline constexpr double root_tolerance = 1e-14;
 
 /// r with r^2 + relative_compliance r^3 = target > 0 of n wheels, from initial guesses, by Newton's method, which
@@ -87,13 +88,13 @@ TRAVERSE_INLINE void hertz_roots(int n, const Row* relative_compliance, const Ro
   }
 }
 
-/// One wheel in every lane: the touched patch and the contact point.
+/// The touched patch and the contact point of one wheel in every lane.
 struct ContactRow {
   Touched at;
   Row structure, local_compliance, local_compliance_by_x;
 };
 
-/// For level rigid ground.
+/// The contact with level rigid ground.
 TRAVERSE_INLINE Touched on_ground(Row height, Row along, Row up) {
   return {height - up, Rows::fill(1.0), Row{}, along, Row{}, Row{}, up != up};
 }
@@ -117,30 +118,30 @@ TRAVERSE_INLINE ContactRow on_patch(const SurfacePatch& p, int i, const Touched&
 TRAVERSE_INLINE ContactRow select_rows(RowMask mask, const ContactRow& a, const ContactRow& b) {
   const auto of = [mask](Row x, Row y) { return mask ? x : y; };
   return {{of(a.at.depth, b.at.depth), of(a.at.up, b.at.up), of(a.at.along, b.at.along), of(a.at.station, b.at.station),
-           of(a.at.xi, b.at.xi), of(a.at.turn, b.at.turn), mask ? a.at.fallen : b.at.fallen},
+           of(a.at.xi, b.at.xi), of(a.at.turn, b.at.turn), mask ? a.at.below_surface : b.at.below_surface},
           of(a.structure, b.structure),
           of(a.local_compliance, b.local_compliance),
           of(a.local_compliance_by_x, b.local_compliance_by_x)};
 }
 
-/// The touched patch: of two patches the one with the larger penetration.
+/// The touched patch; if the wheel touches two patches, the patch with the larger penetration.
 template <Surface kind>
 ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
   const SurfacePatch &first = task.patch[0], &other = task.patch[1];
   int* active = task.active + static_cast<long>(i) * lanes;
   for (int l = 0; l < lanes; ++l) active[l] = 0;
   const ContactRow ground = {on_ground(rows(task.h)[i], along, up), Row{}, Row{}, Row{}};
-  if (task.level[i] != 0 && task.second[i] == 0 && first.slot_order[i] == all_ground) return ground;
+  if (task.level[i] != 0 && task.touches_two_patches[i] == 0 && first.slot_order[i] == all_ground) return ground;
   ContactRow c = on_patch<kind>(first, i, closest<kind>(task, first, i, along, up));
   RowMask has_second{};
-  if (task.second[i] != 0) {
+  if (task.touches_two_patches[i] != 0) {
     const ContactRow second = on_patch<kind>(other, i, closest<kind>(task, other, i, along, up));
     has_second = rows(other.high)[i] >= rows(other.low)[i];
     const RowMask second_touched = has_second & (second.at.depth > c.at.depth),
-                  fallen = c.at.fallen | (has_second & second.at.fallen);
+                  below_surface = c.at.below_surface | (has_second & second.at.below_surface);
     for (int l = 0; l < lanes; ++l) active[l] = Rows::is_set(second_touched, l) ? 1 : 0;
     c = select_rows(second_touched, second, c);
-    c.at.fallen = fallen;
+    c.at.below_surface = below_surface;
   }
   if (task.level[i] == 0 || first.slot_order[i] == contiguous) return c;
   // For level ground the result must not depend on the patches of other lanes.
@@ -151,7 +152,7 @@ ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
 
 /// The normal forces of n wheels, from wheel i on, each by the contact law with all other forces unchanged; `q`:
 /// compliance of vehicle and structure.
-TRAVERSE_INLINE void own_forces(const TrainTask& task, RowMask open, int i, int n, const Row* depth, const Row* q,
+TRAVERSE_INLINE void own_forces(const TrainTask& task, RowMask iterating, int i, int n, const Row* depth, const Row* q,
                                 const Row* local_compliance, Row* force) {
   Row relative_compliance[most_wheels], target[most_wheels], root[most_wheels];
   for (int j = 0; j < n; ++j) {
@@ -173,7 +174,7 @@ TRAVERSE_INLINE void own_forces(const TrainTask& task, RowMask open, int i, int 
       continue;
     }
     Row& stored_root = rows(task.root)[i + j];
-    stored_root = open & touches ? (r > least ? r : least) : stored_root;
+    stored_root = iterating & touches ? (r > least ? r : least) : stored_root;
     force[j] = touches ? stiffness * r * r * r : Row{};
   }
 }
@@ -185,7 +186,8 @@ inline RowMask would_converge(const TrainTask& task, const VehicleBlock& b, cons
   RowMask converged = ~RowMask{};
   for (int j = 0; j < m; ++j) {
     const int i = first + j;
-    if (task.level[i] == 0 || task.second[i] != 0 || task.patch[0].slot_order[i] != all_ground) return RowMask{};
+    if (task.level[i] == 0 || task.touches_two_patches[i] != 0 || task.patch[0].slot_order[i] != all_ground)
+      return RowMask{};
     Row moved{};
     for (int l = 0; l < m; ++l)
       if (l != j) moved += Rows::magnitude(rows(b.H)[j * m + l] * (force[l] - rows(task.normal)[first + l]));
@@ -198,25 +200,25 @@ inline RowMask would_converge(const TrainTask& task, const VehicleBlock& b, cons
 
 /// The changes of a pass in each lane.
 struct Changes {
-  Row most;        // largest change of a force over its scale
-  RowMask fallen;  // a wheel's centre is below the surface
+  Row largest_change;     // largest change of a force over its scale
+  RowMask below_surface;  // a wheel's centre is below the surface
 };
 
-/// Computes the forces of all contacts with the structure's motion in `nodal`, in open lanes. The other lanes remain
-/// unchanged, so that no lane depends on its neighbours.
+/// Computes the forces of all contacts with the structure's motion in `nodal`, in the lanes that still iterate. The
+/// others remain unchanged, so that no lane depends on its neighbours.
 template <Surface kind>
 Changes update_forces(const TrainTask& task, RowMask of_runs) {
-  Row most{};
-  RowMask fallen{};
+  Row largest_change{};
+  RowMask below_surface{};
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
     if (*b.active == 0) continue;
-    const RowMask open = task.converged == nullptr ? of_runs : of_runs & (rows(task.converged)[k] == 0.0);
-    if (!Rows::any(open)) continue;
+    const RowMask iterating = task.converged == nullptr ? of_runs : of_runs & (rows(task.converged)[k] == 0.0);
+    if (!Rows::any(iterating)) continue;
     const int m = b.wheels, first = b.first_wheel;
     const Row* H = rows(b.H);
     const Row *up_forces = rows(task.force_up) + first, *along_forces = rows(task.force_along) + first;
-    Row up[most_wheels], along[most_wheels];  // of all the block's wheels before the first force changes
+    Row up[most_wheels], along[most_wheels];  // positions of all the block's wheels before the first force changes
     for (int j = 0; j < m; ++j) {
       Row y = rows(task.up)[first + j], x = rows(task.along)[first + j];
       for (int l = 0; l < m; ++l) {
@@ -231,29 +233,29 @@ Changes update_forces(const TrainTask& task, RowMask of_runs) {
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
       const ContactRow c = touched_patch<kind>(task, i, along[j], up[j]);
-      fallen |= c.at.fallen;
+      below_surface |= c.at.below_surface;
       depth[j] = c.at.depth;
       q[j] = (H[j * m + j] + c.structure) * c.at.up * c.at.up;
       local_compliance[j] = c.local_compliance;
       local_compliance_by_x[j] = c.local_compliance_by_x;
-      const auto store = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
+      const auto store = [&](double* to, Row value) { rows(to)[i] = iterating ? value : rows(to)[i]; };
       store(task.normal_up, c.at.up);
       store(task.normal_along, c.at.along);
       store(task.turn, c.at.turn);
       store(task.ahead, c.at.station - along[j]);
       store(task.station, c.at.station);
     }
-    own_forces(task, open, first, m, depth, q, local_compliance, force);
+    own_forces(task, iterating, first, m, depth, q, local_compliance, force);
     RowMask converged{};
     if (task.converged != nullptr) {
       converged = would_converge(task, b, force);
-      rows(task.converged)[k] = open & converged ? Rows::fill(1.0) : rows(task.converged)[k];
+      rows(task.converged)[k] = iterating & converged ? Rows::fill(1.0) : rows(task.converged)[k];
     }
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
       const Row change = Rows::magnitude(force[j] - rows(task.normal)[i]) * rows(task.per_scale)[i];
-      most = (change <= most) | converged ? most : change;  // a NaN is kept
-      const auto store = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
+      largest_change = (change <= largest_change) | converged ? largest_change : change;  // a NaN is kept
+      const auto store = [&](double* to, Row value) { rows(to)[i] = iterating ? value : rows(to)[i]; };
       store(task.normal, force[j]);
       store(task.force_up, force[j] * rows(task.normal_up)[i]);
       // The work of the local compliance drives the wheel: f^2/2 ds/dx (wheel_on_track.hpp).
@@ -262,14 +264,14 @@ Changes update_forces(const TrainTask& task, RowMask of_runs) {
       store(task.local_compliance, local_compliance[j]);
     }
   }
-  return {most, fallen};
+  return {largest_change, below_surface};
 }
 
 /// Calls use(row of wheels, patch, directions) for all rows with wheels on elements.
 template <Surface kind, class Use>
 void for_wheels_on_elements(const TrainTask& task, Use use) {
   for (int i = 0; i < task.wheels; ++i)
-    for (int patch = 0; patch < (task.second[i] != 0 ? 2 : 1); ++patch) {
+    for (int patch = 0; patch < (task.touches_two_patches[i] != 0 ? 2 : 1); ++patch) {
       const SurfacePatch& p = task.patch[patch];
       if (p.slot_order[i] == all_ground) continue;
       const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) * rows(p.per_length)[i];
@@ -296,7 +298,7 @@ void add_loads(const TrainTask& task) {
   for_wheels_on_elements<kind>(task, [&](int i, int patch, const Row* direction) {
     const SurfacePatch& p = task.patch[patch];
     const int* slot = p.slot + static_cast<long>(i) * lanes;
-    if (p.slot_order[i] == contiguous && task.second[i] == 0) {
+    if (p.slot_order[i] == contiguous && task.touches_two_patches[i] == 0) {
       const Row force = rows(task.normal)[i];
       for (int k = 0; k < width; ++k)
         *reinterpret_cast<Rows::Unaligned*>(task.load + slot[0] + task.offset[k]) -= force * direction[k];

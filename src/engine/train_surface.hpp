@@ -14,7 +14,7 @@ enum class Surface { flat, general };
 template <Surface kind>
 struct SurfaceRows {
   Row xi_start, per_length;              // xi = (x - element's x)/length = xi_start + per_length s at s from `origin`
-  Row c[4];                              // of the deflection by powers of xi, m
+  Row c[4];                              // coefficients of the deflection by powers of xi, m
   Row strain{}, axial{}, axial_slope{};  // v' - theta; displacement along x at xi = 0, and its increase to xi = 1
   Row h, h_x, h_xx;                      // the profile about `origin`
   double height = 0.0;

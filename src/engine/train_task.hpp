@@ -11,7 +11,7 @@ namespace traverse::engine {
 inline constexpr int most_lanes = 8;
 inline constexpr int most_stages = 5, most_kept = 6;  // implicit stages of a method, accelerations that it combines
 inline constexpr int most_nodal = 6;                  // unknowns of an element
-inline constexpr int most_wheels = 64;                // of a vehicle
+inline constexpr int most_wheels = 64;                // limit for a vehicle
 
 /// A sparse matrix: entry i has the indices row[i] and column[i], its value is a row.
 struct SparseRows {
@@ -32,14 +32,15 @@ struct PairedRows {
 /// Matrices by rows of `freedom` columns; units N, m, rad, s.
 struct VehicleBlock {
   int freedom = 0, wheels = 0;
-  int first_coordinate = 0, first_wheel = 0;  // among all rows of coordinates, of wheels
+  int first_coordinate = 0, first_wheel = 0;  // index among all rows of coordinates, and among all rows of wheels
   const double *M = nullptr, *r0 = nullptr;
-  SparseRows C, K, G, G_along;     // G, G_along: row: the wheel, column: the coordinate
-  PairedRows K_and_C, both_G;      // the same matrices: K and C; G and G_along
-  const double* driven = nullptr;  // row by coordinate: driven x'' is the power to drive the masses at their speed, N s
-  const double* speed = nullptr;   // a row: m/s, of the steady motion
-  const double* drive = nullptr;   // a row: the same if the speed is prescribed, otherwise 0
-  const double* distance = nullptr;  // a row: m travelled at the stage's time
+  SparseRows C, K, G, G_along;  // G, G_along: row: the wheel, column: the coordinate
+  PairedRows K_and_C, both_G;   // the matrices above in pairs: K and C; G and G_along
+  const double* driven =
+      nullptr;  // a row for each coordinate: driven^T x'' is the power that drives the masses at their speed, N s
+  const double* speed = nullptr;     // a row: speed of the steady motion, m/s
+  const double* drive = nullptr;     // a row: this speed if it is prescribed, otherwise 0
+  const double* distance = nullptr;  // a row: distance travelled at the stage's time, m
   int same_as = -1;                  // an earlier block with equal matrices, whose arrays below are used; -1: none
   const char* active = nullptr;      // whether the block moves: if not, it is at rest and is not computed
   double* inverse = nullptr;         // (M + rate C + displacement K)^-1
@@ -55,8 +56,9 @@ enum SlotOrder { scattered = 0, contiguous = 1, all_ground = 2 };
 struct SurfacePatch {
   int* slot = nullptr;        // position of the element's values in TrainTask::nodal
   int* slot_order = nullptr;  // one for each row: SlotOrder
-  double *x = nullptr, *length = nullptr, *per_length = nullptr;  // of the element, m, m, 1/m
-  double* shear = nullptr;                                        // 12 EI/(GA length^2)
+  double *x = nullptr, *length = nullptr,
+         *per_length = nullptr;            // left end, length and 1/length of the element; m, m, 1/m
+  double* shear = nullptr;                 // 12 EI/(GA length^2)
   double* flexibility = nullptr;           // length^3/(3 EI), m/N, if the local compliance is included
   double *low = nullptr, *high = nullptr;  // m: first and last station of the piece
   // Displacement of (v, theta) of the element's nodes per force and moment on them: the upper half of a symmetric
@@ -74,26 +76,26 @@ struct alignas(8 * most_lanes) StageRows {
 
 struct TrainTask {
   int stages = 0, known = 0;
-  double extrapolation = 0.0;  // time to the next stage over that between the last two stages
+  double extrapolation = 0.0;  // time to the next stage over the time between the last two stages
   StageRows stage[most_stages], end;
   double a_next[most_kept] = {};
 
-  int blocks = 0, coordinates = 0, wheels = 0;  // rows of coordinates, of wheels
+  int blocks = 0, coordinates = 0, wheels = 0;  // number of blocks, of rows of coordinates, of rows of wheels
   const VehicleBlock* block = nullptr;
 
-  // For every coordinate.
+  // A row for every coordinate.
   double *x = nullptr, *w = nullptr, *a[most_kept] = {}, *w_predicted = nullptr, *a_free = nullptr;
 
-  // For every wheel, constant.
+  // A row for every wheel, constant.
   const double *place = nullptr, *height = nullptr;      // m: initial x of its centre and y of its lowest point
   const double *radius = nullptr, *stiffness = nullptr;  // m; N/m^1.5 or N/m
   const double* per_scale = nullptr;                     // 1/N: one over the scale of its force
   const char* hertz = nullptr;                           // one for each row: Hertz law, with stiffness in N/m^1.5
-  // For every wheel, in a stage.
-  double *up = nullptr, *along = nullptr;  // m: positions as above, without contact forces
-  double *from = nullptr, *to = nullptr;   // m: stations between which its patches are valid
-  const char* second = nullptr;            // one for each row: a wheel of it may touch the second patch
-  const char* level = nullptr;             // one for each row: the track of its wheels is level
+  // A row for every wheel, in a stage.
+  double *up = nullptr, *along = nullptr;     // m: positions as above, without contact forces
+  double *from = nullptr, *to = nullptr;      // m: stations between which its patches are valid
+  const char* touches_two_patches = nullptr;  // for each row: whether a wheel may touch the second patch
+  const char* level = nullptr;                // one for each row: the track of its wheels is level
   // The track's profile, its slope and curvature at `profile_station`, m.
   double *h = nullptr, *h_x = nullptr, *h_xx = nullptr, *profile_station = nullptr;
   double *normal = nullptr, *root = nullptr;             // N; square root of the penetration by Hertz's law
@@ -101,9 +103,9 @@ struct TrainTask {
   double *force_up = nullptr, *force_along = nullptr;    // N, on the wheel
   double *turn = nullptr, *local_compliance = nullptr;   // rotation of the section; m/N
   double *ahead = nullptr, *station = nullptr;           // m: distance of the contact ahead of the centre; x of it
-  double* ahead_before = nullptr;                        // m: at the second last stage
+  double* ahead_before = nullptr;                        // m: value of `ahead` at the second last stage
   double *penetration = nullptr, *penetration_rate = nullptr;  // m, m/s
-  double *up_rate = nullptr, *along_rate = nullptr;            // m/s, of the centre
+  double *up_rate = nullptr, *along_rate = nullptr;            // rates of the centre, m/s
   double* largest = nullptr;                                   // N: largest normal force in the stages of the step
   double* history[most_stages + 2] =
       {};                 // N: normal forces of the stages, at the start of the step and of the previous one
@@ -113,7 +115,7 @@ struct TrainTask {
   // The structure under the wheels. The index of unknown k of an element is its slot plus offset[k].
   int per_node = 2;                                      // unknowns at a node of the wheels' line
   int offset[most_nodal] = {}, ground = 0;               // the slot of rigid ground, whose values are 0
-  double surface_height = 0.0;                           // m, of the surface above the axis
+  double surface_height = 0.0;                           // height of the surface above the axis, m
   bool shears = false;                                   // some of its elements have shear
   const double *nodal = nullptr, *nodal_rate = nullptr;  // m, rad and their rates
   double* load = nullptr;                                // N, N m

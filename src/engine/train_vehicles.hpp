@@ -118,7 +118,7 @@ void combine(const StageRows& rule, int n, const Row* x, const Row* w, const Row
     rate[i] = moving;
   }
 }
-/// The same for coordinates from `first` on.
+/// Like the function above, for the coordinates from `first` on.
 inline void combine(int known, const StageRows& rule, int first, int n, const double* x, const double* w,
                     const double* const* accelerations, Row* position, Row* rate) {
   const Row* a[most_kept];

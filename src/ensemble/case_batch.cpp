@@ -1,4 +1,4 @@
-// Sets up batched runs: the train at its start, the stretches of equal steps, and the tracks.
+// Sets up batched runs: the train at its start, the series of equal steps, and the tracks.
 #include "ensemble/case_batch.hpp"
 
 #include <algorithm>
@@ -109,17 +109,17 @@ double CaseBatch::spacing(const Steps& steps, double speed) {
   return steps.longest * engine::speed_of_class(engine::speed_class(speed));
 }
 
-void CaseBatch::Ready::add_stretches(const std::vector<double>& events, double ds, double distance,
-                                     const Steps& steps) {
-  std::vector<engine::BatchStretch>& stretches = plan_.stretches;
+void CaseBatch::Ready::add_equal_steps(const std::vector<double>& events, double ds, double distance,
+                                       const Steps& steps) {
+  std::vector<engine::EqualSteps>& equal_steps = plan_.equal_steps;
   double from = 0.0;
   long stored = 0;
   const auto add = [&](double to, bool kink, bool stores) {
-    stretches.push_back(
+    equal_steps.push_back(
         {to, std::max(1L, static_cast<long>(std::ceil((to - from) / ds - same_position))), kink, stores});
     from = to;
   };
-  const auto store_until = [&](double to) {  // also adds the stretches up to there
+  const auto store_until = [&](double to) {  // also adds the series of equal steps up to `to`
     if (!steps.stores) return;
     for (double next = static_cast<double>(stored + 1) * ds; next < to - same_position;
          next = static_cast<double>(++stored + 1) * ds)
@@ -134,7 +134,7 @@ void CaseBatch::Ready::add_stretches(const std::vector<double>& events, double d
   store_until(distance);
   const auto last = static_cast<long>(std::ceil((distance - from) / ds - same_position));
   // The ends of other runs must not influence the steps of a run.
-  if (last > 0) stretches.push_back({steps.trial ? distance : from + static_cast<double>(last) * ds, last});
+  if (last > 0) equal_steps.push_back({steps.trial ? distance : from + static_cast<double>(last) * ds, last});
 }
 
 CaseBatch::Ready CaseBatch::ready(std::span<const LaneRun> runs, const Steps& steps) {
@@ -151,7 +151,7 @@ CaseBatch::Ready CaseBatch::ready(std::span<const Member> members, const Steps& 
   const double ds = spacing(steps, members.front().run.speed);
   double distance = 0.0;
   for (const Member& member : members) distance = std::max(distance, member.run.speed * member.run.end);
-  ready.add_stretches(first.events(distance), ds, distance, steps);
+  ready.add_equal_steps(first.events(distance), ds, distance, steps);
   for (const auto& [lanes, run] : members) {
     ready.tracks_.push_back(lanes->track(run.seed, distance + ds));
     ready.runs_.push_back({&lanes->fleet_, ready.tracks_.back().get(), &lanes->state_, run.speed, run.end});
@@ -194,7 +194,8 @@ bool CaseBatch::merge(const CaseBatch& other) {
 double CaseBatch::residual(const engine::BatchResult& result) {
   double largest = 0.0;
   for (train::MovingVehicle& vehicle : fleet_.vehicles)
-    largest = std::max(largest, train::linearisation_residual_at(vehicle, result.farthest.data() + vehicle.offset));
+    largest = std::max(
+        largest, train::linearisation_residual_at(vehicle, result.coordinates_at_largest.data() + vehicle.offset));
   return largest;
 }
 

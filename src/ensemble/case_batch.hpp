@@ -20,11 +20,11 @@ namespace traverse::app {
 
 /// Parameters of one run.
 struct LaneRun {
-  double speed = 0.0, end = 0.0;      // m/s; s: duration
+  double speed = 0.0, end = 0.0;      // speed in m/s; duration in s
   std::optional<std::uint64_t> seed;  // seed of its track; none: the scene's track
 };
 
-/// The method of a sweep's runs, for steps of 1 s.
+/// The method of a sweep's runs, with its coefficients for a step of 1 s.
 structure::Method method_of(const Scene& scene);
 
 class CaseBatch {
@@ -36,10 +36,11 @@ class CaseBatch {
   /// The reason why these vehicles on this bridge cannot be batched; empty: they can.
   const std::string& obstacle() const { return obstacle_; }
   struct Steps {
-    structure::Method method;  // for steps of 1 s
+    structure::Method method;  // coefficients for a step of 1 s
     double longest = 0.0;      // s
-    bool trial = false;   // all runs have the same distance, whose end is sampled exactly; a batch may have one run
-    bool stores = false;  // stores accelerations at places `spacing` apart, which are ends of steps too
+    bool trial = false;  // all runs have the same distance, whose end is sampled exactly; a batch may have one run
+    bool stores =
+        false;  // accelerations are stored at positions at the distance `spacing`, at which time steps end too
   };
   /// The steps that the scene defines.
   Steps steps() const;
@@ -53,7 +54,7 @@ class CaseBatch {
 
    private:
     friend class CaseBatch;
-    void add_stretches(const std::vector<double>& events, double ds, double distance, const Steps& steps);
+    void add_equal_steps(const std::vector<double>& events, double ds, double distance, const Steps& steps);
 
     engine::BatchPlan plan_;
     std::vector<std::shared_ptr<const track::HeightTable>> tracks_;
@@ -61,16 +62,17 @@ class CaseBatch {
   };
   /// At most engine::widest runs with speeds of one step group (engine/speed_class.hpp).
   Ready ready(std::span<const LaneRun> runs, const Steps& steps);
-  /// m: distance of the places where runs of this speed's step group store accelerations.
+  /// Distance, m, between the positions at which runs of this speed's step group store accelerations.
   static double spacing(const Steps& steps, double speed);
-  /// The same for runs whose trains have different parameters; their batches were merged with one and the same.
+  /// A run of a common batch of trains with different parameters. `lanes` of all members were merged with the same
+  /// batch.
   struct Member {
     CaseBatch* lanes;
     LaneRun run;
   };
   static Ready ready(std::span<const Member> members, const Steps& steps);
-  /// Makes its runs compatible with those of another scene on the same bridge, by use of the other's common data. False
-  /// if the trains differ in more than parameters.
+  /// Makes the runs compatible with the runs of another scene on the same bridge, by use of the other's common data.
+  /// Returns false if the trains differ in more than parameters.
   bool merge(const CaseBatch& other);
   /// The largest linearisation residual of a run, relative to the weight (train::linearisation_residual).
   double residual(const engine::BatchResult& result);

@@ -132,7 +132,7 @@ std::vector<CaseResult> CaseRunner::run_batch(std::size_t train, std::span<const
        CaseBatch::ready(std::span<const CaseBatch::Member>(batch), batch.front().lanes->steps()).run()) {
     if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const auto& [runner, one] = members[results.size()];
-    if (crossing.trouble != engine::none || runner->lanes_->residual(crossing) > runner->scene_.model.residual_limit) {
+    if (crossing.failure != engine::none || runner->lanes_->residual(crossing) > runner->scene_.model.residual_limit) {
       ++runner->separate_runs_;
       results.push_back(runner->run(train, one, reached));
     } else {

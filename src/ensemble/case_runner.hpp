@@ -39,8 +39,8 @@ std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& run
 class CaseRunner {
  public:
   /// Assembles structure and damping on this rank, and checks the runs at the slowest and the fastest speed. The
-  /// description of the model is appended to `notes`. beam: of a scene that differs in its vehicles only; null: it
-  /// assembles its own.
+  /// description of the model is appended to `notes`. beam: beam of a scene that differs in its vehicles only; null: a
+  /// new beam is assembled.
   CaseRunner(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam = nullptr);
 
   const std::vector<double>& speeds() const { return speeds_; }
@@ -68,7 +68,7 @@ class CaseRunner {
   /// first.
   static std::vector<CaseResult> run_together(std::size_t train, std::span<const Member> members,
                                               const std::function<void(double)>& reached = {});
-  /// Makes its runs compatible with those of another runner on the same bridge; false if that is not possible.
+  /// Makes the runs compatible with the runs of another runner on the same bridge; false if that is not possible.
   bool merge(const CaseRunner& other) { return lanes_ && other.lanes_ && lanes_->merge(*other.lanes_); }
   const std::shared_ptr<SharedBeam>& beam() const { return beam_; }
   bool axial() const { return scene_.beam->axial; }
@@ -96,7 +96,7 @@ class CaseRunner {
   std::map<std::size_t, std::vector<double>> static_deflection_;  // m, for each train
   std::map<std::size_t, modal_engine::MovingForcePassages>
       passages_;                                          // passages of moving forces on modes, for each train
-  std::optional<MovingForceLimits> moving_force_limits_;  // if such runs have limits
+  std::optional<MovingForceLimits> moving_force_limits_;  // only if runs by modes have limits
   std::optional<CaseBatch> lanes_;
   std::string lane_obstacle_;
   bool by_batch_kernel_ = false;   // runs use the batch kernel, even single ones

@@ -1,6 +1,6 @@
 // Evaluates limited quantities of moving forces by modes that are exact in time, where peaks are not sufficient:
-// filtered accelerations and rotations. The accelerations of the probes are filtered, or those of the modes if there
-// are fewer modes.
+// filtered accelerations and rotations. The accelerations of the probes are filtered, or the accelerations of the modes
+// if there are fewer modes.
 #pragma once
 
 #include <map>
@@ -19,8 +19,8 @@ namespace traverse::app {
 
 class MovingForceLimits {
  public:
-  /// For a scene whose dampers do not couple modes. cutoff_frequency: Hz, of accelerations; 0: they are not filtered.
-  /// Both objects must outlive this one.
+  /// The scene's dampers must not couple modes. cutoff_frequency: Hz, of accelerations; 0: they are not filtered. Scene
+  /// and beam must outlive this object.
   MovingForceLimits(const Scene& scene, SharedBeam& shared, double cutoff_frequency);
 
   /// The quantity of each limit of the scene with its present speed and force train number `train`. peaks,
@@ -32,7 +32,7 @@ class MovingForceLimits {
  private:
   void sample_run(std::size_t train, const Plan& plan, LimitCheck& check);
   results::LowPassed filtered(double interval);
-  /// Converts the modes' accelerations to those of the probes.
+  /// Converts the modes' accelerations to the accelerations of the probes.
   void at_probes(const double* of_modes, double* row) const;
 
   const Scene& scene_;
@@ -43,7 +43,7 @@ class MovingForceLimits {
   train::Fleet no_fleet_;
   structure::ModalSlopes slopes_;
   std::map<std::size_t, integrate::ForceHistory> histories_;  // the key is the train
-  std::vector<double> series_, rows_;                         // accelerations at every instant; those of the probes
+  std::vector<double> series_, rows_;  // accelerations at every instant; accelerations of the probes
 };
 
 }  // namespace traverse::app

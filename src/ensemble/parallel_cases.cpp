@@ -25,8 +25,8 @@ class ProgressEstimate {
     }
   }
 
-  /// `taken` pieces were distributed; this rank's piece has `remaining` s to run, those of the others half of their
-  /// duration.
+  /// `taken` pieces were distributed. The remaining simulated time of this rank's piece is `remaining`, s; for the
+  /// pieces of other ranks it is assumed to be half of their duration.
   void show(std::size_t taken, double remaining) {
     if (taken == 0) return;
     const double others = 0.5 * static_cast<double>(ranks_ - 1) * duration_[taken - 1];

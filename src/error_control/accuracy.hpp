@@ -16,8 +16,8 @@
 namespace traverse::app {
 
 /// Whether mesh and step are chosen for this quantity: accuracy_of contains it, or accuracy_of is not given; then shear
-/// is excluded, and axial quantities are included only if trains push the beam along x. Low-passed accelerations only
-/// in scenes that filter them.
+/// is excluded, and axial quantities are included only if trains push the beam along x. Low-passed accelerations are
+/// included only in scenes that filter them.
 bool is_controlled(const Scene& scene, std::size_t quantity);
 /// Whether the quantity gets an error estimate if its error is small enough, without influence on mesh and step.
 bool is_optional(const Scene& scene, std::size_t quantity);
@@ -46,8 +46,8 @@ void set_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
 /// The option by which the integrator controls its steps itself or treats contacts separately; null: none.
 const options::Entry* adaptive_step_option();
 
-/// Collective. The scene's model with mesh, step and tolerances chosen as far as they are open. Appends the choice to
-/// `notes`. InputError as from the scene's own run.
+/// Collective. Chooses mesh, step and tolerances that the scene does not prescribe, and returns the model. Appends the
+/// choice to `notes`. Throws the InputError that the scene's own run would throw.
 Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
 
 /// The scene with twice the elements in every span (or sleeper bay) and half the step.

@@ -1,4 +1,5 @@
-// Chooses the model of batched passages (batch_model.hpp): a search on their first part and a check on whole passages.
+// Chooses the model of batched runs of a train over the bridge (passages, batch_model.hpp): by a search on the first
+// part of passages and a check on whole passages.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +20,7 @@ struct TrialSpeeds {
 
 class BatchChoice {
  public:
-  /// For a scene with a sweep, which must outlive this object.
+  /// The scene must have a sweep and must outlive this object.
   BatchChoice(const Scene& scene, const TrialSpeeds& speeds);
 
   /// The reason why nothing was chosen. not_converged: a search with a smaller accuracy may succeed.
@@ -41,7 +42,7 @@ class BatchChoice {
 
   const Scene& scene_;
   Scene fastest_;
-  double passage_length_ = 0.0, distance_ = 0.0;  // m: distance of a passage, of its first part
+  double passage_length_ = 0.0, distance_ = 0.0;  // length of a whole passage, and of its first part, m
   std::optional<BatchTrialRuns> first_parts_, mixed_, whole_passages_;
   NumericalModel model_;  // the choice
 };

@@ -1,4 +1,5 @@
-// Chooses mesh, method and step for the batched runs of a sweep of trains from the accuracy.
+// Chooses mesh, method and step for the batched runs of a sweep of trains from the accuracy. A passage is one run of a
+// train over the bridge.
 #pragma once
 
 #include <optional>

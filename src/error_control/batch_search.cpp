@@ -15,7 +15,7 @@ namespace traverse::app {
 namespace {
 
 constexpr std::array methods = {"genalpha", "esdirk4"};
-constexpr double min_refinement = 1.25, max_refinement = 2.0;  // ratio of the elements of successive meshes
+constexpr double min_refinement = 1.25, max_refinement = 2.0;  // limits of the ratio of elements of successive meshes
 
 PeakErrors change(BatchTrialRuns& trials, const NumericalModel& from, const NumericalModel& to, double factor = 1.0) {
   trials.run_at_once(std::array{to, from});
@@ -44,7 +44,7 @@ bool unreachable(double error_ratio, const structure::MethodRow& method, double 
   return error_ratio > std::pow(factor / search::batch_steps.back(), method.order);
 }
 
-/// Stage solves for one second of motion.
+/// The row of a model's method, and its number of stage solves in one second of motion.
 const structure::MethodRow& row_of(const NumericalModel& model) { return *structure::find_method(model.method); }
 double solves(const NumericalModel& model) { return row_of(model).solves() / *model.step; }
 
@@ -64,8 +64,8 @@ NumericalModel BatchSearch::first(double duration) {
   return model;
 }
 
-// The step is estimated first, because meshes differ mainly by what the contacts cause; it is halved again if the finer
-// mesh requires shorter steps.
+// The time step is estimated first, because the contacts cause most of the difference between meshes. The step is
+// halved again if the finer mesh requires it.
 std::optional<NumericalModel> BatchSearch::run(NumericalModel model) {
   if (!predict_step(model) || !refine_mesh(model) || !halve_step(model)) return std::nullopt;
   return find_cheaper(model);
@@ -139,7 +139,7 @@ NumericalModel BatchSearch::find_cheaper(const NumericalModel& model) {
     for (const double factor : search::batch_steps) {
       const NumericalModel candidate = with_step(model, factor, method);
       if (candidate.step > longest_ || solves(candidate) >= solves(best)) continue;
-      // The error of a step between two known steps of one method is about the geometric mean of their errors.
+      // The error of a time step between two known steps of one method is about the geometric mean of their errors.
       if (candidate.method == model.method && std::sqrt(ratio_of_model * ratio_of_longer) > search::surely_above)
         continue;
       const PeakErrors errors = errors_of(candidate, model);

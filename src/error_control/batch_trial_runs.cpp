@@ -20,15 +20,15 @@ namespace {
 
 /// Filters the stored accelerations and sets the peaks before the unsettled end.
 void filter_stored(BatchResult& result, std::size_t probes, double frequency, double interval) {
-  if (result.trouble != engine::none) return;
-  const std::size_t settled = filter(result.kept, probes, frequency, interval);
+  if (result.failure != engine::none) return;
+  const std::size_t settled = filter(result.accelerations, probes, frequency, interval);
   ResponseExtremes peaks(std::vector<std::vector<double>>(probes), 0);
-  peaks.add_low_passed(std::span<const double>(result.kept).first(settled * probes), interval);
+  peaks.add_low_passed(std::span<const double>(result.accelerations).first(settled * probes), interval);
   for (std::size_t p = 0; p < probes; ++p) {
     const Extreme& peak = peaks.largest_of_each(low_passed)[p];
     result.peaks[p].low_passed = {std::abs(peak.value), peak.time};
   }
-  result.kept = {};
+  result.accelerations = {};
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void filter_stored(BatchResult& result, std::size_t probes, double frequency, do
 PeakErrors difference(const Scene& scene, const std::vector<BatchResult>& rough, const std::vector<BatchResult>& fine) {
   PeakErrors worst{};
   for (std::size_t run = 0; run < rough.size(); ++run) {
-    const bool failed = rough[run].trouble != engine::none || fine[run].trouble != engine::none;
+    const bool failed = rough[run].failure != engine::none || fine[run].failure != engine::none;
     const PeakErrors errors = failed ? PeakErrors{} : difference(scene, rough[run], fine[run]);
     for (std::size_t q = 0; q < quantities; ++q)
       if (is_controlled(scene, q))
@@ -83,7 +83,7 @@ void BatchTrialRuns::run_at_once(std::span<const NumericalModel> models) {
   for (std::size_t i = 0; i < new_models.size(); ++i) {
     StoredRuns stored{new_models[i], i == 0 ? results_of(i) : others[i - 1].get(), 0.0};
     for (const BatchResult& result : stored.results)
-      if (result.trouble == engine::none)
+      if (result.failure == engine::none)
         stored.residual = std::max(stored.residual, setup(new_models[i]).lanes->residual(result));
     stored_.push_back(std::move(stored));
   }

@@ -1,4 +1,4 @@
-// Batched trial passages with several models.
+// Batched trial runs of a train over the bridge (passages) with several numerical models.
 #pragma once
 
 #include <array>
@@ -26,8 +26,9 @@ bool any_contact_loss(const std::vector<engine::BatchResult>& runs);
 /// Passages of one scene at some speeds.
 class BatchTrialRuns {
  public:
-  /// speeds: groups of one step group each, or with the slowest speed first. distance: of every passage, m. A group of
-  /// one speed also runs over the tracks of the scene's sweep, as many as there are lanes, with its own track last.
+  /// speeds: groups of runs; the speeds of a group are in one step group, or the slowest is first. distance: length of
+  /// every passage, m. A group of one speed also runs over the tracks of the scene's sweep, as many as there are lanes,
+  /// with its own track last.
   /// previous: trial runs whose damping is used here too if the bridge is the same; they must outlive this object.
   BatchTrialRuns(Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
                  const BatchTrialRuns* previous = nullptr);

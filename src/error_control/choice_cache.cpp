@@ -106,7 +106,7 @@ ChoiceCache::ChoiceCache(MPI_Comm comm, const Scene& scene) {
   writes_ = rank == 0;
   if (scene.output.file.empty() || !scene.accuracy_cache || has_own_contact_law(scene)) return;
   const std::string own_build = build();
-  if (own_build.empty()) return;  // the same on all ranks
+  if (own_build.empty()) return;  // all ranks have the same own_build
   const std::string key = digest_of(scene, free_options, options::inputs_read(), own_build);
   const std::filesystem::path folder = std::filesystem::path(scene.output.file).parent_path() / folder_name;
   std::error_code ignored;

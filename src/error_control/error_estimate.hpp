@@ -25,7 +25,7 @@ struct ErrorEstimate {
 /// Prints a row of -accuracy_report if `prints` is set. wanted, error: relative. False if an accepted estimate is
 /// exceeded.
 bool report_row(const std::string& name, const ErrorEstimate& estimate, double wanted, double error, bool prints);
-/// Prints the head of the report. against: the run of comparison; of: the heading of the names.
+/// Prints the head of the report. against: description of the run of comparison; of: heading of the names.
 void report_head(const std::string& against, const std::string& of);
 
 /// The note that a quantity has no accepted error estimate, with the reason.
@@ -38,7 +38,7 @@ inline constexpr std::array<const char*, multibody_quantities> multibody_names =
                                                                                   "contact force"};
 
 struct Accuracy {
-  bool measured = false;  // false: neither mesh nor step was open, or the scene has no measurable quantity
+  bool measured = false;  // false: mesh and step were prescribed, or the scene has no measurable quantity
   std::array<ErrorEstimate, quantities> estimates;
   std::array<ErrorEstimate, multibody_quantities> multibody;  // without a bridge
   ErrorEstimate frequencies;                                  // estimate for natural frequencies

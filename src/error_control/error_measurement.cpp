@@ -109,7 +109,8 @@ double ModelSearch::allowed(const Errors& errors, std::size_t q) const {
   return few_meshes ? allowed_error_ + std::max(0.0, allowed_error_ - time_[q].value) : allowed_error_;
 }
 
-/// The ratio of the allowed step (or element) to the present one, the least of all quantities with an estimate.
+/// The ratio of the allowed time step (or element length) to the present one: the least ratio of all quantities with an
+/// estimate.
 double ModelSearch::allowed_ratio(const Errors& errors) const {
   double least = search::max_extrapolation_at_end * search::max_prediction;
   for (std::size_t q = 0; q < quantities; ++q)
@@ -117,7 +118,7 @@ double ModelSearch::allowed_ratio(const Errors& errors) const {
   return least;
 }
 
-/// As allowed_ratio, but a rejected quantity limits the ratio too: its error must not become much larger.
+/// Like allowed_ratio, but a rejected quantity limits the ratio too, because its error must not become much larger.
 double ModelSearch::coarsening_ratio(const Errors& errors) const {
   double least = allowed_ratio(errors);
   for (std::size_t q = 0; q < quantities; ++q)
@@ -130,8 +131,8 @@ bool ModelSearch::is_cheap() const {
   return trials_.seconds() + 2.0 * trials_.seconds(2 * mesh_, 0.5 * step_) < search::free_seconds;
 }
 
-/// The difference of a step's peaks from those of the finest step. If runs are cheap, the larger one of this and of a
-/// slightly shorter step, which ends at other positions.
+/// The difference between the peaks with a time step and the peaks with the finest step. If runs are cheap, the larger
+/// difference of this step and a slightly shorter step is returned, because shorter steps end at other positions.
 double ModelSearch::change_by_step(double step, double finest, Quantity q) {
   const ResponseExtremes& fine = trials_.run(mesh_, finest);
   double change = step == finest ? 0.0 : difference(trials_.run(mesh_, step), fine, q, 3.0 * step);
@@ -156,8 +157,8 @@ bool ModelSearch::can_extrapolate(const Errors& errors) const {
   const bool cheap = is_cheap();
   for (std::size_t q = 0; q < quantities; ++q) {
     const ErrorModel& e = errors[q];
-    // Two changes may determine an order by chance. If runs are cheap, a third one is required, for sums over modes
-    // always.
+    // Two changes may determine an order by chance. A third change is required if runs are cheap, and always for sums
+    // over modes.
     const bool certain = e.change <= allowed_error_ && !(undamped_ && q == moment);
     if (cheap && has_estimate(q) && !e.confirmed && !certain) return false;
     const double ratio = e.allowed_ratio(allowed(errors, q));

@@ -16,10 +16,10 @@ struct ErrorModel {
   double change = 0.0;     // change by the last halving
   double size = 0.0;       // step (s) or element length (spans)
 
-  /// The exponent for longer steps or elements.
+  /// The exponent for longer time steps or elements.
   double power() const;
-  /// The exponent for shorter ones, and for the error from a change. It is limited, because errors may decrease more
-  /// slowly than the order of the method.
+  /// The exponent for shorter time steps or elements, and for the error from a change. It is limited, because errors
+  /// may decrease more slowly than the order of the method.
   double power_refining() const;
   /// The ratio of sizes at which the error is `wanted`.
   double allowed_ratio(double wanted) const;

@@ -27,10 +27,10 @@ inline constexpr double trial_steps_per_period = 12.0;  // initial steps in the 
 struct FirstSteps {
   double first = 0.0;      // resolves the contacts' vibration as far as the accuracy requires
   double longest = 0.0;    // resolves all other motion, and includes every stored sample
-  std::string why;         // what determines the first step, in words
+  std::string why;         // the reason for the length of the first time step, in words
   double of_period = 0.0;  // step that resolves the beam's first period, if the first step does not; otherwise 0
 };
-/// omega: the first frequency of the beam, rad/s; 0: unknown. duration: of a trial run, s.
+/// omega: the first frequency of the beam, rad/s; 0: unknown. duration: duration of a trial run, s.
 FirstSteps first_steps(const Scene& scene, double omega, double duration);
 
 /// Whether a step (s) resolves the contacts' vibration well enough for the contact forces.

@@ -41,7 +41,7 @@ double greatest_difference(const Scene& scene, const CaseResult& modes, const Ca
   return std::max(filtered, greatest(difference(scene, modes, elements)));
 }
 
-/// The same conditions as in read_modal.
+/// Whether modes are allowed for the scene. read_modal has the same conditions.
 bool modes_allowed(const Scene& scene) {
   return scene.vehicles.empty() && !scene.load.forces.empty() && scene.load.courses.empty() && !scene.beam->track &&
          !scene.beam->foundation.nonlinear() && !scene.beam->strained() &&

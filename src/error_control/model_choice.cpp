@@ -48,7 +48,7 @@ Scene completed(Scene scene, NumericalModel chosen) {
 NumericalModel finer(const NumericalModel& one, const NumericalModel& other) {
   NumericalModel model = one;
   model.modes = one.modes > 0 && other.modes > 0 ? std::max(one.modes, other.modes)
-                                                 : 0;  // otherwise elements, which are valid for both
+                                                 : 0;  // otherwise 0: elements, which are valid for both models
   model.elements = std::max(one.elements, other.elements);
   if (other.step && (!one.step || *other.step < *one.step)) model.step = other.step;
   if (other.method != one.method) model.method = "esdirk4";

@@ -20,9 +20,9 @@ struct Choice {
 /// The scene with this model. A mesh that is given for each span remains if the model has the same number of elements
 /// in the longest one.
 Scene with(Scene scene, const NumericalModel& model);
-/// As `with`, but only mesh, step and modes that the scene leaves open are set.
+/// Like `with`, but sets only mesh, step and modes that the scene does not prescribe.
 Scene completed(Scene scene, NumericalModel chosen);
-/// The model that is accurate enough wherever one of the two is.
+/// A model that is at least as accurate as each of the two models.
 NumericalModel finer(const NumericalModel& one, const NumericalModel& other);
 
 /// Sets the number of elements in the longest span; other spans get proportional, even numbers. With a layered track:

@@ -212,8 +212,8 @@ void ModelSearch::coarsen_mesh() {
   }
 }
 
-// Compares methods of lower order with fewer solves in each step with the finest run, if the trial costs only a part of
-// what they save.
+// Compares methods of lower order, which have fewer solves in each step, with the finest run, if the cost of the trial
+// is only a part of their saving.
 void ModelSearch::try_cheaper_methods() {
   if (!open_step_ || !open_integrator_) return;
   const double usual = factor_of_step() * step_;
@@ -260,8 +260,8 @@ int ModelSearch::predicted_mesh() const {
   return mesh;
 }
 
-// Nodes may pass wheels at the frequency of their vibration, so that errors differ from those of the compared meshes.
-// Therefore a predicted mesh is tried itself.
+// Wheels may pass nodes at the frequency of their vibration, so that errors differ from the errors of the compared
+// meshes. Therefore a trial run uses the predicted mesh itself.
 void ModelSearch::check_predicted_mesh() {
   if (scene_.beam->track || scene_.vehicles.empty()) return;
   for (int mesh = predicted_mesh(); mesh != mesh_; mesh = predicted_mesh()) {
@@ -318,7 +318,8 @@ bool ModelSearch::prediction_fails(std::size_t q) const {
 }
 
 /// The largest ratio of an error to its allowed value. finest: errors of the finest run. other: errors of the mesh if
-/// `errors` are those of the step. Rejected quantities need not be better than these.
+/// `errors` are the errors of the step. Errors of rejected quantities need not be smaller than their errors in
+/// `finest`.
 double ModelSearch::excess(const Errors& errors, const Errors& finest, const Errors& other) const {
   double most = 0.0;
   for (std::size_t q = 0; q < quantities; ++q) {

@@ -19,7 +19,8 @@ namespace traverse::app {
 
 class ModelSearch {
  public:
-  /// The scene with its Rayleigh damping as a and b; both must outlive this object. end: of the run, s.
+  /// The scene must have its Rayleigh damping as a and b. Scene and beam must outlive this object. end: end of the run,
+  /// s.
   ModelSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end);
 
   /// Collective.
@@ -91,7 +92,7 @@ class ModelSearch {
   double growth_ = 1.0;  // growth of errors after the trial runs, until free oscillations have decayed
   std::array<ErrorEstimate, quantities> estimates_{};
   std::array<bool, quantities>
-      rejected_by_search_{};               // rejected by the search, with the smallest error that was reached
+      rejected_by_search_{};  // quantities that the search rejected, with the smallest error that was reached
   std::array<int, quantities> stalled_{};  // successive halvings of the step with little change
   int impact_agreement_ = 0;  // successive halvings over which forces and accelerations of impacting wheels agree
   Errors time_{}, space_{};
@@ -99,7 +100,7 @@ class ModelSearch {
   double finest_step_ = 0.0;                           // s, with its errors finest_
   Errors finest_{};
   std::optional<std::pair<double, int>> measured_;  // step and mesh of the errors
-  std::string step_reason_;                         // what requires the shortest steps, in words
+  std::string step_reason_;                         // the reason for the shortest time steps, in words
   std::optional<Errors> coarser_;                   // errors of twice the step, if that is too long
 };
 

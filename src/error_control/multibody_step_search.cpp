@@ -63,7 +63,7 @@ class Runs {
   double seconds(double step) const { return *scene_.end_time / step * step_seconds(scene_); }
   std::size_t count() const { return curves_.size(); }
 
-  /// Collective. Empty if the run failed.
+  /// Collective. Returns the curves of a run with this step; empty if the run failed.
   const std::optional<Curves>& run(double step) {
     const auto [place, is_new] = curves_.try_emplace(step);
     if (!is_new) return place->second;

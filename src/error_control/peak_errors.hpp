@@ -1,4 +1,4 @@
-// Differences of the peaks of two runs of the same passage.
+// Differences of the peaks of two runs of the same train at the same speed.
 #pragma once
 
 #include <array>

@@ -20,10 +20,13 @@ constexpr std::size_t margin_spans =
     8;  // spans beyond the train's range that remain, because waves propagate ahead of it
 constexpr std::size_t max_whole_bridge = 24;  // bridges with at most this number of spans remain whole
 constexpr double steps_per_sample =
-    32.0;                            // output interval in steps, for the energies; peaks are evaluated at every step
-constexpr double max_excess = 10.0;  // ratio of a residual to its limit from which linear vehicles are rejected at once
-constexpr double interval_ratio = 2.1;   // ratio to the longest filter interval; includes the step of comparison
-constexpr double solves_per_step = 5.0;  // solves of the beam in a step of the default method
+    32.0;  // output interval in steps, for the energies; peaks are evaluated at every step
+constexpr double max_excess =
+    10.0;  // ratio of a residual to its limit above which linear vehicles are rejected at once
+// Largest output interval over longest_spacing_for(). It is above 2, so that the comparison run with twice the step is
+// included.
+constexpr double interval_ratio = 2.1;
+constexpr double solves_per_step = 5.0;  // solves of the beam's equations in a step of the default method
 constexpr double steps_per_factorisation =
     30.0;                      // number of steps with the cost of a factorisation for a new step length
 constexpr double lead = 12.0;  // bays before the bridge, over which the transient of the start decays
@@ -65,8 +68,9 @@ void remove_distant_spans(Scene& scene, double end) {
   std::erase_if(scene.output.probes, [&](double x) { return x > beam.length(); });
 }
 
-/// Whether the steps of a run resolve the frequency at which its accelerations are filtered.
-bool stores_accelerations(const Scene& scene, const Plan& plan) {
+/// Whether to store accelerations for the low-pass filter: the interval resolves its frequency and they fit into
+/// memory.
+bool can_filter_accelerations(const Scene& scene, const Plan& plan) {
   const double frequency = filters_deck(scene) ? scene.output.low_pass.value_or(0.0) : 0.0;
   const double numbers = static_cast<double>(scene.output.probes.size()) * plan.end_time / plan.interval;
   return frequency > 0.0 && plan.interval <= interval_ratio * longest_spacing_for(frequency) &&
@@ -103,7 +107,7 @@ Scene restrict_to_window(const Scene& scene, double end) {
   return part;
 }
 
-RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_steps) {
+RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_cost) {
   std::vector<std::string> ignored;
   SharedBeam shared(comm, scene, ignored);
   shared.damp(scene, false, ignored);
@@ -113,10 +117,10 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_steps) {
   shared.beam->release_matrices();
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
   RunObserver observer(scene, passage.system(), shared.bridge(), none);
-  if (stores_accelerations(scene, passage.plan()))
+  if (can_filter_accelerations(scene, passage.plan()))
     observer.keep_accelerations({*scene.output.low_pass, passage.plan(), scene.output.probes});
   RunPeaks result;
-  const auto steps_so_far = [&] {
+  const auto cost_in_steps = [&] {
     const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_per_step;
     return std::max(static_cast<double>(passage.steps()), by_solves) +
            steps_per_factorisation * static_cast<double>(passage.system().factorisations());
@@ -131,10 +135,10 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_steps) {
       [&](double t, long) {
         observer.step(t);
         results::Stage::advance(t / passage.plan().end_time);
-        result.complete = within_limit && steps_so_far() <= max_steps;
+        result.complete = within_limit && cost_in_steps() <= max_cost;
         return result.complete;
       });
-  result.steps = steps_so_far();
+  result.steps = cost_in_steps();
   result.residual = passage.system().linearisation_residual();
   for (const train::Separation& s : passage.system().contacts().separations().list())
     result.lost_contact = result.lost_contact || !s.from_start;
@@ -174,15 +178,15 @@ const TrialRuns::StoredRun& TrialRuns::stored_run(int elements, double step, con
     scene.model.residual_limit = residual_limit_;
   }
   const double seconds_per_step = step_seconds(scene_, {}, elements),
-               max_steps = (search::max_seconds - spent_) / seconds_per_step;
+               max_cost = (search::max_seconds - spent_) / seconds_per_step;
   RunPeaks result;
   try {
-    if (*scene_.end_time / step > max_steps) throw CostLimitExceeded();
-    result = peaks_of(comm_, scene, max_steps);
+    if (*scene_.end_time / step > max_cost) throw CostLimitExceeded();
+    result = peaks_of(comm_, scene, max_cost);
     if (needs_measurement(result.residual)) {
       measure_linearisation(elements, step);
       scene.model.residual_limit = residual_limit_;
-      if (result.residual <= residual_limit_) result = peaks_of(comm_, scene, max_steps);
+      if (result.residual <= residual_limit_) result = peaks_of(comm_, scene, max_cost);
     }
   } catch (const SolverError&) {
     result.peaks = ResponseExtremes::of_failure();  // the step is probably too long
@@ -200,7 +204,7 @@ bool TrialRuns::needs_measurement(double residual) const {
          residual < max_excess * residual_limit_;
 }
 
-// With twice the step: the error of linear vehicles hardly depends on it.
+// The step is doubled, because the error of linear vehicles hardly depends on it.
 void TrialRuns::measure_linearisation(int elements, double step) {
   measured_linearisation_ = true;
   NumericalModel model = scene_.model;

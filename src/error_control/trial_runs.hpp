@@ -26,18 +26,20 @@ Scene restrict_to_window(const Scene& scene, double end);
 /// The result of a run of which only the peaks are needed.
 struct RunPeaks {
   ResponseExtremes peaks;
-  double steps = 0.0;    // computed, with those repeated at contact events
-  bool complete = true;  // false: ended at the limit of its steps
+  double steps = 0.0;    // cost of the run in steps, including solves and factorisations
+  bool complete = true;  // false: ended at the limit of its cost or of the linearisation residual
   bool lost_contact = false;
-  double residual = 0.0;        // of linear vehicles, coupling::System::linearisation_residual
+  double residual = 0.0;        // residual of linear vehicles, coupling::System::linearisation_residual
   double energy_missing = 0.0;  // relative to the change of the energies
 };
 
 /// Collective. A run of the scene, whose step is given, sampled at every step. Its accelerations are low-passed if the
-/// scene gives the frequency.
-RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_steps = std::numeric_limits<double>::infinity());
+/// scene defines the frequency. The run ends if its cost, in steps, exceeds max_cost; solves and factorisations are
+/// converted to steps.
+RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_cost = std::numeric_limits<double>::infinity());
 
-/// Trial runs would exceed their cost limit. Steps are counted, so that the same scene ends equally on every machine.
+/// Trial runs would exceed their cost limit. The cost is computed from counts, so that the same scene ends in the same
+/// way on every machine.
 struct CostLimitExceeded {};
 
 /// The linearisation residual of a trial run exceeds its limit.

@@ -1,5 +1,5 @@
-// Duration of a trial run: until the first vehicle has crossed the first spans, and until every later span, vehicle or
-// stretch of track with different properties has been crossed. Parts are compared by their parameters.
+// Duration of a trial run. It ends when the first vehicle has crossed the first spans and every later span, vehicle or
+// part of the track with different properties has been passed. Parts are compared by their parameters.
 #include "error_control/trial_window.hpp"
 
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ double last_position(const Scene& scene, std::size_t vehicle) {
   return scene.train.vehicles.size() < 3 ? *rear : 0.5 * (*front + *rear);
 }
 
-/// The same for moving forces: the fourth one.
+/// x at t = 0 of the moving force that has to pass: the fourth one from the front, or the last one.
 double last_force(const Scene& scene) {
   std::vector<double> positions = scene.load.positions;
   std::sort(positions.begin(), positions.end(), std::greater<>());
@@ -145,7 +145,7 @@ void add_profile(const Scene& scene, std::vector<LaterEvent>& list) {
                     fmt::format("the track's profile at {:g} m", x)});
 }
 
-/// Stretches of a layered track, the last changes of its tables, and joints of its rail.
+/// Adds the parts of a layered track with other properties, the last changes of its tables, and joints of its rail.
 void add_track(const Scene& scene, std::vector<LaterEvent>& list) {
   if (!scene.beam->track) return;
   const beam::LayeredTrack& track = *scene.beam->track;

@@ -20,12 +20,12 @@ bool has_undamped_vehicle(const Scene& scene);
 
 /// An event that differs from all earlier ones.
 struct LaterEvent {
-  double until = 0.0;  // s, when the first vehicle, or the one of this event, has passed it
+  double until = 0.0;  // s, time at which the first vehicle, or the vehicle of this event, has passed the event
   std::string what;    // in words
 };
 
-/// The events between `covered` and `end`, in s, ascending: spans and vehicles that differ from all before, a bump, the
-/// sharpest position of a profile's table, the last change of a force over time.
+/// The events between the times `covered` and `end`, s, ascending: spans and vehicles that differ from all earlier
+/// ones, a bump, the sharpest position of a profile's table, the last change of a force over time.
 std::vector<LaterEvent> later_events(const Scene& scene, double covered, double end);
 
 }  // namespace traverse::app

@@ -11,7 +11,7 @@ namespace traverse::integrate {
 
 class CoupledOscillation {
  public:
-  /// For a bridge with coupled modes, which must outlive this object.
+  /// The oscillation of a bridge with coupled modes; the bridge must outlive this object.
   explicit CoupledOscillation(const structure::ModalBridge& bridge);
 
   /// Starts from u and its rate w.

@@ -9,7 +9,7 @@ namespace traverse::integrate {
 namespace {
 
 constexpr double most_numbers = 2e8;     // 1.6 GB
-constexpr double same_distance = 1e-12;  // of the bridge's length: equal distances
+constexpr double same_distance = 1e-12;  // distances that differ by less, relative to the bridge's length, are equal
 
 /// Adds force*influence at x + s, as a polynomial of the distance s. `sum` must not overlap the influence.
 void add(const structure::PiecewiseCubic& influence, std::size_t piece, double force, double x, double* sum) {

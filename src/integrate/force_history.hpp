@@ -14,7 +14,7 @@ struct ForceHistory {
   /// InputError if it does not fit into memory.
   ForceHistory(const structure::PiecewiseCubic& influence, const train::MovingLoad& load);
 
-  std::vector<double> start;  // of each interval, m travelled since t = 0; the first is 0
+  std::vector<double> start;  // start of each interval, m travelled since t = 0; the first is 0
   std::size_t channels = 0;
   std::vector<double> coefficients;  // [interval][power][channel] of the distance since the interval's start
 

@@ -8,7 +8,7 @@ struct FreeOscillation {
   double uu, uw, wu, ww;
 };
 
-/// For u'' + 2 sigma u' + omega^2 u = 0, in 1/s, over dt in s; also if overdamped.
+/// The free oscillation u'' + 2 sigma u' + omega^2 u = 0 over a time dt, s, also if overdamped; omega, sigma in 1/s.
 FreeOscillation free_oscillation(double omega, double sigma, double dt);
 
 }  // namespace traverse::integrate

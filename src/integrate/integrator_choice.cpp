@@ -50,17 +50,17 @@ std::string types_that_estimate_errors() {
 
 void check_adapt(const std::string& adapt, const std::string& type) {
   const structure::MethodRow* own = structure::find_method(type);
-  if (adapt == ladder_adapt && (own == nullptr || !own->estimates_errors()))
+  if (adapt == step_level_adapt && (own == nullptr || !own->estimates_errors()))
     throw InputError(fmt::format("ts_adapt_type = ladder: estimates the errors of {} alone; ts_type is {}",
                                  types_that_estimate_errors(), type));
-  if (adapt != TSADAPTNONE && adapt != ladder_adapt && own != nullptr)
+  if (adapt != TSADAPTNONE && adapt != step_level_adapt && own != nullptr)
     throw InputError(
         fmt::format("ts_adapt_type = {}: does not fit {}; allowed: none, ladder (with {}), or a ts_type of "
                     "PETSc's own such as arkimex",
                     adapt, type, types_that_estimate_errors()));
   PetscReal tolerance = 1.0;
   check(PetscOptionsGetReal(nullptr, nullptr, "-ts_rtol", &tolerance, nullptr));
-  if (adapt == ladder_adapt && !(tolerance > 0.0))
+  if (adapt == step_level_adapt && !(tolerance > 0.0))
     throw InputError("ts_rtol = " + std::to_string(tolerance) + ": allowed: above 0");
 }
 
@@ -77,7 +77,7 @@ void check_parameter(const structure::MethodParameter& parameter) {
 
 std::string chosen_type(const std::string& by_accuracy) {
   const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
-  const bool for_arkimex = (adapt != TSADAPTNONE && adapt != ladder_adapt) || is_given("-ts_arkimex_type") ||
+  const bool for_arkimex = (adapt != TSADAPTNONE && adapt != step_level_adapt) || is_given("-ts_arkimex_type") ||
                            is_given("-ts_arkimex_fully_implicit");
   const std::string otherwise = by_accuracy.empty() ? structure::methods().front().name : by_accuracy;
   std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : otherwise.c_str());

@@ -8,15 +8,15 @@
 
 namespace traverse::integrate {
 
-/// The type: the given one, or the one that other given options need, otherwise by_accuracy if that is not empty.
-/// InputError for types that this system does not support, some of which fail without a message, and for options that
-/// do not fit the type.
+/// The integrator's type: the given type, or the type that other given options need, otherwise by_accuracy unless it is
+/// empty. Throws InputError for types that this system does not support (some of them fail without a message), and for
+/// options that do not fit the type.
 std::string chosen_type(const std::string& by_accuracy = {});
 
 /// Whether an option determines the type, so that it must not be chosen automatically.
 bool type_is_given();
 
-/// The method of that type, for steps of 1 s; none for a type of PETSc.
+/// The method of the chosen type, for steps of 1 s; none for a type of PETSc.
 std::optional<structure::Method> own_method(const std::string& by_accuracy = {});
 
 }  // namespace traverse::integrate

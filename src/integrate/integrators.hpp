@@ -13,12 +13,12 @@ struct PetscType {
   const char* name;
   bool implicit;
   bool multistep;
-  int order;  // as set here, unless options change it
+  int order;  // order as set here, unless options change it
   const char* words;
 };
 
 std::span<const PetscType> petsc_types();
-/// Null for other types.
+/// The PETSc type with this name; null for other types.
 const PetscType* find_petsc_type(std::string_view name);
 
 /// A line for each choice of -ts_type, for -help.

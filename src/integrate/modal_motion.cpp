@@ -67,7 +67,8 @@ void ModalMotion::enter(std::size_t interval) {
   }
 }
 
-// The same for coupled modes: the damping forces between modes are part of the force, from the highest power down.
+// Like the function above, for coupled modes. The damping forces between modes are part of the force; the coefficients
+// are computed from the highest power down.
 void ModalMotion::enter_coupled() {
   const std::size_t n = history_.channels;
   const double* g = history_.interval(interval_);
@@ -213,7 +214,7 @@ void ModalMotion::add_channels(std::size_t first, std::size_t count, double* sum
   add_channels_at(speed_ > 0.0 ? speed_ * time_ - history_.start[interval_] : 0.0, first, count, sum);
 }
 
-// At a distance s from the interval's start.
+// Adds the channels at a distance s from the interval's start.
 void ModalMotion::add_channels_at(double s, std::size_t first, std::size_t count, double* sum) const {
   const std::size_t n = history_.channels;
   const double* c = history_.interval(interval_) + first;

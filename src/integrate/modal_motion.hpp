@@ -1,7 +1,7 @@
 // The modal motion under moving forces, exact in time: between two breaks of the influence lines the modal force is a
 // cubic polynomial of time, so
 //   q(t) = polynomial + free oscillation,   q'' + 2 sigma q' + omega^2 q = g(t).
-// If damping couples modes, the polynomials satisfy the coupled equations, and the free oscillation is that of the
+// If damping couples modes, the polynomials satisfy the coupled equations, and the free oscillation is computed by the
 // complex modes. The only error is rounding, for any interval between instants.
 #pragma once
 
@@ -40,7 +40,7 @@ class ModalMotion {
   /// Adds `count` of the history's channels at the present time, from `first` on.
   void add_channels(std::size_t first, std::size_t count, double* sum) const;
   double dissipated() const { return dissipated_; }  // J, since t = 0
-  double work() const { return work_; }              // J, of the forces in the modal motion
+  double work() const { return work_; }              // J, work of the forces in the modal motion
   void keep(base::Bytes& bytes) {
     bytes(interval_, time_, modes_, q_, rate_, acceleration_, u_, w_, dissipated_, work_);
     if (coupled_) coupled_->keep(bytes);

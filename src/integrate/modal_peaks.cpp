@@ -45,7 +45,8 @@ class PeakTracker {
   const std::vector<base::Extreme>& peaks() const { return peaks_; }
 
  private:
-  static constexpr double near_largest = 0.9;  // of the largest so far: no vertex below it can be larger
+  static constexpr double near_largest =
+      0.9;  // relative to the largest so far: a sample below this limit has no larger vertex
 
   void interpolate_peak(std::size_t i) {
     const double sign = rows_[1][i] < 0.0 ? -1.0 : 1.0;
@@ -57,7 +58,7 @@ class PeakTracker {
 
   std::size_t known_ = 0;  // samples without a kink between them
   std::array<double, 3> t_{};
-  std::array<std::vector<double>, 3> rows_;  // of the last samples
+  std::array<std::vector<double>, 3> rows_;  // rows of the last samples
   std::vector<base::Extreme> peaks_;
 };
 

@@ -1,5 +1,5 @@
-// The peaks of a passage of moving forces by modes if dampers couple these modes or the other ones. All other passages
-// are computed in batches (modal_engine/moving_force_batch.hpp).
+// The peaks of a run of moving forces by modes if dampers couple these modes with each other or with the neglected
+// modes. All other runs are computed in batches (modal_engine/moving_force_batch.hpp).
 #pragma once
 
 #include <functional>

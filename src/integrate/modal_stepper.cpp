@@ -12,7 +12,8 @@
 
 namespace traverse::integrate {
 namespace {
-constexpr double just_before = 1e-12;   // of the run: at a jump the samples have the values before it
+constexpr double just_before =
+    1e-12;  // relative to the run's duration: at a jump the samples have the values before it
 constexpr double phase_per_step = 1e5;  // rad of the highest mode between checks whether to continue
 }  // namespace
 
@@ -65,7 +66,7 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
   for (bool running = true; running && motion_.time() < end_time_ - slack;) {
     if (between) between(motion_.time());
     double t = static_cast<double>(steps_ + 1) * interval_;
-    const bool beyond = t > end_time_ + slack;  // the end is not a multiple of the interval
+    const bool ends_between_samples = t > end_time_ + slack;  // the end is not a multiple of the interval
     if (t > end_time_ - slack) t = end_time_;
     for (bool arrived = false; running && !arrived;) {
       const double remaining = t - motion_.time();
@@ -78,7 +79,7 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
     system_.begin_step(t - 2.0 * just_before * end_time_, t);
     ++steps_;
     call_monitors();
-    const bool stored = steps_ % stored_ == 0 && !beyond;
+    const bool stored = steps_ % stored_ == 0 && !ends_between_samples;
     sample_now(sample, stored ? Purpose::sample : t == end_time_ ? Purpose::end : Purpose::peaks);
     running = step(t, steps_) && !stopped_at_limit();
   }
@@ -98,7 +99,7 @@ void ModalStepper::call_monitors() {
   base::check(TSMonitor(ts_, static_cast<PetscInt>(steps_), motion_.time(), y));
 }
 
-// This rank's nodal forces; at a jump those before it.
+// This rank's nodal forces; at a jump the forces before it.
 void ModalStepper::nodal_loads(double* nodal) const {
   const beam::Line& line = bridge_.beam().bridge();
   std::fill_n(nodal, force_.size(), 0.0);

@@ -18,16 +18,16 @@ class ModalStepper {
 
   /// Like Stepper::begin.
   void begin(const std::function<void(const Instant&)>& sample);
-  /// Like Stepper::run; a step is the interval between two samples. The nodal displacements are those of the modes plus
-  /// the static deflections of all other modes, so that K* v balances the forces P exactly; velocities and
-  /// accelerations are those of the modes.
+  /// Like Stepper::run; a step is the interval between two samples. The nodal displacements are the displacements by
+  /// the modes plus the static deflections of all other modes, so that K* v balances the forces P exactly. Velocities
+  /// and accelerations are by the modes only.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
              const std::function<void(double)>& between = {});
   /// Like Stepper::keep.
   void keep(base::Archive& archive);
 
   long steps() const { return steps_; }
-  bool stopped_at_limit() const { return steps_ >= most_steps_; }  // of -ts_max_steps
+  bool stopped_at_limit() const { return steps_ >= most_steps_; }  // limit -ts_max_steps
   std::string method() const;
 
  private:
@@ -41,13 +41,13 @@ class ModalStepper {
   train::MovingLoad load_;
   ForceHistory history_;
   ModalMotion motion_;
-  base::Handle<TS> ts_;  // of type modal, moves motion_
+  base::Handle<TS> ts_;  // TS of the type modal; it advances motion_
   PetscInt most_steps_ = 0;
   double longest_step_ = 0.0;  // s
   double end_time_, interval_;
-  long stored_;                                          // one in this number of samples at the interval is stored
-  std::vector<double> sagging_;                          // m, of this rank's unknowns: under the self-weight
-  std::vector<double> y_, acceleration_, drag_, force_;  // as in Instant; nodal forces
+  long stored_;                  // one sample out of this number is stored
+  std::vector<double> sagging_;  // displacements of this rank's unknowns under the self-weight, m
+  std::vector<double> y_, acceleration_, drag_, force_;  // same meaning as in Instant; nodal forces
   double at_start_ = 0.0;                                // J, initial energy of the static correction
   bool has_drag_ = false, begun_ = false;
   long steps_ = 0;

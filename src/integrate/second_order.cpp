@@ -16,12 +16,12 @@ namespace {
 using base::check;
 using base::guard;
 
-constexpr double shortening = 0.25;  // of a step that could not be solved
+constexpr double shortening = 0.25;  // factor of the length of a step that could not be solved
 
 struct Data {
   const structure::MethodRow* row = nullptr;
   coupling::System* system = nullptr;
-  double parameter = 0.0;  // of the method
+  double parameter = 0.0;  // parameter of the method
   bool started = false;
 };
 
@@ -30,7 +30,7 @@ Data& data_of(TS ts) { return *static_cast<Data*>(ts->data); }
 bool uses_step_size_control(TSAdapt adapt) {
   TSAdaptType type = nullptr;
   check(TSAdaptGetType(adapt, &type));
-  return type != nullptr && std::string_view(type) == ladder_adapt;
+  return type != nullptr && std::string_view(type) == step_level_adapt;
 }
 
 PetscErrorCode set_up(TS ts) {
@@ -163,7 +163,7 @@ PetscErrorCode create_step_size_control(TSAdapt adapt) {
 }  // namespace
 
 void register_second_order() {
-  check(TSAdaptRegister(ladder_adapt, create_step_size_control));
+  check(TSAdaptRegister(step_level_adapt, create_step_size_control));
   for (const structure::MethodRow& row : structure::methods()) check(TSRegister(row.name, create_second_order));
 }
 

@@ -1,5 +1,5 @@
-// The methods of one_step_methods.hpp as PETSc TS types, by their names. Their steps are those of System::step_motion,
-// without SNES and without vectors of stages in PETSc; everything else (time, step, options, monitors) is that of TS.
+// The methods of one_step_methods.hpp as PETSc TS types, by their names. System::step_motion computes their steps,
+// without SNES and without vectors of stages in PETSc; TS manages everything else (time, step, options, monitors).
 // TSSetTimeStep sets the length of steps. A step whose stages have no solution is repeated with a quarter of the
 // length; a step that a TSAdapt rejects is repeated with the length that it selects.
 #pragma once
@@ -11,14 +11,15 @@
 
 namespace traverse::integrate {
 
-inline constexpr const char* ladder_adapt = "ladder";  // a TSAdapt type, for methods that estimate their errors
+inline constexpr const char* step_level_adapt = "ladder";  // a TSAdapt type with step-size levels, for methods that
+                                                           // estimate their errors
 
 /// Registers the types with PETSc; repeated calls have no effect.
 void register_second_order();
 /// Sets the system of such a TS, before its first step. The solution of the TS is y of the system.
 void set_system(TS ts, coupling::System& system);
-/// Sets the step-size control of such a TS, if its TSAdapt type is ladder_adapt. Steps with an error above the relative
-/// tolerance of TS are repeated with a shorter step.
+/// Sets the step-size control of such a TS, if its TSAdapt type is step_level_adapt. Steps with an error above the
+/// relative tolerance of TS are repeated with a shorter step.
 void set_step_size_control(TS ts, StepSizeControl& control);
 /// Whether a TS of any type has monitors.
 bool has_monitors(TS ts);

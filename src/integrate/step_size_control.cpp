@@ -12,12 +12,12 @@ namespace {
 
 constexpr int most_levels = 1000;           // limit of the levels that other conditions need
 constexpr int last_level = 16;              // level of the shortest step due to errors
-constexpr int most_levels_at_once = 4;      // levels at once
-constexpr double growth = 16.0;             // of the error per level: local errors of order 4
-constexpr double target = 0.5;              // of the tolerance, on another level
-constexpr int required_accurate_steps = 2;  // before a longer step
-constexpr double same_step = 1e-6;          // of a step: lengths that differ by rounding
-constexpr double rounding = 1e-9;           // of a step
+constexpr int most_levels_at_once = 4;      // limit of the change of the level at once
+constexpr double growth = 16.0;             // growth of the error per level: local errors are of order 4
+constexpr double target = 0.5;              // wanted error on another level, relative to the tolerance
+constexpr int required_accurate_steps = 2;  // number of accurate steps before a longer step
+constexpr double same_step = 1e-6;          // lengths of steps that differ relatively by less are equal
+constexpr double rounding = 1e-9;           // rounding of times, relative to a step
 
 }  // namespace
 

@@ -15,8 +15,9 @@ class StepSizeControl {
   double allowed_step() const { return length(level_); }
   double length(int level) const;
 
-  /// Whether a step of h (s) is accurate enough; error: over the tolerance. If not, allowed_step() becomes shorter than
-  /// h. On the highest level all steps are accepted: shorter ones would not reduce the error at a jump.
+  /// Whether a step of h (s) is accurate enough; error: error over the tolerance. If not, allowed_step() becomes
+  /// shorter than h. On the highest level all steps are accepted, because shorter steps would not reduce the error at a
+  /// jump.
   bool evaluate(double h, double error);
   /// The next step, if `remaining` (s) is the time until a step has to end; not longer than allowed_step() and `most`
   /// (s). All steps have the length of a level, except the last ones before an end that is not a multiple of it.

@@ -20,12 +20,12 @@ namespace {
 using base::check;
 using coupling::Terms;
 
-constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS needs some bound
-constexpr int most_rejections = 12;                                      // of one step, each a quarter as long
-constexpr double near_event = 1e-3;        // of a step: closer events share the end of a step
+constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // number of steps; TS requires a limit
+constexpr int most_rejections = 12;        // limit for one step; each rejection reduces its length to a quarter
+constexpr double near_event = 1e-3;        // fraction of a step: closer events share the end of a step
 constexpr double restart_growth = 2.0;     // largest growth of steps of a method that reuses accelerations
-constexpr long steps_between_checks = 16;  // between two checks of the bounds of the motion
-constexpr double reused_step = 1e-7;       // of a step: lengths that need no new factorisation
+constexpr long steps_between_checks = 16;  // between two checks that the motion is bounded
+constexpr double reused_step = 1e-7;       // relative difference of step lengths that need no new factorisation
 
 bool has_type(TS ts, const char* type) {
   PetscBool same = PETSC_FALSE;
@@ -66,7 +66,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   check(TSGetMaxSteps(ts_, &most_steps_));
   monitored_ = has_monitors(ts_);
   check(TSSetMaxSteps(ts_, no_limit));
-  // Time and step are the scene's; TS computes one step at a time without a final time.
+  // The scene defines time and step; TS computes one step at a time without a final time.
   check(TSSetTime(ts_, 0.0));
   check(TSSetMaxTime(ts_, std::numeric_limits<double>::max()));
   check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_STEPOVER));
@@ -74,7 +74,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   TSAdaptType adapt_type = nullptr;
   check(TSAdaptGetType(adapt, &adapt_type));
   adaptive_ = std::string_view(adapt_type) != TSADAPTNONE;
-  if (std::string_view(adapt_type) == ladder_adapt)
+  if (std::string_view(adapt_type) == step_level_adapt)
     set_step_size_control(ts_, step_control_.emplace(shared_evenly(settings_.interval, settings_.time_step)));
   next_step_ = settings_.time_step;
   set_up_type();
@@ -186,20 +186,22 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
     }
     progress.under_way = t < progress.target;
     if (t == progress.next_sample) {
-      const bool stored = ++progress.samples % settings_.stored == 0 && !progress.beyond;
+      const bool stored = ++progress.samples % settings_.stored == 0 && !progress.ends_between_samples;
       sample_now(sample, stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::peaks);
-    } else if (progress.passage < settings_.passages.size() && t == settings_.passages[progress.passage]) {
+    } else if (progress.crossing < settings_.crossing_times.size() &&
+               t == settings_.crossing_times[progress.crossing]) {
       sample_now(sample, Purpose::peaks);
     }
   }
   return t;
 }
 
-// Sets the next time at which a step has to end.
+// Sets the next time at which a step must end.
 void Stepper::set_target(double slack) {
   progress_.under_way = true;
   progress_.next_sample = static_cast<double>(progress_.samples + 1) * settings_.interval;
-  progress_.beyond = progress_.next_sample > settings_.end_time + slack;  // the end is not a multiple of the interval
+  progress_.ends_between_samples =
+      progress_.next_sample > settings_.end_time + slack;  // the end is not a multiple of the interval
   if (progress_.next_sample > settings_.end_time - slack) progress_.next_sample = settings_.end_time;
   progress_.target = progress_.next_sample;
   const auto stop_at = [&](const std::vector<double>& times, std::size_t& next) {
@@ -207,17 +209,17 @@ void Stepper::set_target(double slack) {
     if (next < times.size() && times[next] < progress_.target - slack) progress_.target = times[next];
   };
   stop_at(settings_.events, progress_.event);
-  stop_at(settings_.passages, progress_.passage);
+  stop_at(settings_.crossing_times, progress_.crossing);
 }
 
-// TS computes single steps, in which it calls no monitors.
+// TS computes single steps and calls no monitors in them.
 void Stepper::call_monitors(double t) {
   if (!monitored_) return;
   check(TSMonitor(ts_, static_cast<PetscInt>(steps_), t, y_));
 }
 
-// The next step towards a target in `remaining` s: the length of a level, or `remaining` divided into equal steps. If
-// the target moves a little, the step and thus the beam's factorisation are unchanged.
+// The next step towards a target in `remaining` s: a step-size level (longest step times 2^-k), or `remaining` divided
+// into equal steps. If the target moves a little, the step and thus the beam's factorisation are unchanged.
 double Stepper::next_step(double from, double remaining) const {
   const double limit = system_.contacts().step_limit(from);
   const double impact = system_.contacts().time_to_impact(settings_.contact_tolerance);
@@ -231,27 +233,27 @@ double Stepper::next_step(double from, double remaining) const {
 
 // One step from the time of TS, not longer than the time to the next target. Returns the new time.
 double Stepper::take_step(double from, double remaining) {
-  const auto passage = next_kink(from, remaining);
-  if (passage) remaining = passage->time - from;
+  const auto kink_event = next_kink(from, remaining);
+  if (kink_event) remaining = kink_event->time - from;
   const double h = next_step(from, remaining);
-  // generalised-alpha, like multistep methods, reuses an acceleration of another instant in the step
-  const bool carries = multistep_ || (second_order_ && !high_order_);
-  if (carries && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
+  // generalised-alpha, like multistep methods, reuses an acceleration of an earlier instant
+  const bool reuses_acceleration = multistep_ || (second_order_ && !high_order_);
+  if (reuses_acceleration && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
   if (system_.begin_step(from, from + h)) {  // a jump: a known rate is valid only before it
     known_ = false;
     check(TSRestartStep(ts_));
   }
-  const bool ends_at_kink = passage && h == remaining;
+  const bool ends_at_kink = kink_event && h == remaining;
   const bool locating = settings_.contact_tolerance > 0.0 && system_.fleet().contacts() > 0;
   if (second_order_)
     system_.store_steps(locating || ends_at_kink);
   else if (locating || ends_at_kink)
     check(VecCopy(y_, before_));
-  double t = step_to(from, ends_at_kink ? passage->time : from + h);
+  double t = step_to(from, ends_at_kink ? kink_event->time : from + h);
   PetscReal next = 0.0;
   check(TSGetTimeStep(ts_, &next));
   if (locating) t = locate_contact_change(from, t);
-  if (ends_at_kink && std::abs(t - passage->time) < passage->tolerance) t = end_at_kink(from, t, *passage);
+  if (ends_at_kink && std::abs(t - kink_event->time) < kink_event->tolerance) t = end_at_kink(from, t, *kink_event);
   last_step_ = t - from;
   if (adaptive_) next_step_ = h < remaining || next < next_step_ ? next : std::max(next_step_, next);
   next_step_ = std::min(next_step_, settings_.time_step);
@@ -259,7 +261,8 @@ double Stepper::take_step(double from, double remaining) {
   return t;
 }
 
-// From `from`, the time of TS, to `end`, or less far if that cannot be solved. Returns the new time.
+// Computes a step from `from`, the time of TS, to `end`, or a shorter one if that cannot be solved. Returns the new
+// time.
 double Stepper::step_to(double from, double end) {
   const double h = end - from;
   system_.begin_trial();
@@ -290,14 +293,15 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purp
 void Stepper::check_bounds(double t, const double* y) const {
   const auto abs = [](const double* x, int size) { return Eigen::Map<const Eigen::ArrayXd>(x, size).abs(); };
   const int n = system_.local_size(), unknowns = system_.structure_unknowns();
-  double bounds[2] = {abs(y, n).sum(), unknowns > 0 ? abs(y, unknowns).maxCoeff() : 0.0};  // of displacements
+  double bounds[2] = {abs(y, n).sum(),
+                      unknowns > 0 ? abs(y, unknowns).maxCoeff() : 0.0};  // sum of all magnitudes, largest displacement
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, system_.comm());
-  const bool off = system_.beam() != nullptr && bounds[1] > system_.beam()->model().length();
-  if (t == 0.0 && off)
+  const bool deflects_too_much = system_.beam() != nullptr && bounds[1] > system_.beam()->model().length();
+  if (t == 0.0 && deflects_too_much)
     throw SolverError(
         "at rest the beam deflects by more than its length: what holds it is far too soft for its loads; look at the "
         "units of beam_EI, the foundation's k and the loads");
-  if (!std::isfinite(bounds[0]) || off)
+  if (!std::isfinite(bounds[0]) || deflects_too_much)
     throw StepTooLong("the motion has grown beyond all bounds by t = " + std::to_string(t) +
                       " s: the step is too long for this integrator; use a smaller -ts_dt or an implicit -ts_type");
 }

@@ -1,7 +1,7 @@
-// Time integration of the combined system by PETSc TS: the program's own types in second-order form (second_order.hpp),
-// or those of PETSc. PETSc's implicit types solve their stages through a SNESSHELL that passes (t, shift, c) to
-// System::solve_stage; its explicit ones evaluate System::rate. Steps end exactly at stored samples and where wheels
-// pass kinks of the running surface: a kink inside a step reduces every method to order two.
+// Time integration of the combined system by PETSc TS, with the program's own types in second-order form
+// (second_order.hpp) or the types of PETSc. PETSc's implicit types solve their stages through a SNESSHELL that passes
+// (t, shift, c) to System::solve_stage; its explicit ones evaluate System::rate. Steps end exactly at stored samples
+// and where wheels pass kinks of the running surface: a kink inside a step reduces every method to order two.
 #pragma once
 
 #include <functional>
@@ -18,14 +18,15 @@ namespace traverse::integrate {
 
 struct Settings {
   double end_time = 0.0;           // s
-  double time_step = 0.0;          // s, the longest
+  double time_step = 0.0;          // longest time step, s
   double interval = 0.0;           // s between samples
   std::vector<double> events{};    // ascending times at which a step has to end
   double contact_tolerance = 0.0;  // s, for the ends of steps at contact events; 0: events are not located
-  std::vector<double> passages{};  // ascending times of steps' ends with a sample that is not stored
-  bool kinks = false;              // steps end where wheels turn about kinks of the bridge's surface
-  long stored = 1;                 // one in this number of samples at the interval is stored
-  std::string type{};              // chosen by accuracy; empty: from the options
+  /// Ascending times at which loads cross probes. Steps end there, with a sample that is not stored.
+  std::vector<double> crossing_times{};
+  bool kinks = false;  // steps end where wheels turn about kinks of the bridge's surface
+  long stored = 1;     // one sample out of this number is stored
+  std::string type{};  // chosen by accuracy; empty: from the options
 };
 
 /// The purpose of an instant: one of the equidistant samples, a sample for peaks between them, or the end of the run if
@@ -53,9 +54,9 @@ class Stepper {
   /// Collective. Samples t = 0 unless that is done; run() calls it too.
   void begin(const std::function<void(const Instant&)>& sample);
   /// Collective. Runs to the end, from the time at which an earlier call stopped. `sample` is called at t = 0, at every
-  /// multiple of the interval, at passages and at the end; `step` after every step: if it returns false the run stops.
-  /// Throws SolverError with advice if a step cannot be solved. Returns the final time. `between` is called before
-  /// every step, after all calls for earlier steps.
+  /// multiple of the interval, at crossing times and at the end; `step` after every step: if it returns false the run
+  /// stops. Throws SolverError with advice if a step cannot be solved. Returns the final time. `between` is called
+  /// before every step, after all calls for earlier steps.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
              const std::function<void(double)>& between = {});
 
@@ -66,12 +67,12 @@ class Stepper {
 
   long steps() const { return steps_; }
   long rejected() const;                                           // rejected steps
-  bool stopped_at_limit() const { return steps_ >= most_steps_; }  // of -ts_max_steps
+  bool stopped_at_limit() const { return steps_ >= most_steps_; }  // limit -ts_max_steps
   std::string method() const;                                      // e.g. "ARKIMEX 4, implicit"
-  /// Whether too long steps would have no visible effect: with an implicit method and constant steps.
+  /// Whether too long steps would have no visible sign. This is true for an implicit method with constant steps.
   bool hides_long_steps() const { return implicit_ && !adaptive_; }
-  bool adaptive() const { return adaptive_; }      // steps by an error control
-  bool high_order() const { return high_order_; }  // above 2
+  bool adaptive() const { return adaptive_; }      // whether an error control selects the steps
+  bool high_order() const { return high_order_; }  // order above 2
 
  private:
   struct Request {  // the data of a stage from TS
@@ -85,9 +86,10 @@ class Stepper {
   struct Progress {
     double t = 0.0, target = 0.0, next_sample = 0.0;  // s
     long samples = 0;
-    std::size_t event = 0, passage = 0;     // indices of the next ones
+    std::size_t event = 0, crossing = 0;    // indices of the next event and crossing time
     bool begun = false, under_way = false;  // a step towards the target has been computed
-    bool beyond = false;                    // the next sample is the end, no multiple of the interval
+    bool ends_between_samples = false;      // the next sample is at the end of the run, which is no multiple of
+                                            // the interval
   };
 
   void set_up_type();
@@ -96,11 +98,11 @@ class Stepper {
   void call_monitors(double t);
   double take_step(double from, double remaining);
   double step_to(double from, double end);
-  std::optional<coupling::KinkEvents::KinkPassage> next_kink(double from, double remaining);
+  std::optional<coupling::KinkEvents::KinkEvent> next_kink(double from, double remaining);
   void set_vehicles(double t);
   double step_again(double from, double end);
   double locate_contact_change(double from, double full);
-  double end_at_kink(double from, double at, const coupling::KinkEvents::KinkPassage& passage);
+  double end_at_kink(double from, double at, const coupling::KinkEvents::KinkEvent& kink_event);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y) const;
   void rate(double t, Vec y, Vec ydot, coupling::Terms terms);
@@ -117,13 +119,13 @@ class Stepper {
   Settings settings_;
   base::Handle<TS> ts_;
   base::Handle<Vec> y_, rate_;
-  base::Handle<Vec> before_, residual_;  // y at the start of the step, F; for PETSc's types only
+  base::Handle<Vec> before_, residual_;  // y at the start of the step, and the residual F; for PETSc's types only
   base::Handle<Mat> jacobian_;
   Request request_;
   coupling::Terms implicit_terms_ = coupling::Terms::all;
   bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false, high_order_ = false;
-  bool monitored_ = false;                       // by -ts_monitor and similar options
-  std::optional<StepSizeControl> step_control_;  // of adaptive steps of an own type
+  bool monitored_ = false;                       // monitors of -ts_monitor and similar options are active
+  std::optional<StepSizeControl> step_control_;  // for adaptive steps of the program's own types
   Progress progress_;
   double next_step_ = 0.0;  // length selected by the step control
   double last_step_ = 0.0;

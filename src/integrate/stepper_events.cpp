@@ -9,15 +9,15 @@ namespace {
 
 using base::check;
 
-constexpr int most_trials = 40;      // of a step's end at a contact event
-constexpr int most_kink_trials = 3;  // and at the turn of a wheel about a kink
+constexpr int most_trials = 40;      // limit of trials for the end of a step at a contact event
+constexpr int most_kink_trials = 3;  // limit of trials for the end of a step at a kink event
 
 }  // namespace
 
-// The next turn of a wheel about a kink of the surface within `remaining` s, if any. Multistep methods do without,
-// since the restart with a short step costs them more; so does the step-size control, whose error estimate includes the
-// kink and which uses only the lengths of its levels.
-std::optional<coupling::KinkEvents::KinkPassage> Stepper::next_kink(double from, double remaining) {
+// The next event within `remaining` s at which a wheel begins or ends to turn about a kink of the surface, if any.
+// Multistep methods ignore kinks, because the restart with a short step costs them more. The step-size control ignores
+// them, because its error estimate includes the kink and it uses only the lengths of its levels.
+std::optional<coupling::KinkEvents::KinkEvent> Stepper::next_kink(double from, double remaining) {
   if (!settings_.kinks || multistep_ || step_control_) return std::nullopt;
   ReadArray y(y_);
   return system_.next_kink(from, remaining, y.data);
@@ -62,15 +62,15 @@ double Stepper::locate_contact_change(double from, double full) {
 }
 
 // Repeats the step from `from` to `at` if the wheel turns about its kink at another time than predicted.
-double Stepper::end_at_kink(double from, double at, const coupling::KinkEvents::KinkPassage& passage) {
+double Stepper::end_at_kink(double from, double at, const coupling::KinkEvents::KinkEvent& kink_event) {
   set_vehicles(at);
   for (int i = 0; i < most_kink_trials; ++i) {
     double found = 0.0;
     {
       ReadArray y(y_);
-      found = system_.time_of(passage, at, y.data);
+      found = system_.time_of(kink_event, at, y.data);
     }
-    if (!(std::abs(found - at) > passage.tolerance) || !(found > from) || !std::isfinite(found)) break;
+    if (!(std::abs(found - at) > kink_event.tolerance) || !(found > from) || !std::isfinite(found)) break;
     at = step_again(from, found);
   }
   return at;

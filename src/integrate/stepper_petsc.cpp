@@ -32,7 +32,7 @@ void Stepper::rate(double t, Vec y, Vec ydot, Terms terms) {
     system_.rate(t, in.data, out.data, terms);
 }
 
-// F = y' - G, or during a stage solution only a record of the request.
+// Computes F = y' - G, or during a stage solution only records the request.
 void Stepper::implicit_residual(double t, Vec y, Vec ydot, Vec residual) {
   if (request_.recording) {
     request_.t = t;

@@ -1,5 +1,8 @@
 // Prepares the tables of the vectorised kernel: modal forces over the distance, modal coefficients and the breaks where
 // a response has a kink or a jump. Static peaks follow from the extremes of cubic polynomials.
+//
+// Channels of the force history: modal forces; then for each probe the static correction of the deflection (the static
+// deflection minus the contribution of the modes), then for each probe that of the moment.
 #include "modal_engine/moving_force_batch.hpp"
 
 #include <algorithm>
@@ -17,7 +20,7 @@ TRAVERSE_LANES_DECLARE(long work_size(const ForceTask& task); void run_passages(
 
 namespace {
 
-constexpr double negligible_kink = 1e-6;  // of the largest slope, or value
+constexpr double negligible_kink = 1e-6;  // fraction of the largest slope, or of the largest value for a jump
 
 /// The coefficients of one channel in an interval, by powers of the distance since its start.
 std::array<double, 4> cubic_of(const integrate::ForceHistory& history, std::size_t interval, std::size_t channel) {
@@ -48,7 +51,7 @@ struct Jumps {
     }
   }
 
-  std::vector<double> largest, steepest;  // of each channel
+  std::vector<double> largest, steepest;  // for each channel
   std::vector<double> value, slope;       // [interval][channel]
 };
 
@@ -56,14 +59,14 @@ struct Jumps {
 
 MovingForcePassages::MovingForcePassages(const structure::ModalBridge& bridge, const train::MovingLoad& load,
                                          bool equilibrium)
-    : bridge_(bridge), history_(bridge.influence(), load), weight_(bridge.probes().weight_deflection) {
+    : bridge_(bridge), history_(bridge.influence(), load), self_weight_(bridge.probes().weight_deflection) {
   for (std::size_t i = 0; i < bridge.modes(); ++i) {
     omega2_.push_back(bridge.omega()[i] * bridge.omega()[i]);
     damping_.push_back(2.0 * bridge.sigma()[i]);
     q_.push_back(equilibrium ? history_.interval(0)[i] / omega2_[i] : 0.0);
   }
   const std::vector<double>& moments = bridge.probes().weight_moment;
-  weight_.insert(weight_.end(), moments.begin(), moments.end());
+  self_weight_.insert(self_weight_.end(), moments.begin(), moments.end());
   find_kinks();
 }
 
@@ -76,9 +79,10 @@ void MovingForcePassages::find_kinks() {
   for (std::size_t k = modes; k < n; ++k)
     for (std::size_t i = 0; i < modes; ++i) {
       const std::size_t at = i * probes + (k - modes) % probes;
-      const double form = k < modes + probes ? bridge_.probes().deflection[at] : bridge_.probes().moment[at];
-      largest[k] += std::abs(form) / omega2_[i] * jumps.largest[i];
-      steepest[k] += std::abs(form) / omega2_[i] * jumps.steepest[i];
+      const double modal_coefficient =
+          k < modes + probes ? bridge_.probes().deflection[at] : bridge_.probes().moment[at];
+      largest[k] += std::abs(modal_coefficient) / omega2_[i] * jumps.largest[i];
+      steepest[k] += std::abs(modal_coefficient) / omega2_[i] * jumps.steepest[i];
     }
   first_kink_ = {0};
   for (std::size_t i = 0; i < history_.start.size(); ++i) {
@@ -101,7 +105,7 @@ void MovingForcePassages::find_kinks() {
 
 std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<const double> speeds,
                                                                       std::span<const double> end_times,
-                                                                      double instants,
+                                                                      double samples_per_period,
                                                                       const std::function<bool()>& proceed) const {
   const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 2 ? 4 : 2, probes = bridge_.probes().count;
   engine::Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
@@ -116,7 +120,7 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<
   task.speed = speed.data();
   task.end = end.data();
   const double fastest = *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
-  task.instant = 2.0 * std::numbers::pi / fastest / instants;
+  task.instant = 2.0 * std::numbers::pi / fastest / samples_per_period;
   task.ds = task.instant * engine::speed_of_class(engine::speed_class(speeds.front()));
   task.intervals = static_cast<long>(history_.start.size());
   task.channels = static_cast<int>(history_.channels);
@@ -135,7 +139,7 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<
   task.moment = forms.moment.data();
   task.moment_by_rate = forms.moment_by_rate.data();
   task.moment_by_acceleration = forms.moment_by_acceleration.data();
-  task.weight = weight_.data();
+  task.weight = self_weight_.data();
   bool stopped = false;
   const auto check = [&] {
     stopped = stopped || !proceed();
@@ -169,7 +173,7 @@ std::vector<double> MovingForcePassages::static_peaks() const {
   for (std::size_t interval = 0; interval + 1 < history_.start.size(); ++interval) {
     const double length = history_.start[interval + 1] - history_.start[interval];
     for (std::size_t p = 0; p < probes.count; ++p) {
-      std::array<double, 4> c = cubic_of(history_, interval, modes + p);  // of the deflection over the distance
+      std::array<double, 4> c = cubic_of(history_, interval, modes + p);  // deflection over the distance
       for (std::size_t i = 0; i < modes; ++i) {
         const std::array<double, 4> force = cubic_of(history_, interval, i);
         for (std::size_t k = 0; k < 4; ++k) c[k] += probes.deflection[i * probes.count + p] * force[k] / omega2_[i];
@@ -180,11 +184,11 @@ std::vector<double> MovingForcePassages::static_peaks() const {
       };
       evaluate(0.0);
       evaluate(length);
-      const double root = c[2] * c[2] - 3.0 * c[1] * c[3];  // from the zeros of the slope
-      if (root < 0.0) continue;
-      const double far = -(c[2] + std::copysign(std::sqrt(root), c[2]));
-      if (c[3] != 0.0) evaluate(far / (3.0 * c[3]));
-      if (far != 0.0) evaluate(c[1] / far);
+      const double discriminant = c[2] * c[2] - 3.0 * c[1] * c[3];  // for the zeros of the slope
+      if (discriminant < 0.0) continue;
+      const double larger_root_numerator = -(c[2] + std::copysign(std::sqrt(discriminant), c[2]));
+      if (c[3] != 0.0) evaluate(larger_root_numerator / (3.0 * c[3]));
+      if (larger_root_numerator != 0.0) evaluate(c[1] / larger_root_numerator);
     }
   }
   return peaks;

@@ -21,11 +21,12 @@ class MovingForcePassages {
   MovingForcePassages(const structure::ModalBridge& bridge, const train::MovingLoad& load, bool equilibrium);
 
   /// The peaks from t = 0 to `end_times` (s) at every probe of the bridge, for at most `engine::widest` runs with
-  /// speeds of one class (speed_class.hpp): [run][probe]. The responses are sampled `instants` times or slightly more
-  /// in a period of the fastest mode, and at their kinks; peaks between samples are interpolated by parabolas.
-  /// `proceed` is called at intervals; once it returns false the search stops, and there are no peaks.
+  /// speeds of one class (speed_class.hpp): [run][probe]. The responses are sampled `samples_per_period` times or
+  /// slightly more in a period of the fastest mode, and at their kinks; peaks between samples are interpolated by
+  /// parabolas. `proceed` is called at intervals; once it returns false the search stops, and there are no peaks.
   std::vector<std::vector<base::ProbePeaks>> peaks(std::span<const double> speeds, std::span<const double> end_times,
-                                                   double instants, const std::function<bool()>& proceed) const;
+                                                   double samples_per_period,
+                                                   const std::function<bool()>& proceed) const;
 
   const integrate::ForceHistory& history() const { return history_; }
   /// The largest static deflection at each probe during the passage of the forces, m.
@@ -36,7 +37,7 @@ class MovingForcePassages {
 
   const structure::ModalBridge& bridge_;
   integrate::ForceHistory history_;
-  std::vector<double> q_, omega2_, damping_, weight_;
+  std::vector<double> q_, omega2_, damping_, self_weight_;
   std::vector<ForceEvent> event_;
   std::vector<int> first_kink_, kink_;
 };

@@ -42,12 +42,13 @@ class MovingForceBatch : Lanes<W> {
   }
 
  private:
-  // Of the largest magnitude so far. The vertex of a parabola exceeds the middle point by at most an eighth of the drop
-  // to the next point. For points a twentieth of a period apart the drop beside a peak is less than 16 %. Therefore a
-  // middle point below this limit cannot lead to a larger peak.
+  // Limit relative to the largest magnitude so far. The vertex of a parabola exceeds the middle point by at most an
+  // eighth of the drop to the next point. For points a twentieth of a period apart the drop beside a peak is less than
+  // 16 %. Therefore a middle point below this limit cannot lead to a larger peak.
   static constexpr double near_largest = 0.98;
-  static constexpr double least_gap = 1e-6;        // of the next distance: points closer than this define no parabola
-  static constexpr double same_end = 1.0 + 1e-12;  // equal distances except for rounding
+  static constexpr double least_gap =
+      1e-6;  // relative to the next distance: points closer than this define no parabola
+  static constexpr double same_end = 1.0 + 1e-12;        // equal distances except for rounding
   static constexpr long instants_between_checks = 4096;  // between calls of `proceed`
 
   // --- memory ------------------------------------------------------------------------------------------------------
@@ -210,7 +211,7 @@ class MovingForceBatch : Lanes<W> {
     Lane *q = nullptr, *r = nullptr, *a = nullptr;
     double* static_part = nullptr;
     int* flagged = nullptr;
-    Lane* value = nullptr;  // of the flagged responses
+    Lane* value = nullptr;  // values of the flagged responses
     int count = 0;
   };
   Lane response(int i, const Instant& then) const {
@@ -303,7 +304,7 @@ class MovingForceBatch : Lanes<W> {
     now.count += exceeds(magnitude(value), limit_[i]) != 0 ? 1 : 0;
   }
 
-  /// The same for a single run: here the lanes are neighbouring probes.
+  /// Like flag(), for a single run: here the lanes are neighbouring probes.
   void flag_row(int p, Instant& now) const {
     using Row = Lanes<in_a_row>;
     const auto at = [](const double* numbers) { return *reinterpret_cast<const typename Row::Unaligned*>(numbers); };
@@ -379,11 +380,11 @@ class MovingForceBatch : Lanes<W> {
   long used_ = 0;
   Lane speed_{}, end_{};
   Mask runs_{};                          // runs that have not ended
-  double next_end_ = 0.0;                // m: of these runs
+  double next_end_ = 0.0;                // distance at which the next of these runs ends, m
   Instant instants_[3], *last_[3] = {};  // the last samples, in cyclic order
   long samples_ = 0, smooth_from_ = 1;   // number of samples; first one after a kink of all responses
-  // For each response: its largest magnitude so far, the distance of it in m, the limit for larger values, and the
-  // limit in the first lane.
+  // For each response: its largest magnitude so far, the distance travelled at that instant in m, the limit for larger
+  // values, and the limit in the first lane.
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
   double* limit_alone_ = nullptr;
   long* kink_sample_ = nullptr;   // for each response: the sample before its last kink

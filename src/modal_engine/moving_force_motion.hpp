@@ -54,7 +54,7 @@ class ForcedModes : Lanes<W> {
     place(0.0);
   }
 
-  /// m travelled at the next event; infinite after the last one.
+  /// The distance travelled at the next event, m; infinite after the last event.
   double next_event() const { return interval + 1 < task_.intervals ? task_.start[interval + 1] : 1e300; }
 
   /// At an event: changes the modal forces to those after it.
@@ -113,16 +113,17 @@ class ForcedModes : Lanes<W> {
   }
 
   double s = 0.0;                                 // m travelled
-  long interval = 0;                              // between two events
-  Lane *q = nullptr, *r = nullptr, *a = nullptr;  // of the modes: coordinates, rates, accelerations
+  long interval = 0;                              // index of the interval between two events
+  Lane *q = nullptr, *r = nullptr, *a = nullptr;  // coordinates, rates and accelerations of the modes
 
  private:
-  static constexpr double most_phase = 2.0;   // of a part of a sampling interval: up to this phase series are short
-  static constexpr int most_terms = 32;       // of a series
-  static constexpr double last_term = 1e-19;  // of a series, over the first term
+  static constexpr double most_phase =
+      2.0;  // largest phase of a part of a sampling interval: up to this phase series are short
+  static constexpr int most_terms = 32;       // limit of terms of a series
+  static constexpr double last_term = 1e-19;  // last term of a series over its first term
 
-  /// The coefficients of one step for a mode's q and q': of q', q'', j, and the second and third powers of the distance
-  /// in g.
+  /// The coefficients of q', q'', j and the second and third powers of the distance in g, with which one step changes a
+  /// mode's q and q'.
   struct Advance {
     Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
   };
@@ -214,7 +215,7 @@ class ForcedModes : Lanes<W> {
   Lane *q_stored_ = nullptr, *r_stored_ = nullptr, *a_stored_ = nullptr;
   Advance* regular_ = nullptr;  // for one sampling interval
   Series* series_ = nullptr;
-  double* g_[4] = {};  // of the modes: coefficients of g by powers of the distance from here
+  double* g_[4] = {};  // coefficients of g of the modes, by powers of the distance from the present position
 };
 
 }  // namespace

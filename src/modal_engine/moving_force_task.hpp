@@ -1,5 +1,5 @@
-// A group of passages of moving forces as plain arrays: the whole interface between the kernels and the other parts of
-// the program (moving_force_batch.hpp).
+// A group of runs, in which moving forces pass the bridge, as plain arrays: the whole interface between the kernels and
+// the other parts of the program (moving_force_batch.hpp).
 #pragma once
 
 namespace traverse::modal_engine {
@@ -15,26 +15,27 @@ enum class ForceEvent : char {
 struct ForceTask {
   int width = 0;                                  // 2, 4 or 8
   int runs = 0;                                   // number of runs; other lanes repeat the last one
-  const double *speed = nullptr, *end = nullptr;  // lanes: m/s; m travelled at the end of the run
-  double ds = 0.0;                                // m between two samples
-  double instant = 0.0;                           // s: the longest time of this distance in any lane
+  const double *speed = nullptr, *end = nullptr;  // in lanes: speed, m/s; distance travelled at the end of the run, m
+  double ds = 0.0;                                // distance between two samples, m
+  double instant = 0.0;                           // longest time for this distance in any lane, s
 
   // integrate::ForceHistory: sums of all forces, [interval][power][channel] of the distance since the interval's start.
   // Modal forces first; then each probe's deflection minus the modes' share of it, then each probe's moment.
   long intervals = 0;
   int channels = 0;
   const double *start = nullptr, *coefficients = nullptr;
-  const ForceEvent* event = nullptr;  // at the start of each interval
-  const int* first_kink = nullptr;    // for each interval the first index in `kink`, and the number of all
-  const int* kink = nullptr;          // responses: deflection of each probe, acceleration of each, moment of each
+  const ForceEvent* event = nullptr;  // event at the start of each interval
+  const int* first_kink = nullptr;  // for each interval the first index in `kink`; the last entry is the number of all
+  const int* kink = nullptr;        // indices of responses: deflections of all probes, then accelerations, then moments
 
   int modes = 0;
   const double *omega2 = nullptr, *damping = nullptr;  // for each mode: omega^2, 2 sigma
-  const double* q = nullptr;                           // at the start
+  const double* q = nullptr;                           // initial modal coordinates
   int probes = 0;
   const double *deflection = nullptr, *moment = nullptr, *moment_by_rate = nullptr;  // [mode][probe], ModalProbes
   const double* moment_by_acceleration = nullptr;
-  const double* weight = nullptr;  // under the self-weight: deflection of each probe, then moment of each
+  const double* weight =
+      nullptr;  // responses under the self-weight: deflections of all probes, then moments of all probes
 
   bool (*proceed)(void* context) = nullptr;  // called at intervals; if false the run stops, and its results are invalid
   void* context = nullptr;

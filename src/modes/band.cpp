@@ -11,8 +11,7 @@ namespace traverse::modes {
 
 namespace {
 
-/// The number of negative pivots. `Width` is a constant for the common beams, because count_below runs often over long
-/// beams.
+/// The number of negative pivots of K - sigma M. `Width` is a compile-time constant for common bandwidths, for speed.
 template <class Width>
 int negative_pivots(const Band& K, const Band& M, double sigma, Width width) {
   const int w = width;

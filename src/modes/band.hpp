@@ -48,11 +48,12 @@ class Factor {
   void solve(double* x) const;
 
  private:
-  Band rows_;  // of L, with the pivots in place of its unit diagonal
+  Band rows_;  // rows of L, with the pivots in place of its unit diagonal
   bool positive_ = true;
 };
 
-/// The largest K_ii/M_ii: the magnitude of the highest eigenvalues; times the machine epsilon that of rounding errors.
+/// The largest K_ii/M_ii: the magnitude of the highest eigenvalues. This value times the machine epsilon is the
+/// magnitude of the rounding errors of eigenvalues.
 double highest_quotient(const Band& K, const Band& M);
 
 /// An interval (low, high] that contains the lowest of the wanted eigenvalues.

@@ -1,5 +1,5 @@
-// Damped modes of the whole beam from those of its segments: for proportional damping from the natural modes, by
-// lambda^2 + (a + b omega^2) lambda + omega^2 = 0, otherwise from the quadratic eigenvalue problem.
+// Damped modes of the whole beam from the damped modes of its segments. For proportional damping they follow from the
+// natural modes by lambda^2 + (a + b omega^2) lambda + omega^2 = 0, otherwise from the quadratic eigenvalue problem.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +20,7 @@ struct DampedMode {
   Complex lambda;
   const Segment* segment = nullptr;
   int offset = 0;
-  std::vector<Complex> shape;  // of the segment's unknowns
+  std::vector<Complex> shape;  // displacements of the segment's unknowns
 };
 
 /// a and b of the segment's C = a M + b K, if C has this form: without dampers, or with dampers proportional to the
@@ -40,8 +40,8 @@ std::optional<beam::Rayleigh> proportional(const Segment& s, const beam::Rayleig
   return beam::Rayleigh{ab.a + extra, ab.b};
 }
 
-/// Roots of lambda^2 + (a + b omega^2) lambda + omega^2 = 0: of a complex pair the one with Im > 0, otherwise both real
-/// roots. A rigid motion has the root 0 and, if it is damped, -a.
+/// Roots of lambda^2 + (a + b omega^2) lambda + omega^2 = 0: only the root with Im > 0 of a complex pair, otherwise
+/// both real roots. A rigid motion has the root 0 and, if it is damped, -a.
 std::vector<Complex> roots(double omega, const beam::Rayleigh& ab) {
   const double half = 0.5 * (ab.a + ab.b * omega * omega);
   if (omega == 0.0) {

@@ -17,7 +17,7 @@ namespace {
 
 using base::check;
 
-constexpr double tolerance = 1e-12;  // of SLEPc, relative to the inverted eigenvalue
+constexpr double tolerance = 1e-12;  // tolerance of SLEPc, relative to the inverted eigenvalue
 constexpr double resolution = 1e-9;  // smallest relative width of brackets of eigenvalues
 
 base::Handle<Mat> matrix(const Band& band) {
@@ -40,15 +40,15 @@ base::Handle<Mat> matrix(const Band& band) {
   return m;
 }
 
-/// A shift below zero for a segment with rigid motions, or nearly so. The ratio of the largest to the lowest eigenvalue
-/// of a beam grows with the fourth power of the number of its elements, that of a bar with the second.
+/// A shift below zero for a segment with rigid or nearly rigid motions. The ratio of the largest to the lowest
+/// eigenvalue grows with the fourth power of the number of elements for a beam, with the second power for a bar.
 double shift_below_zero(const Segment& s) {
   const double elements = std::max(1.0, static_cast<double>(s.nodes.back() - s.nodes.front()));
   return -highest_quotient(s.K, s.M) / std::pow(elements, s.axial ? 2.0 : 4.0);
 }
 
 /// Checks that the lowest eigenvalue is not below the rounding error of the highest one. The ratio of both grows with
-/// the fourth power of the number of a beam's elements. With few elements such an eigenvalue is that of a very soft
+/// the fourth power of the number of a beam's elements. With few elements such a low eigenvalue is due to a very soft
 /// support.
 void check_rounding(const Segment& s, const Bracket& lowest) {
   const double rounding = std::numeric_limits<double>::epsilon() * highest_quotient(s.K, s.M);
@@ -61,7 +61,7 @@ void check_rounding(const Segment& s, const Bracket& lowest) {
         elements));
 }
 
-/// A shift below the lowest eigenvalue of a bracket, at a distance similar to that of the others in the bracket.
+/// A shift below the lowest eigenvalue of a bracket; its distance is similar to the distances between the eigenvalues.
 double shift_below(const Bracket& b) { return b.low - 0.2 * (b.high - b.low); }
 
 Eigenpair pair_of(EPS eps, Mat K, PetscInt i, double (*eigenvalue)(double, double), double shift) {
@@ -78,8 +78,8 @@ Eigenpair pair_of(EPS eps, Mat K, PetscInt i, double (*eigenvalue)(double, doubl
   return pair;
 }
 
-/// All elastic modes, by LAPACK. The inverted problem M x = mu (K - shift M) x makes the lowest frequencies, not the
-/// highest, the accurate ones.
+/// All elastic modes, by LAPACK. By the inverted problem M x = mu (K - shift M) x the lowest frequencies are the most
+/// accurate, not the highest.
 std::vector<Eigenpair> all_elastic(const Segment& s, double shift) {
   const base::Handle<Mat> shifted = matrix(s.K), M = matrix(s.M);
   check(MatAXPY(shifted, -shift, M, SAME_NONZERO_PATTERN));

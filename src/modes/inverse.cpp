@@ -34,8 +34,8 @@ double rounding(const Segment& s, const beam::Rayleigh& ab, const VectorXd& x) {
 double typical_frequency(const Segment& s) {
   const Bracket lowest = s.rigid.empty() ? bracket_lowest(s.K, s.M) : Bracket{};
   if (lowest.low > 0.0) return std::sqrt(lowest.high);
-  // The ratio of squared frequencies of a beam grows with the fourth power of the number of its elements, of a bar with
-  // the second.
+  // The ratio of squared frequencies grows with the fourth power of the number of elements for a beam, with the second
+  // power for a bar.
   const double elements = std::max(1.0, static_cast<double>(s.nodes.back() - s.nodes.front()));
   return std::sqrt(highest_quotient(s.K, s.M) / std::pow(elements, s.axial ? 2.0 : 4.0));
 }

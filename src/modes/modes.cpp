@@ -18,16 +18,17 @@ namespace traverse::modes {
 namespace {
 
 constexpr double distinct = 1e-6;  // relative difference of two frequencies
-// The same between spans that are not coupled: frequencies are proportional to the inverse square of a span, and two
+// The tolerance between spans that are not coupled: frequencies are proportional to the inverse square of a span; two
 // spans of one drawing may be built 20 mm longer and shorter (EN 13670, 10.4), which is this difference at 8 m.
 constexpr double distinct_spans = 0.01;
-constexpr double ratio_tolerance = 1e-5;  // of a damping ratio, relative: a limit copied from a message is accepted
+constexpr double ratio_tolerance =
+    1e-5;  // relative tolerance of a damping ratio: a limit copied from a message is accepted
 
 struct Mode {
   double omega = 0.0;
   const Segment* segment = nullptr;
   int offset = 0;
-  std::vector<double> shape;  // of the segment's unknowns
+  std::vector<double> shape;  // displacements of the segment's unknowns
 };
 
 /// The `count` lowest modes of all segments and their equal copies.

@@ -12,11 +12,11 @@ namespace traverse::modes {
 
 struct Modes {
   std::vector<double> omega;  // rad/s, ascending, repeated frequencies as often as they occur
-  std::vector<char> axial;    // per mode: non-zero for motion along x, else bending
+  std::vector<char> axial;    // per mode: non-zero for motion along x, 0 for bending
   std::vector<std::vector<double>>
-      shape;  // per mode: deflection at every requested point, with largest magnitude 1; of an axial mode the
-              // displacement along x. All zero if a mode only rotates the points (nodes, with one element per span)
-  std::vector<double> x{};  // of the points, m
+      shape;  // per mode: deflection at every requested point, for an axial mode the displacement along x; largest
+              // magnitude 1. All zero if a mode only rotates the points (nodes, with one element per span)
+  std::vector<double> x{};  // stations of the points, m
   /// The slope at every point (1/m) and the modal mass phi^T M phi (kg) of these shapes, if no shape can have a kink.
   std::vector<std::vector<double>> slope{};
   std::vector<double> mass{};
@@ -31,7 +31,7 @@ struct Modes {
 /// 1,000, 2 % for 10,000.
 /// `shapes`: whether to return the shapes at the nodes.
 Modes natural_modes(const beam::Beam& beam, int count, bool shapes);
-/// The same with shapes at these points of the bridge.
+/// Natural modes with the shapes at these points of the bridge.
 Modes natural_modes(const beam::Beam& beam, int count, const beam::ShapePoints& points);
 
 /// Modes of bending as vectors of all unknowns of the beam (of all ranks), with phi^T M phi = 1 kg.
@@ -50,17 +50,19 @@ Basis given_basis(const beam::Beam& beam, int count);
 /// A basis in the form of stored modes: deflections at these points of the bridge, with the largest value 1.
 Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoints& points);
 
-/// Solutions v = Re(shape exp(lambda t)) of M a + C* w + K* v = 0: of each conjugate pair the one with Im >= 0.
+/// Solutions v = Re(shape exp(lambda t)) of M a + C* w + K* v = 0. Of each conjugate pair only lambda with Im >= 0 is
+/// stored.
 struct DampedModes {
-  std::vector<std::complex<double>> lambda;              // 1/s, ascending in magnitude
-  std::vector<char> axial;                               // per mode: non-zero for motion along x, else bending
-  std::vector<std::vector<std::complex<double>>> shape;  // as in Modes; the displacement of largest magnitude is 1
+  std::vector<std::complex<double>> lambda;  // 1/s, ascending in magnitude
+  std::vector<char> axial;                   // per mode: non-zero for motion along x, 0 for bending
+  std::vector<std::vector<std::complex<double>>>
+      shape;  // same layout as in Modes; the displacement of largest magnitude is 1
 
   std::size_t size() const { return lambda.size(); }
   double omega(std::size_t i) const { return std::abs(lambda[i]); }          // rad/s
   double damped_omega(std::size_t i) const { return lambda[i].imag(); }      // rad/s, 0 without oscillation
   double decay_rate(std::size_t i) const { return 0.0 - lambda[i].real(); }  // 1/s
-  /// -Re/|lambda|: 1 for a real mode that decays, 0 for a rigid one.
+  /// Damping ratio -Re/|lambda|: 1 for a real mode that decays, 0 for a rigid mode.
   double ratio(std::size_t i) const { return omega(i) > 0.0 ? decay_rate(i) / omega(i) : 0.0; }
 };
 

@@ -17,12 +17,12 @@ namespace {
 using base::check;
 using Complex = std::complex<double>;
 
-constexpr double eigen_tolerance = 1e-11;  // of SLEPc, relative to the inverted eigenvalue
+constexpr double eigen_tolerance = 1e-11;  // tolerance of SLEPc, relative to the inverted eigenvalue
 constexpr int restarts = 2000;
 constexpr int few_unknowns = 64;         // up to here by LAPACK, all modes at once
 constexpr double max_change = 1e-4;      // relative to lambda: largest change by refinement
 constexpr double inverse_error = 1e-10;  // error of 1/lambda, relative to the largest one, in ill-conditioned cases
-constexpr double dense_from = 0.95;      // of 1/b: from here on the meaningless modes are dense
+constexpr double dense_from = 0.95;      // fraction of 1/b: from this |lambda| on the meaningless modes are dense
 
 PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
   return base::guard([&] {

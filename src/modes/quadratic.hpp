@@ -1,4 +1,5 @@
-// The damped modes of one segment: lambda^2 M + lambda C + K, C = a M + b K + D.
+// The damped modes of one segment: (lambda^2 M + lambda C + K) x = 0, C = a M + b K + D with the matrix D of the
+// foundation's dampers, which are added to Rayleigh damping.
 #pragma once
 
 #include <Eigen/Dense>
@@ -65,8 +66,8 @@ class Inverse {
   Factor stiffness_{Band()};
 };
 
-/// The modes of the segment with the `count` lowest |lambda|, including the rigid ones, ascending. With b, only modes
-/// below |lambda| = 1/|b|. Needs no communication and has the same bits on each rank. Throws SolverError.
+/// The modes of the segment with the `count` lowest |lambda|, including the rigid ones, ascending. If b is not 0, only
+/// modes with |lambda| < 1/|b|. There is no communication; the result is identical on all ranks. Throws SolverError.
 std::vector<DampedPair> lowest_damped(const Segment& segment, beam::Rayleigh ab, int count);
 
 }  // namespace traverse::modes

@@ -52,7 +52,7 @@ std::vector<PetscInt> unknowns_of(const beam::Beam& beam, bool axial) {
   return wanted;
 }
 
-/// These rows of all ranks, on every rank. Held unknowns have zero rows.
+/// The wanted rows of the matrix from all ranks, stored on every rank. Held unknowns have zero rows.
 Band gathered(Mat matrix, const std::vector<PetscInt>& wanted) {
   base::Handle<IS> set;
   check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES,
@@ -157,7 +157,7 @@ class Splitter {
     return beam_.layout().kind[unknowns_[static_cast<std::size_t>(row)] % beam_.block()];
   }
 
-  /// Whether an unknown of the column [first, past) is coupled to one of the column before.
+  /// Whether an unknown of the column [first, past) is coupled to an unknown of the previous column.
   bool coupled_to_left(int first, int past) const {
     for (int i = first; i < past; ++i) {
       for (int j = std::max(0, i - M_.width()); j < first; ++j) {

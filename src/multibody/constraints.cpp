@@ -10,9 +10,10 @@ namespace traverse::multibody {
 namespace {
 
 constexpr int max_iterations = 40;
-constexpr double max_rotation = 0.5;        // rad, in one Newton step
-constexpr double poor_contraction = 0.1;    // of the residual in one step: a worse one requires a new factorisation
-constexpr double dropped_tolerance = 1e-6;  // of dropped rows, relative to the mechanism's size
+constexpr double max_rotation = 0.5;  // rad, in one Newton step
+constexpr double poor_contraction =
+    0.1;  // ratio of residuals in one Newton step: a larger ratio requires a new factorisation
+constexpr double dropped_tolerance = 1e-6;  // tolerance of dropped rows, relative to the mechanism's size
 
 }  // namespace
 

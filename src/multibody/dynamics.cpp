@@ -10,7 +10,7 @@ namespace traverse::multibody {
 
 namespace {
 constexpr double interpolation_distance =
-    0.02;  // of the mechanism's size: scale of the distances of interpolation from a nearly singular position
+    0.02;  // scale of the interpolation's distances from a nearly singular position, relative to the mechanism's size
 }  // namespace
 
 void Mechanism::set_velocities(MechanismState& s, double t, const double* pd) const {
@@ -148,7 +148,7 @@ void Mechanism::recover(MechanismState& s, const Eigen::VectorXd& Q, const doubl
   s.dependent_block.solve_transposed(s.work, s.lambda);
 }
 
-/// q'' from p''.
+/// Computes q'' from p''.
 void Mechanism::expand_accelerations(MechanismState& s, const double* pdd) const {
   s.qdd = s.d;
   s.dependent_block.expand(pdd, s.qdd);

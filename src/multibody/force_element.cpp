@@ -111,7 +111,7 @@ PairForce spring_force(const SpringGeometry& spring, const Frame& first, const F
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second, double& dissipation) {
   const Line line(spring, first, second);
   dissipation += line.dissipation;
-  const Vector2d f = line.force();  // on the first body; the opposite acts on the second
+  const Vector2d f = line.force();  // force on the first body; the opposite force acts on the second body
   PairForce g;
   g << f, quarter_turn(line.a1).dot(f), -f, -quarter_turn(line.a2).dot(f);
   return g;

@@ -1,5 +1,5 @@
 // Springs, dampers and torsion springs between two bodies, with their derivatives and energies.
-// Generalized forces are those of g in eq. 42 of the paper, columns x1 y1 phi1 x2 y2 phi2.
+// Generalized forces are parts of g in eq. 42 of the paper, columns x1 y1 phi1 x2 y2 phi2.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,7 +43,7 @@ TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first
 /// Generalized force on both bodies. A spring whose length is zero has no direction: its force is stiffness times
 /// displacement if it is a zero-length spring, and zero otherwise.
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second);
-/// The same; the power dissipated in the damper, W, is added to `dissipation`.
+/// Like the function above; it also adds the power dissipated in the damper, W, to `dissipation`.
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second, double& dissipation);
 /// Tension along the spring, N, including the damper.
 double spring_tension(const SpringGeometry& spring, const Frame& first, const Frame& second);
@@ -56,7 +56,7 @@ double spring_strain_energy(const SpringGeometry& spring, const Frame& first, co
 /// Power dissipated in the damper, W, >= 0.
 double spring_dissipation(const SpringGeometry& spring, const Frame& first, const Frame& second);
 
-/// Moment on the second body; the opposite acts on the first.
+/// Moment on the second body; the opposite moment acts on the first body.
 double torsion_moment(const TorsionGeometry& spring, const Frame& first, const Frame& second);
 /// Decrease of the moment on the second body per twist and per rate of twist.
 struct TorsionTangent {

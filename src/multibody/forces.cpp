@@ -1,4 +1,4 @@
-// The generalized forces g of eq. 42 without contact: gravity, springs, actuators; and the energy balance.
+// The generalized forces g of eq. 42 of the paper without contact: gravity, springs, actuators; and the energy balance.
 #include "multibody/mechanism.hpp"
 #include "pair_times_B.hpp"
 
@@ -31,7 +31,7 @@ void Mechanism::compute_forces(MechanismState& s) const {
     }
   }
   if (applied_.size() > 0) s.g += applied_;
-  if (has_friction()) place_friction(s);
+  if (has_friction()) compute_friction_kinematics(s);
 }
 
 void Mechanism::apply(int body, const Eigen::Vector3d& action) {
@@ -79,9 +79,9 @@ void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by
   }
 }
 
-double Mechanism::spring_force(const MechanismState& s, int k) const {
+double Mechanism::spring_tension(const MechanismState& s, int k) const {
   const SpringGeometry& spring = springs_[k];
-  return spring_tension(spring, frame(s, spring.first), frame(s, spring.second));
+  return multibody::spring_tension(spring, frame(s, spring.first), frame(s, spring.second));
 }
 
 double Mechanism::torsion_spring_moment(const MechanismState& s, int k) const {

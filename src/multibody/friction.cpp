@@ -48,7 +48,7 @@ double invert(Eigen::MatrixXd& matrix, Eigen::MatrixXd& inverse) {
 }  // namespace
 
 /// Computes the quantities of friction that depend on positions and velocities only.
-void Mechanism::place_friction(MechanismState& s) const {
+void Mechanism::compute_friction_kinematics(MechanismState& s) const {
   FrictionState& r = s.friction;
   for (std::size_t i = 0; i < friction_joints_.size(); ++i) {
     const int k = static_cast<int>(i);

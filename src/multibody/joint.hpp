@@ -26,13 +26,13 @@ struct JointGeometry {
   JointType type = JointType::revolute;
   int first = ground;
   int second = ground;
-  int row = 0;                                           // of Phi
+  int row = 0;                                           // first row of the joint in Phi
   Eigen::Vector2d first_arm = Eigen::Vector2d::Zero();   // m, to the joint's point, in the first body
-  Eigen::Vector2d second_arm = Eigen::Vector2d::Zero();  // m, in the second body
+  Eigen::Vector2d second_arm = Eigen::Vector2d::Zero();  // m, to the joint's point, in the second body
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();     // normal to the axis, in the first body
   double offset = 0.0;                                   // m, normal . first_arm
   double angle = 0.0;                                    // rad, phi2 - phi1 at t = 0
-  double length = 0.0;                                   // m, of a distance joint
+  double length = 0.0;                                   // length of a distance joint, m
   std::array<double, most_joint_numbers> numbers = {};   // additional numbers of the type
   SlidingFriction friction;
 };
@@ -57,10 +57,10 @@ inline void joint_curvature(const JointGeometry& joint, const Frame& first, cons
                             JointCurvature& curvature) {
   joint.type->curvature(joint, first, second, lambda, curvature);
 }
-/// The gradient of the sliding displacement, columns x1 y1 phi1 x2 y2 phi2. This displacement is that of the joint's
-/// point on the second body along the axis, relative to the first body. The gradient times the velocities is the
-/// sliding speed. Times a force along the axis, it is the generalized force of this force on the second body and its
-/// opposite on the first, both at this point.
+/// The gradient of the sliding displacement, columns x1 y1 phi1 x2 y2 phi2. The sliding displacement is the
+/// displacement of the joint's point on the second body along the axis, relative to the first body. The gradient times
+/// the velocities is the sliding speed. Times a force along the axis, it is the generalized force of this force on the
+/// second body and its opposite on the first, both at this point.
 Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& joint, const Frame& first, const Frame& second);
 /// The derivative of slide_gradient; symmetric.
 void slide_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, JointCurvature& curvature);

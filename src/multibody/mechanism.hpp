@@ -82,10 +82,10 @@ struct MechanismState {
   Instant accepted;                  // the last accepted instant
   int partition_version = 0;         // partition of the workspaces
   bool factored = false;             // dependent_block has a factorisation of Phi_q near the current q
-  bool factors_current = false;      // this factorisation is that of the present Phi_q
-  bool sensitivity_current = false;  // the sensitivity and B are those of the present Phi_q
+  bool factors_current = false;      // this factorisation belongs to the present Phi_q
+  bool sensitivity_current = false;  // the sensitivity and B belong to the present Phi_q
   bool velocities_set = false;       // dependent_block has the sensitivity at the last velocities
-  bool mass_factored = false;        // reduced_mass is that of B
+  bool mass_factored = false;        // reduced_mass belongs to B
   long corrections = 0;              // number of Newton steps on positions
   Eigen::VectorXd work;              // n
   Eigen::VectorXd reduced;           // f
@@ -103,7 +103,7 @@ struct MechanismState {
 /// Powers of a mechanism in a state, W.
 struct MechanismPowers {
   double dissipation = 0.0;  // in dampers and friction, >= 0
-  double work = 0.0;         // of actuators, applied forces and rheonomic constraints (drivers)
+  double work = 0.0;         // work of actuators, applied forces and rheonomic constraints (drivers)
 };
 /// Powers and stored energies, J.
 struct MechanismEnergy : MechanismPowers {
@@ -118,8 +118,8 @@ class Mechanism {
   explicit Mechanism(MechanismModel model);
 
   const MechanismModel& model() const { return model_; }
-  /// Applies a constant force (N, along x and y) at the centre of mass of a body and a moment (N m), in place of those
-  /// of the last call for that body. Forces must be computed again afterwards.
+  /// Applies a constant force (N, along x and y) at the centre of mass of a body and a moment (N m). They replace the
+  /// force and moment of the last call for that body. Forces must be computed again afterwards.
   void apply(int body, const Eigen::Vector3d& action);
   /// Selects the piece at t for drivers whose acceleration jumps. Returns whether a piece has changed.
   bool select_pieces(double t);
@@ -144,7 +144,7 @@ class Mechanism {
   void accept(MechanismState& s) const;
 
   /// Whether dependent coordinates depend too strongly on the independent ones, or Phi_u is nearly singular.
-  bool worn(const MechanismState& s) const;
+  bool badly_conditioned(const MechanismState& s) const;
   /// Chooses another partition at the consistent state s if the present one is poor and another is better. If all
   /// choices are singular, the present one is kept to pass this position. Returns whether the partition has changed.
   bool renew_partition(MechanismState& s);
@@ -173,12 +173,12 @@ class Mechanism {
   /// B, b and d remain unchanged. Positions, velocities and forces must be set.
   void shift(MechanismState& s, const double* change, double rate) const;
 
-  /// p'' from the projected equations with external forces Q (n); also q'' and lambda. Throws SolverError if friction
-  /// jams a joint, because the bodies' accelerations are then not determined.
+  /// Computes p'' from the projected equations with external forces Q (n), and q'' and lambda. Throws SolverError if
+  /// friction jams a joint, because the bodies' accelerations are then not determined.
   void accelerations(MechanismState& s, const Eigen::VectorXd& Q, double* pdd) const;
 
-  /// q'' from a given p'', and lambda from the dependent rows of the equations of motion. Sets s.friction.jammed if
-  /// friction jams a joint.
+  /// Computes q'' from a given p'', and lambda from the dependent rows of the equations of motion. Sets
+  /// s.friction.jammed if friction jams a joint.
   void recover(MechanismState& s, const Eigen::VectorXd& Q, const double* pdd) const;
 
   /// Whether joints have friction.
@@ -200,11 +200,11 @@ class Mechanism {
   /// Generalized force of driver k on its coordinate.
   double driver_force(const MechanismState& s, int k) const;
   /// Tension of spring k, N, including the damper.
-  double spring_force(const MechanismState& s, int k) const;
+  double spring_tension(const MechanismState& s, int k) const;
   /// Moment of torsion spring k on its second body, N m.
   double torsion_spring_moment(const MechanismState& s, int k) const;
 
-  /// Forces must be computed; with drivers or friction also accelerations or recover.
+  /// The powers in state s. Call after compute_forces; with drivers or friction also after accelerations or recover.
   MechanismPowers powers(const MechanismState& s) const;
   MechanismEnergy energy(const MechanismState& s) const;
 
@@ -225,7 +225,7 @@ class Mechanism {
   const Frame& frame(const MechanismState& s, int body) const { return s.frames[body + 1]; }
   int driver_row(int k) const { return joint_row_count_ + k; }
   const std::string& part_name(int row) const;  // name of the joint or driver of a row of Phi
-  std::string row_name(int row) const;          // the same for a message: joint 'x'
+  std::string row_name(int row) const;          // name of the row for a message: joint 'x'
   const char* row_unit(int row) const;
   void find_scaling();
   void find_pattern();
@@ -245,7 +245,7 @@ class Mechanism {
   void velocities_at(MechanismState& s, double t, const double* pd) const;
   bool interpolate_velocities(MechanismState& s, double t, const double* pd) const;
   void expand_accelerations(MechanismState& s, const double* pdd) const;
-  void place_friction(MechanismState& s) const;
+  void compute_friction_kinematics(MechanismState& s) const;
   void friction_in_motion(MechanismState& s) const;
   void friction_in_given_motion(MechanismState& s) const;
   void add_constant_friction(MechanismState& s) const;
@@ -278,11 +278,11 @@ class Mechanism {
   Eigen::VectorXd applied_;  // n, or empty without applied forces
   std::vector<JointGeometry> joints_;
   std::vector<int> friction_joints_;  // joints with friction
-  bool has_normal_friction_ = false;  // one of them has friction in proportion to its normal force
+  bool has_normal_friction_ = false;  // whether one of these joints has friction in proportion to its normal force
   std::vector<SpringGeometry> springs_;
   std::vector<TorsionGeometry> torsion_springs_;
   int joint_row_count_ = 0;    // rows of Phi of the joints; one row per driver follows
-  std::vector<char> pattern_;  // where Phi_q can be non-zero, by columns
+  std::vector<char> pattern_;  // non-zero for entries of Phi_q that can be non-zero, by columns
   Scaling scaling_;
   double length_ = 1.0;  // m, the arm that scales angles to lengths
 };

@@ -11,16 +11,17 @@ namespace traverse::multibody {
 
 namespace {
 
-constexpr double rank_tolerance = 1e-8;  // scaled pivots below are due to rounding or inaccurate geometry
+constexpr double rank_tolerance = 1e-8;  // scaled pivots below this value are due to rounding or inaccurate geometry
 constexpr double tie = 1e-9;  // pivots closer than this are equal, so that the choice is independent of rounding
 constexpr double nearly_singular = 1e-2;     // smallest scaled pivot of a new choice
-constexpr double poor_quality = 0.05;        // of a partition, relative to its quality when it was chosen
-constexpr double position_tolerance = 1e-6;  // of the mechanism's size
+constexpr double poor_quality = 0.05;        // least quality of a partition, relative to its quality when it was chosen
+constexpr double position_tolerance = 1e-6;  // relative to the mechanism's size
 constexpr double rate_tolerance = 1e-6;      // relative to the terms that should cancel
-constexpr double rate_floor = 1e-9;          // of the mechanism's size, per s or s2: smaller rates are zero
-constexpr double repeat_distance = 1e-3;     // of the mechanism's size: after a larger motion the choice is repeated
-constexpr double probe = 1e-3;               // of the mechanism's size: the step that detects a dead point
-constexpr double probe_tolerance = 1e-9;     // of the mechanism's size
+constexpr double rate_floor = 1e-9;          // relative to the mechanism's size, per s or s2: smaller rates are zero
+constexpr double repeat_distance =
+    1e-3;                       // relative to the mechanism's size: after a larger motion the choice is repeated
+constexpr double probe = 1e-3;  // displacement that detects a dead point, relative to the mechanism's size
+constexpr double probe_tolerance = 1e-9;  // relative to the mechanism's size
 
 /// Gaussian elimination with full pivoting on a scaled copy of Phi_q.
 class FullPivoting {
@@ -48,8 +49,8 @@ class FullPivoting {
   }
 
  private:
-  /// Finds the largest pivot: of equal ones the last column and the first row, so that the coordinates of a body listed
-  /// first remain independent.
+  /// Finds the largest pivot. Of equal pivots the one in the last column and the first row is chosen, so that the
+  /// coordinates of a body listed first remain independent.
   bool find(int from, int to, int& row, int& column) {
     double best = 0.0;
     for (int i = from; i < to; ++i) {
@@ -112,13 +113,13 @@ std::vector<std::string> Mechanism::choose_partition(MechanismState& s, double t
   return names;
 }
 
-bool Mechanism::worn(const MechanismState& s) const {
+bool Mechanism::badly_conditioned(const MechanismState& s) const {
   if (partition_.rows.empty() || !s.velocities_set) return false;
   return s.dependent_block.nearly_singular() || partition_quality(s) < poor_quality * chosen_quality_;
 }
 
 bool Mechanism::renew_partition(MechanismState& s) {
-  if (!worn(s)) return false;
+  if (!badly_conditioned(s)) return false;
   compute_Phi_q(s);
   const Choice choice = pivot(s);
   const bool singular = choice.partition.rows.size() < partition_.rows.size() || choice.least_pivot < nearly_singular;
@@ -164,8 +165,8 @@ std::string Mechanism::worst_row(const MechanismState& s) const {
   return row_name(worst) + " is off by " + number(s.Phi[worst]) + " " + row_unit(worst);
 }
 
-/// Sets velocities that satisfy the constraints: the given ones, or the nearest ones in the metric of the masses, as
-/// after an impact of the joints.
+/// Sets velocities that satisfy the constraints: the given velocities, or the nearest velocities in the metric of the
+/// masses, as after an impact of the joints.
 void Mechanism::fit_velocities(MechanismState& s) const {
   const Eigen::VectorXd wanted = s.qd;
   Eigen::VectorXd pd(freedom());
@@ -232,7 +233,7 @@ void Mechanism::check_dropped_accelerations(MechanismState& s) const {
   }
 }
 
-/// A normal force that other joints can carry as well is not determined, and neither is its friction.
+/// A normal force that other joints can carry too is not determined; therefore its friction is not determined.
 void Mechanism::check_dropped_friction() const {
   const std::vector<int> dropped = dropped_rows();
   for (const int j : friction_joints_) {
@@ -244,7 +245,7 @@ void Mechanism::check_dropped_friction() const {
   }
 }
 
-/// Detects a dead point, where rows depend on others: after a small step they are independent.
+/// Detects a dead point. There rows depend on other rows; after a small displacement they are independent.
 void Mechanism::check_dead_point(MechanismState& s) const {
   const Eigen::VectorXd q = s.q;
   const Eigen::VectorXd Phi = s.Phi;

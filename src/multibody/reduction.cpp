@@ -12,11 +12,13 @@ namespace traverse::multibody {
 
 namespace {
 
-constexpr double acceptable_pivot = 0.1;  // of the largest entry in its row, for the choice of the order
-constexpr double degraded_pivot = 0.1;    // of its value when the order was chosen
-constexpr double zero_pivot = 1e-13;      // scaled: with a smaller pivot, the solution is zero in its direction
+constexpr double acceptable_pivot =
+    0.1;  // least pivot relative to the largest entry in its row, for the choice of the order
+constexpr double degraded_pivot = 0.1;  // least pivot relative to its value when the order was chosen
+constexpr double zero_pivot = 1e-13;    // scaled: with a smaller pivot, the solution is zero in its direction
 
-/// The pivot with the least fill (Markowitz) among those large enough in their row; of equal fill the larger one.
+/// The pivot with the least fill (Markowitz) among the pivots that are large enough in their row. If the fill is equal,
+/// the larger pivot is chosen.
 void find_pivot(const ActiveRows& A, int& row, int& column) {
   long best_fill = std::numeric_limits<long>::max();
   double best_size = 0.0;

@@ -15,20 +15,20 @@ namespace traverse::multibody {
 /// The independent coordinates, and the kept rows of Phi (redundant rows are dropped).
 struct Partition {
   std::vector<int> independent;  // f indices into q, ascending
-  std::vector<int> dependent;    // as many as kept rows, ascending
+  std::vector<int> dependent;    // one for each kept row, ascending
   std::vector<int> rows;         // kept rows of Phi, ascending
   void keep(base::Bytes& bytes) { bytes(independent, dependent, rows); }
 };
 
 /// Factors that make the entries of Phi_q comparable: an angle is scaled by a typical arm.
 struct Scaling {
-  Eigen::VectorXd row;     // of a row of Phi: m
-  Eigen::VectorXd column;  // of a column of Phi_q: 1 for x and y, 1/length for an angle
+  Eigen::VectorXd row;     // scale of a row of Phi, m
+  Eigen::VectorXd column;  // scale of a column of Phi_q: 1 for x and y, 1/length for an angle
 };
 
 /// The sensitivity of dependent to independent coordinates: value[j] of coordinate[i] for every j in list i.
 struct Sensitivity {
-  std::vector<int> coordinate;  // of list i, as index into q
+  std::vector<int> coordinate;  // coordinate of list i, as index into q
   IndexLists independent;       // 0..f-1, ascending
   std::vector<double> value;
 
@@ -40,8 +40,8 @@ struct Sensitivity {
 /// Number of floating-point operations (+, -, *, / and square roots) of a call, for the planned non-zeros.
 struct BlockOperations {
   long factor = 0, sensitivity = 0;  // compute_sensitivity
-  long solve = 0;                    // or solve_transposed
-  long expand = 0;                   // or project
+  long solve = 0;                    // operations of solve or solve_transposed
+  long expand = 0;                   // operations of expand or project
 };
 struct MassOperations {
   long factor = 0, solve = 0;
@@ -106,7 +106,7 @@ class DependentBlock {
   void find_sensitive(const std::vector<char>& pattern, int rows);
   double& block(int i, int j) { return block_[i * size() + j]; }
 
-  std::vector<int> row_of_, column_of_, independent_;  // of pivot k
+  std::vector<int> row_of_, column_of_, independent_;  // row, column and independent coordinate of pivot k
   IndexLists lower_, upper_, sensitive_;               // non-zero columns of every pivot's row
   std::vector<Source> block_sources_, sensitivity_sources_;
   std::vector<double> block_, sensitivity_;  // size x size, size x freedom, by rows

@@ -29,9 +29,9 @@ class SparseLdl {
   /// `filled` (size x size, symmetric) is true where the matrix may be non-zero; it is overwritten.
   void plan(int size, std::vector<char>& filled);
   void set_zero();
-  /// Entry (i, j) of the matrix, for additions; of (i, j) and (j, i) use only one, in any order.
+  /// Entry (i, j) of the matrix, for additions. Use only one of (i, j) and (j, i), no matter which.
   double& entry(int i, int j) { return entries_[entry_index(i, j)]; }
-  /// The same in two steps: the constant index of the entry, and the entries by index.
+  /// Access to an entry in two calls: its index, which is constant, and the entries by index.
   int entry_index(int i, int j) const {
     const int a = place_[i], b = place_[j];
     return a < b ? a * size() + b : b * size() + a;

@@ -1,5 +1,5 @@
-// Dynamic factors phi'_dyn from the peaks of computed passages, the greatest effects of trains and load models times
-// their factors, and the quantities of limits of EN 1991-2.
+// Dynamic factors phi'_dyn from the peaks of computed runs of trains, the greatest effects of trains and load models
+// times their factors, and the quantities of limits of EN 1991-2.
 #include "norm/dynamic_verdict.hpp"
 
 #include <fmt/format.h>

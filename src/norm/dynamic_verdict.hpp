@@ -1,5 +1,5 @@
-// EN 1991-2, 6.4.6.5: the larger of (1 + phi'_dyn + phi''/2) times the static effect of a train and of Phi times that
-// of LM71, or of SW/0 on continuous bridges; and the limited quantities of LM71.
+// EN 1991-2, 6.4.6.5: the larger of two effects, (1 + phi'_dyn + phi''/2) times the static effect of a train, and Phi
+// times the static effect of LM71, or of SW/0 on continuous bridges. Also the limited quantities of LM71.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ struct ComputedPeaks {
   std::vector<TrainPeaks> trains;      // in the order of the loads that are trains
 };
 
-/// phi'_dyn = max |dynamic/static| - 1, not below 0, of one train and effect: over all speeds, and over the probes with
+/// phi'_dyn = max |dynamic/static| - 1 of one train and effect, not below 0: over all speeds, and over the probes with
 /// at least a quarter of its greatest static effect, because the ratio of two small numbers near supports and points of
 /// contraflexure is meaningless.
 struct DynamicFactor {
@@ -71,7 +71,7 @@ class NormCheck {
   options::NormRules rules_;
   std::vector<double> lengths_;  // L_Phi of each span, m
   double n0_ = 0.0;              // Hz
-  double speed_ = 0.0;           // m/s, the greatest of the runs; 0: none
+  double speed_ = 0.0;           // m/s, greatest speed of the runs; 0: there are no runs
   std::size_t trains_ = 0;       // number of loads that are trains; the others are load models
   std::vector<std::string> models_;
   StaticEffects effects_;

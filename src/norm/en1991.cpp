@@ -10,9 +10,10 @@ namespace traverse::norm {
 namespace {
 
 constexpr double percent = 0.01;
-constexpr double bounds_from = 4.0, bounds_change = 20.0, bounds_to = 100.0;  // m, of the limits of n0
-constexpr double damping_changes = 20.0, vehicles_damp_below = 30.0;          // m
-constexpr double full_speed = 22.0;  // m/s, from which irregularities are counted in full
+constexpr double bounds_from = 4.0, bounds_change = 20.0,
+                 bounds_to = 100.0;                                   // m, lengths at which the limits of n0 change
+constexpr double damping_changes = 20.0, vehicles_damp_below = 30.0;  // m
+constexpr double full_speed = 22.0;  // m/s, speed from which irregularities have their full effect
 
 /// c/(sqrt(L) - 0.2) + d in [1, most].
 double phi_of_length(double length, double c, double d, double most) {

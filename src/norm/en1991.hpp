@@ -19,14 +19,14 @@ double determinant_length(std::span<const double> spans);
 /// The value for each span of a bridge, from its group of spans without a joint between two decks.
 std::vector<double> determinant_lengths(const beam::BeamModel& model);
 
-/// 6.4.5.2 (6.4): for carefully maintained track, from 1 to 1.67.
+/// 6.4.5.2 (6.4): Phi_2 for carefully maintained track, from 1 to 1.67.
 double phi2(double length);
-/// 6.4.5.2 (6.5): for track with standard maintenance, from 1 to 2.
+/// 6.4.5.2 (6.5): Phi_3 for track with standard maintenance, from 1 to 2.
 double phi3(double length);
 
-/// Annex C (C.3) to (C.5): for a bridge with the first bending frequency n0 at the speed v.
+/// Annex C (C.3) to (C.5): phi' of a bridge with the first bending frequency n0 at the speed v.
 double phi_of_speed(double v, double length, double n0);
-/// Annex C (C.6) to (C.8): for irregularities of the track.
+/// Annex C (C.6) to (C.8): phi'' for irregularities of the track.
 double phi_of_track(double v, double length, double n0);
 
 /// 6.4.4, figure 6.10: the range of first frequencies for which phi' and phi'' are valid; empty outside 4 to 100 m.

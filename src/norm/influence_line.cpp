@@ -10,11 +10,12 @@
 namespace traverse::norm {
 namespace {
 
-constexpr double negligible = 1e-10;  // relative to the line's greatest value: of distant spans
-constexpr double shortest = 1e-13;    // shortest piece, relative to the line's length
+constexpr double negligible =
+    1e-10;  // relative to the line's greatest value: smaller values on distant spans are neglected
+constexpr double shortest = 1e-13;  // shortest piece, relative to the line's length
 constexpr int halvings = 60;
 constexpr std::size_t renewal_interval =
-    64;  // stops: sums are computed anew, so that rounding errors do not accumulate
+    64;  // number of stops after which sums are computed anew, so that rounding errors do not accumulate
 constexpr std::size_t before = static_cast<std::size_t>(-1);  // index of a piece: before the line
 
 using Quartic = std::array<double, 5>;  // coefficients by powers

@@ -1,9 +1,9 @@
 // An influence line: the value of one quantity under a unit downward force, over the position of the force; and the
 // greatest value under loads that move along it together.
 //
-// On every piece the line is a cubic polynomial of x with one sign. Its area up to x, and that of its part above 0, are
-// then polynomials too, and the effect of a train is a polynomial of its position between the positions where one of
-// its forces passes a break. Therefore its greatest value is computed exactly.
+// On every piece the line is a cubic polynomial of x with one sign. The area below it up to x, and the area of its part
+// above 0, are then polynomials too. Between two positions at which one of its forces passes a break, the effect of a
+// train is a polynomial of its position. Therefore its greatest value is computed exactly.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ class InfluenceLine {
   InfluenceLine times(double factor) const;
 
   const std::vector<double>& breaks() const { return breaks_; }
-  /// m times its unit: the whole area, and the area of the part above 0.
+  /// The whole area of the line, and the area of its part above 0, in m times the unit of the line.
   double area() const { return area_.back(); }
   double area_above() const { return above_.back(); }
 

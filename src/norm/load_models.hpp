@@ -11,7 +11,7 @@ namespace traverse::norm {
 
 /// The load model with the user's name lm71, sw0 or sw2. Characteristic values, without alpha and Phi.
 LoadModel load_model(std::string_view name);
-/// Whether alpha applies: 6.3.2 (3).
+/// Whether the classification factor alpha applies to the load model: 6.3.2 (3).
 bool classified(std::string_view name);
 
 /// A train of forces (N, downward) at x, m.

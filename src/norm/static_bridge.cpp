@@ -15,7 +15,7 @@ namespace {
 // With uniform spans on supports only the nodal displacements are exact for any mesh; the first frequency has an error
 // of 1e-5.
 constexpr int elements_of_uniform_span = 8, min_elements = 64, max_elements = 4000;  // a span
-constexpr double elements_per_decay_length = 8.0;                // elements in the length of 1/lambda
+constexpr double elements_per_decay_length = 8.0;                // elements in the decay length 1/lambda
 constexpr int deflection = 1, rotation = 2, rotation_right = 3;  // unknowns of a node
 
 beam::BeamModel model_for_statics(const beam::BeamModel& given) {

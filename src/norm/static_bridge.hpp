@@ -1,8 +1,8 @@
 // The bridge under static vertical loads: its influence lines, each by one solution with a common factorisation.
 //
-// The coefficients by which a quantity depends on the nodal values of its element are a load on the structure, whose
-// deflections are the influence line (Maxwell and Betti). A force on that element has an additional direct effect
-// between its nodes, which is added.
+// The coefficients of the nodal values in a quantity are the nodal forces of a load on the structure. The deflections
+// under this load are the influence line of the quantity (Maxwell and Betti). A force on that element has an additional
+// direct effect between its nodes, which is added.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ class StaticBridge {
  public:
   static constexpr std::size_t most_spans = 200;
 
-  /// For linear foundations, on this rank only, with its own mesh. A layered track contributes its mass only, and loads
-  /// act on the bridge. InputError if the beam has no support.
+  /// The bridge with linear foundations, on this rank only, with its own mesh. A layered track contributes its mass
+  /// only, and loads act on the bridge. InputError if the beam has no support.
   explicit StaticBridge(const beam::BeamModel& model);
   StaticBridge(const StaticBridge&) = delete;
   StaticBridge& operator=(const StaticBridge&) = delete;
@@ -32,7 +32,7 @@ class StaticBridge {
   struct Bearing {
     double x = 0.0;
     int span_end = -1;       // number of a support's span end; -1: a spring
-    double stiffness = 0.0;  // N/m, of a spring
+    double stiffness = 0.0;  // stiffness of a spring, N/m
   };
   const std::vector<Bearing>& bearings() const { return bearings_; }
   InfluenceLine reaction(const Bearing& bearing);
@@ -43,7 +43,7 @@ class StaticBridge {
   InfluenceLine joint_rotation(int span_end);
 
   const beam::BeamModel& model() const { return beam_.model(); }
-  /// Hz, of bending.
+  /// The first bending frequency, Hz.
   double first_frequency() const;
 
  private:

@@ -14,7 +14,7 @@ enum class Effect { deflection, moment, shear, reaction, end_rotation, joint_rot
 struct EffectRow {
   std::string_view name, words, unit;
 };
-/// In the order of Effect.
+/// The effects in the order of Effect.
 inline constexpr EffectRow effect_rows[] = {
     {"deflection", "deflection", "m"},
     {"moment", "moment", "N m"},
@@ -27,12 +27,12 @@ inline constexpr std::size_t effect_count = std::size(effect_rows);
 
 /// Extremes of one load at one place, each with the position of the load's x = 0.
 struct Extremes {
-  Placed least, greatest;  // signed; the former not above 0
+  Placed least, greatest;  // signed; `least` is not above 0
 
   double size() const { return greatest.value > -least.value ? greatest.value : -least.value; }
 };
 
-/// A place of the bridge with the length of its span; at a support the shorter one.
+/// A place of the bridge with the length of its span; at a support the length of the shorter span.
 struct Place {
   double x = 0.0, span = 0.0;  // m
   std::size_t number = 0;      // index of the span
@@ -64,8 +64,8 @@ struct StaticEffects {
   }
 };
 
-/// Evaluates the effects at stations at most `spacing` m apart in each span (0: at its twentieths) and at the given
-/// ones; next to each support on both sides, at a distance of a millionth of the span.
+/// Evaluates the effects at stations at most `spacing` m apart in each span (0: at its twentieths), at the given
+/// stations, and on both sides of each support at a distance of a millionth of the span.
 StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads, double spacing,
                              const std::vector<double>& given_stations);
 

@@ -9,9 +9,9 @@ namespace traverse::options {
 /// Whether the first column must increase from row to row.
 enum class Order { unsorted, rising };
 
-/// The columns of the file, all of the same length. Throws InputError with file and line if a line has not as many
-/// numbers as the first one, fewer than `least` or more than `most`, or a word that is not a finite number or not a
-/// quantity.
+/// The columns of the file, all of the same length. Throws InputError with file and line if a line and the first line
+/// have different numbers of entries, if a line has fewer than `least` or more than `most` entries, or if a word is not
+/// a finite number or not a quantity.
 std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most,
                                               Order order = Order::unsorted);
 

@@ -131,7 +131,7 @@ std::string help_text(const std::string& about) {
   for (const std::string_view name : {std::string_view(wanted), group_of(wanted)})
     for (const HelpGroup& group : groups)
       if (out.empty() && group.name == name) append(group, out);
-  if (!out.empty()) return out.substr(1);
+  if (!out.empty()) return out.substr(1);  // without the leading newline
   for (const HelpGroup& group : groups) {
     names += group.name + ", ";
     candidates.push_back(group.name);
@@ -142,7 +142,7 @@ std::string help_text(const std::string& about) {
                   [&](const HelpGroup::Option& option) { return option.name != wanted && option.row->name != wanted; });
     if (!group.options.empty()) append(group, out);
   }
-  if (!out.empty()) return out.substr(1);
+  if (!out.empty()) return out.substr(1);  // without the leading newline
   const std::string near = nearest(wanted, candidates);
   throw InputError(
       fmt::format("help = {}: not an option or a group of options{}; allowed: {}integrators, man, bash, or an option",

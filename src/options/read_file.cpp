@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t deepest_include = 64, most_includes = 1000;
 constexpr int deepest_block = 64;
-constexpr std::size_t most_characters = 16 << 20;  // of a file, and of its text with all anchors expanded
+constexpr std::size_t most_characters = 16 << 20;  // limit for a file, and for its text with all anchors expanded
 
 std::string at(const std::string& file, int line) { return fmt::format("{}:{}: ", file, line); }
 
@@ -286,7 +286,7 @@ std::vector<Entry> parse_classic(const std::string& text, const std::string& nam
 
 std::vector<Entry> parse_words(const std::vector<std::string>& words, const std::string& source, int line) {
   std::vector<Entry> entries;
-  bool has_value = true;  // of the last entry, so that a further word has no name
+  bool has_value = true;  // whether the last entry has a value: then a further word has no name
   for (const std::string& word : words) {
     if (is_name(word)) {
       check_name(word, source, line);

@@ -22,13 +22,13 @@ std::vector<Entry> read_classic_file(const std::string& path);
 /// The words of a line; blanks in "..." and '...' do not separate words, # begins a comment. where: prefix of messages.
 std::vector<std::string> split_words(const std::string& line, const std::string& where);
 
-/// The entries of words as on a command line: `-name value` or `-name` alone. A word that begins with a dash and a
-/// letter is a name, `-5.0` is a value. Throws InputError for a value without a name.
+/// The entries of words in the form of a command line: `-name value` or `-name` alone. A word that begins with a dash
+/// and a letter is a name, `-5.0` is a value. Throws InputError for a value without a name.
 std::vector<Entry> parse_words(const std::vector<std::string>& words, const std::string& source, int line);
 
-/// The path of the file that the file `named_in` names `path`: relative to the folder of `named_in`, else to the
-/// working directory, else to the installed files (share/traverse, which has options/); empty if there is none. An
-/// empty `named_in` means the command line, whose paths are relative to the working directory.
+/// The path of the file that the file `named_in` names `path`. It is searched relative to the folder of `named_in`,
+/// then to the working directory, then to the installed files (share/traverse, which has options/); empty if it is not
+/// found. An empty `named_in` means the command line, whose paths are relative to the working directory.
 std::string find_file(const std::string& path, const std::string& named_in);
 
 }  // namespace traverse::options

@@ -59,6 +59,7 @@ constexpr Row beam_rows[] = {
   {"beam_EA", number_or_file, "N", "", beam_stiffness, "", 0, "axial stiffness, or a file x,value; only needed for longitudinal action"},
   {"beam_GA", number_or_file, "N", "", beam_stiffness, "", 0, "shear stiffness kappa G A (Timoshenko beam), or a file x,value; without it: no shear deformation"},
   {"beam_rotary_inertia", number_or_file, "kg m", "", not_negative, "", 0, "rotary inertia rho I about the neutral axis, or a file x,value; without it: none"},
+  {"beam_tension", number_or_file, "N", "", positive, "", 0, "tension of the beam, or a file x,value: stiffens it against its slope; compression is not modelled"},
   {"beam_mass", number_or_file, "kg/m", "", beam_weight, "", 0, "mass per length, or a file x,value"},
   {"beam_continuity", choice_list, "", "continuous", any, "continuous simply_supported hinge", 0, "connection at each inner span end, one word applies to all; simply_supported: two separate beams end there"},
   {"beam_hinges", numbers, "m", "", not_negative, "", 0, "stations of hinges within spans"},
@@ -253,7 +254,7 @@ constexpr Row vary[] = {
   {"uniform", texts, "", "", any, "", 2, "draws from the uniform distribution between these two values"},
   {"normal", texts, "", "", any, "", 2, "draws from the normal distribution with this mean and standard deviation"},
   {"lognormal", texts, "", "", any, "", 2, "draws from the lognormal distribution (values above 0) with this mean and standard deviation"},
-  {"also", texts, "", "", any, "", 0, "further options that have the same values"},
+  {"also", texts, "", "", any, "", 0, "other options that take the value of this one in every run"},
 };
 constexpr Row vary_list = {"", texts, "", "", any, "", 0, "values: a list, from:to for whole numbers, or from:to:step; speeds may be in km/h"};
 

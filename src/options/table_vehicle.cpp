@@ -124,7 +124,7 @@ constexpr Row sensor[] = {
 
 struct PartTable {
   std::string_view list, word;
-  std::span<const Row> rows;  // of joints: joint_rows()
+  std::span<const Row> rows;  // rows of joints: joint_rows()
 };
 constexpr std::array<PartTable, part_kinds> parts = {{{"bodies", "body", body},
                                                       {"joints", "joint", {}},

@@ -18,25 +18,25 @@ namespace traverse::rail {
 struct Loads {
   bool strains = false;         // temperatures of deck and rail, settlements
   double from = 0.0, to = 0.0;  // m: ends of a train, below which sleepers are loaded; equal: none
-  double weight = 0.0;          // N/m, of this train
+  double weight = 0.0;          // weight of this train, N/m
   double along_from = 0.0, along_to = 0.0, along = 0.0;  // m, N/m: forces on the rail, positive along x
 };
 
 struct State {
   std::vector<double> v;  // m and rad, all unknowns
   structure::NonlinearFoundation::History slid;
-  std::vector<double> stress;        // Pa, of each rail element: EA u'/A, without the stress of a restrained rail
-  std::vector<double> displacement;  // m, of the rail relative to the deck or the ground, at each sleeper
-  std::vector<double> bearings;      // N along x on the bridge, of each bearing
-  std::vector<double> ends;          // m along x, of the deck's running surface at each end
-  std::vector<double> openings;      // m, of each expansion device of the rail
-  double rail_ends = 0.0;            // N along x on the rail, reaction at its ends
+  std::vector<double> stress;  // stress of each rail element, Pa: EA u'/A, without the stress of a restrained rail
+  std::vector<double> displacement;  // displacement of the rail relative to the deck or the ground at each sleeper, m
+  std::vector<double> bearings;      // force along x of each bearing on the bridge, N
+  std::vector<double> ends;          // displacement along x of the deck's running surface at each end, m
+  std::vector<double> openings;      // opening of each expansion device of the rail, m
+  double rail_ends = 0.0;            // reaction along x on the rail at its ends, N
 };
 
 /// A bridge with a layered track and axial unknowns, on this rank only.
 class RailBridge {
  public:
-  /// rail_area: of both rails, m2. greatest_load: N, of all loads; residual forces are relative to it.
+  /// rail_area: area of both rails, m2. greatest_load: largest of all loads, N; residual forces are relative to it.
   RailBridge(const beam::BeamModel& model, double rail_area, double greatest_load);
   RailBridge(const RailBridge&) = delete;
   RailBridge& operator=(const RailBridge&) = delete;
@@ -49,7 +49,7 @@ class RailBridge {
   const std::vector<double>& sleepers() const { return sleepers_; }  // m
   /// Supports along x, then longitudinal point springs.
   const std::vector<double>& bearings() const { return bearings_; }    // m
-  const std::vector<double>& ends() const { return ends_; }            // m: of every span, left and right
+  const std::vector<double>& ends() const { return ends_; }            // left and right end of every span, m
   const std::vector<double>& devices() const { return devices_.x(); }  // m: expansion devices of the rail
   /// Pa, of each rail element: thermal stress of a rail that cannot expand.
   const std::vector<double>& restrained_stress() const { return restrained_stress_; }

@@ -17,7 +17,7 @@ namespace traverse::rail {
 struct Peak {
   double value = 0.0;
   double x = 0.0;      // m
-  double front = 0.0;  // m, of the train
+  double front = 0.0;  // position of the train's front, m
 
   void update(double new_value, double new_x, double new_front) {
     if (std::abs(new_value) > std::abs(value)) *this = {new_value, new_x, new_front};
@@ -25,16 +25,17 @@ struct Peak {
 };
 
 struct CaseResult {
-  std::string_view name;                          // name in the results file
-  std::string_view words;                         // name on the terminal
-  bool computed = false;                          // it was computed
-  std::vector<double> least, greatest;            // Pa, of each rail element: additional stress
-  std::vector<double> least_slip, greatest_slip;  // m, of each sleeper: rail relative to deck or ground
-  Peak tension, compression;                      // Pa
-  Peak slip, end;                                 // m, the latter of the running surface at deck ends
-  Peak opening;                                   // m, of expansion devices
-  std::vector<Peak> bearings;                     // N along x, of each bearing
-  std::vector<Peak> openings;                     // m, of each expansion device
+  std::string_view name;                // name in the results file
+  std::string_view words;               // name on the terminal
+  bool computed = false;                // it was computed
+  std::vector<double> least, greatest;  // additional stress of each rail element, Pa
+  std::vector<double> least_slip,
+      greatest_slip;           // displacement of the rail relative to deck or ground at each sleeper, m
+  Peak tension, compression;   // Pa
+  Peak slip, end;              // m; end: displacement of the running surface at deck ends
+  Peak opening;                // opening of expansion devices, m
+  std::vector<Peak> bearings;  // force along x of each bearing, N
+  std::vector<Peak> openings;  // opening of each expansion device, m
 };
 
 /// Index in RailForces::cases_.
@@ -67,9 +68,9 @@ class RailForces {
 
   options::RailLoads loads_;
   RailBridge bridge_;
-  State thermal_;  // under temperature only
+  State thermal_;  // state under temperature only
   std::vector<CaseResult> cases_;
-  double length_;  // m, of the bridge
+  double length_;  // length of the bridge, m
   double residual_ = 0.0;
 };
 

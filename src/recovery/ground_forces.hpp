@@ -17,11 +17,11 @@ class GroundForces {
   /// Collective, from this rank's slices of the nodal vectors; the results are complete on every rank.
   void evaluate(const double* v, const double* w, const double* a);
 
-  /// Forces of a kind of foundation on the structure, N upward or to the right, N m: of points in the model's order, of
-  /// a bed the resultant over each span. Longitudinal kinds exist only with axial unknowns.
+  /// Forces of a kind of foundation on the structure, N upward or to the right, or N m. Points are in the model's
+  /// order; a bed has its resultant over each span. Longitudinal kinds exist only with axial unknowns.
   const double* of_kind(std::size_t kind) const { return &sums_[first_[kind]]; }
-  /// Resultants {x, y}: of all these forces and the ground under a layered track, of this ground alone, of inertia, and
-  /// of the drag a M w of mass-proportional damping.
+  /// Resultants {x, y}: of all forces of the foundation and the ground under a layered track; of this ground alone; of
+  /// the inertia forces; of the drag a M w of mass-proportional damping.
   std::array<double, 2> foundation() const;
   std::array<double, 2> track_bed() const { return {sums_[track_], sums_[track_ + 1]}; }
   std::array<double, 2> inertia() const { return {sums_[inertia_], sums_[inertia_ + 1]}; }

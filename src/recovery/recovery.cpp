@@ -1,5 +1,5 @@
-// Gathers the nodal values of the stations' elements over ranks, applies the precomputed forms of each section, and
-// adds the loads and sleepers inside the element.
+// Gathers the nodal values of the stations' elements over ranks, applies the precomputed coefficients of each section,
+// and adds the loads and sleepers inside the element.
 #include "recovery/recovery.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace traverse::beam {
 namespace {
 
 constexpr double station_tolerance =
-    1e-7;  // of an element: largest distance of a load from a station at which it passes
+    1e-7;  // largest distance of a load from a station at which it passes, relative to an element's length
 
 }  // namespace
 

@@ -17,7 +17,7 @@ struct ElementLoad {
   double xi = 0.0;
   double fx = 0.0, fy = 0.0, moment = 0.0;
   double speed = 0.0;
-  double extent = 0.0;  // of xi: spread uniformly over xi -+ extent/2 within the element; 0: concentrated
+  double extent = 0.0;  // the load is spread uniformly over xi -+ extent/2 within the element; 0: concentrated
 };
 
 /// Response at one station. Deflection positive upward, moment positive in sagging (EI v'' > 0),
@@ -41,25 +41,26 @@ using Forces = std::array<double, 3>;
 
 struct RecoverySection;
 
-/// The response of a station without loads inside its element: linear forms of the unknowns of its element and of the
-/// sleepers on it.
+/// The response of a station without loads inside its element, as linear combinations of the unknowns of its element
+/// and of the sleepers on it. A Form has the coefficient of each unknown.
 struct StationForms {
   using Form = std::vector<double>;
   int element = 0;
-  std::vector<int> unknown;                                 // global
-  std::array<Form, 3> deflection, moment;                   // of v, w and a; the moment without nodal_moment
-  Form acceleration, nodal_moment;                          // of a; of v
+  std::vector<int> unknown;                // global
+  std::array<Form, 3> deflection, moment;  // coefficients of v, w and a; the moment without nodal_moment
+  Form acceleration, nodal_moment;         // coefficients of a; coefficients of v
   double constant_deflection = 0.0, constant_moment = 0.0;  // by weight and temperature
 };
 
-/// Evaluates responses: linear forms of the nodal values of a station's element, plus the effect of loads inside it.
+/// Evaluates responses: linear combinations of the nodal values of a station's element, plus the effect of loads inside
+/// it.
 class Recovery {
  public:
-  /// For the bridge or the rail; throws InputError for stations that are not on it. `self_weight` is gravity if it
-  /// loads the beam, otherwise 0. At a node the response is that of the element on its right (at the end of the beam:
-  /// left).
+  /// Responses of the bridge or the rail; throws InputError for stations that are not on it. `self_weight` is gravity
+  /// if it loads the beam, otherwise 0. At a node the response is computed in the element on its right (at the end of
+  /// the beam in the element on its left).
   Recovery(const Beam& beam, const Line& line, std::vector<double> stations, double self_weight);
-  /// For the bridge.
+  /// Responses of the bridge.
   Recovery(const Beam& beam, std::vector<double> stations, double self_weight)
       : Recovery(beam, beam.bridge(), std::move(stations), self_weight) {}
   Recovery(Recovery&&) noexcept;
@@ -87,7 +88,7 @@ class Recovery {
   bool is_outside(double x) const { return x < line_.mesh.start() || x > line_.mesh.end(); }
   /// The contribution of a load to the forces if it acts at x inside the station's element; zero elsewhere.
   Forces inside(std::size_t station, double x, ElementLoad load) const;
-  /// The same for a load that is assigned to the given side of the station, independent of its position.
+  /// The contribution of a load that is assigned to the given side of the station, independent of its position.
   Forces inside(std::size_t station, double x, const ElementLoad& load, bool as_left) const;
   /// Whether evaluate() assigns the load to the left side of the station.
   bool is_left_of(std::size_t station, const ElementLoad& load) const;
@@ -97,8 +98,8 @@ class Recovery {
   Response inside_response(std::size_t station, const ElementLoad& load) const;
   /// The deflection of inside_response, m.
   double deflection_inside(std::size_t station, const ElementLoad& load) const;
-  /// Adds `factor` times the deflection of a station on the bridge, as a form of this rank's nodal displacements, to
-  /// `forces`. Returns the contribution of the beam's weight to the deflection between nodes, m.
+  /// Adds the coefficients of this rank's nodal displacements in `factor` times the deflection of a station on the
+  /// bridge to `forces`. Returns the contribution of the beam's weight to the deflection between nodes, m.
   double add_deflection_form(std::size_t station, double factor, double* forces) const;
 
  private:

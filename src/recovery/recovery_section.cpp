@@ -1,5 +1,5 @@
-// Linear forms of one section from the element's stiffness, mass, foundation and temperature, and from the deflection
-// of the element clamped at both ends.
+// Coefficients of the nodal values in the response of one section, from the element's stiffness, mass, foundation and
+// temperature, and from the deflection of the element clamped at both ends.
 #include "recovery/recovery_section.hpp"
 
 #include "beam/assembly.hpp"
@@ -39,7 +39,7 @@ RecoverySection::RecoverySection(const Line& line, double x)
   if (model.temperature) add_strains(model);
 }
 
-/// Subtracts the forces of the temperature: the elastic strain is the total strain minus that of the temperature.
+/// Subtracts the forces of the temperature: the elastic strain is the total strain minus the thermal strain.
 void RecoverySection::add_strains(const BeamModel& model) {
   const auto nodal_load = strain_load(model, element);
   weight.shear -= nodal_load[0];
@@ -98,8 +98,8 @@ void RecoverySection::integrate_held(const Distribution& density, bool moments, 
     });
 }
 
-/// Computes the forms of the clamped element on its springs and on the mean of a vertical bed. The effect of a bed that
-/// resists the slope on the deflection between clamped ends is neglected; it is the part k h^2/(40 EI) of it.
+/// Computes the coefficients for the clamped element on its springs and on the mean of a vertical bed. The effect of a
+/// bed that resists the slope on the deflection between clamped ends is neglected; it is the part k h^2/(40 EI) of it.
 void RecoverySection::set_up_held_element(const BeamModel& model, const std::vector<InnerSpring>& springs,
                                           const std::vector<InnerSpring>& dampers) {
   const double h = element.length;

@@ -14,17 +14,17 @@
 
 namespace traverse::beam {
 
-/// All forms apply to the element's nodal values, the transverse ones to v1, theta1, v2, theta2.
+/// All coefficients refer to the element's nodal values; in transverse direction these are v1, theta1, v2, theta2.
 struct RecoverySection {
-  /// For the bridge or the rail, at a station x (m) on it. At a node it is in the element on the right.
+  /// The section of the bridge or the rail at a station x (m) on it. At a node it is in the element on the right.
   RecoverySection(const Line& line, double x);
 
   /// Adds the dead weight of the beam to `weight`; `gravity` in m/s2.
   void add_weight(const BeamModel& model, double gravity);
   /// Stores the sleepers on this element of the bridge.
   void record_sleepers(const Beam& beam);
-  /// Adds the effect of a load on this element to the response, without that of the element's end forces, which follows
-  /// from the nodal values.
+  /// Adds the effect of a load on this element to the response, without the effect of the element's end forces, which
+  /// follows from the nodal values.
   void add_load(const ElementLoad& load, Response& r) const;
 
   /// A sleeper of a layered track on this element.

@@ -1,5 +1,5 @@
-// Pad and ballast forces as linear forms of the displacements and velocities above and below each spring, summed over
-// ranks.
+// Pad and ballast forces as linear combinations of the displacements and velocities above and below each spring, summed
+// over ranks.
 #include "recovery/sleeper_forces.hpp"
 
 #include <algorithm>

@@ -11,7 +11,7 @@ struct Sleeper;
 
 class SleeperForces {
  public:
-  /// For the sleepers nearest to these stations of a layered track, m.
+  /// Forces of the sleepers nearest to these stations of a layered track, m.
   SleeperForces(const Beam& beam, const std::vector<double>& stations);
 
   /// Collective, from this rank's slices of the nodal displacements and their rates; complete on every rank.
@@ -32,7 +32,7 @@ class SleeperForces {
   };
   /// Adds `factor` times the displacement of an unknown to the compression of a spring; -1: it does not move.
   void add(std::size_t sum, int unknown, const Spring& spring, double factor);
-  /// The same for the bridge's deflection below a sleeper.
+  /// Adds the bridge's deflection below a sleeper to the compression of a spring.
   void add_bridge(std::size_t sum, const Sleeper& s, const Spring& spring);
   void add_sleeper(std::size_t i, const Sleeper& s);
 

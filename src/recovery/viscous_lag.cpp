@@ -9,7 +9,7 @@ namespace traverse::beam {
 namespace {
 
 constexpr double same_load =
-    0.1;  // of its displacement: tolerance of the expected position of a load at the previous call
+    0.1;  // tolerance of a load's expected position at the previous call, relative to its displacement
 
 ElementLoad between(const ElementLoad& from, const ElementLoad& to, double part) {
   const auto at = [&](double a, double b) { return a + part * (b - a); };
@@ -53,8 +53,8 @@ void ViscousLag::record_moved(const std::vector<ElementLoad>& loads) {
 
 /// The contributions of loads that move through the station's element, at the ends of parts of the interval, as if each
 /// load remained on the side of the station from which it came, and the jumps when they pass the station. Returns
-/// whether there are such loads. The side of a load is that of evaluate(), because rounding determines it at the
-/// station.
+/// whether there are such loads. A load is on the side that evaluate() assigns to it, because rounding determines the
+/// side at the station.
 bool ViscousLag::add_passing_loads(std::size_t station, History& by_loads) {
   const auto [left, right] = recovery_.element_of(station);
   const double x = recovery_.stations()[station];

@@ -15,17 +15,18 @@ namespace traverse::beam {
 /// changes with the time constant b.
 class ViscousLag {
  public:
-  /// For the stations of `recovery`, which must outlive this object; b in s, above 0.
+  /// The lag at the stations of `recovery`, which must outlive this object; b in s, above 0.
   ViscousLag(const Recovery& recovery, double b) : recovery_(recovery), b_(b), inner_(recovery.stations().size()) {}
 
-  /// For all stations at ascending times, with the loads of evaluate(): replaces c by m in moment, shear and axial
-  /// force, and sets moment_rate and the unrelaxed forces. Between calls the loads move uniformly and all other parts
-  /// of c change linearly; at the first call the beam is at rest, m = c.
+  /// Replaces c by m in moment, shear and axial force of all stations, and sets moment_rate and the unrelaxed forces.
+  /// The times of the calls must be ascending; `loads` are the loads of evaluate(). Between calls the loads move
+  /// uniformly and all other parts of c change linearly; at the first call the beam is at rest, m = c.
   void apply(double t, const std::vector<ElementLoad>& loads, std::vector<Response>& responses);
   void keep(base::Bytes& bytes) { bytes(time_, interval_, inner_, loads_, first_); }
 
  private:
-  static constexpr std::size_t parts = 16;  // of an interval in which a load passes through a station's element
+  static constexpr std::size_t parts =
+      16;  // divisions of an interval in which a load passes through a station's element
   using History = std::array<Forces, parts + 1>;
   struct Inner {
     Forces c{}, m{}, unrelaxed{};  // unrelaxed: parts of jumps that m does not contain yet
@@ -49,9 +50,9 @@ class ViscousLag {
 
   const Recovery& recovery_;
   double b_;
-  double time_ = 0.0, interval_ = 0.0;  // of the latest call, and since the previous one, s
-  std::vector<Inner> inner_;            // of each station
-  std::vector<ElementLoad> loads_;      // of the latest call
+  double time_ = 0.0, interval_ = 0.0;  // time of the latest call, and interval since the previous call, s
+  std::vector<Inner> inner_;            // state of each station
+  std::vector<ElementLoad> loads_;      // loads of the latest call
   std::vector<Moved> moved_;
   std::vector<char> found_;  // for each of loads_: whether it is on the beam at the present call too
   std::vector<Jump> jumps_;  // at the present station

@@ -131,7 +131,7 @@ std::string contents(const std::string& path) {
   return text;
 }
 
-/// Whether a file name and its data are present, or neither.
+/// Whether a file name and its data are both present or both missing.
 bool is_possible(const Recorder::Earlier& results) {
   if (results.file.empty()) return results.rows == 0 && results.objects.empty() && results.digests.empty();
   return results.file.find('\0') == std::string::npos && results.rows >= 1 && !results.objects.empty() &&

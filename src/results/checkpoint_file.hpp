@@ -24,7 +24,7 @@ struct Checkpoint {
   double end_time = 0.0, time_step = 0.0, interval = 0.0;  // values of the run's plan, s
   long stored = 1;                                         // value of the run's plan
   double wall_seconds = 0.0;                               // duration of the time loop so far
-  int given_ranks = 1;  // number of ranks of the run; those in of_ranks computed the steps
+  int given_ranks = 1;  // number of ranks of the run; the ranks in of_ranks computed the steps
   Repeated repeated;
   Recorder::Earlier results;
   std::vector<std::string> of_ranks;  // state of each rank, from base::Archive
@@ -36,11 +36,11 @@ struct Checkpoint {
   }
 };
 
-/// Collective. state: of this rank. Throws FileError on the first rank, which writes, if the checkpoint cannot be
-/// written; then the former one remains.
+/// Collective. state: state of this rank. Throws FileError on the first rank, which writes, if the checkpoint cannot be
+/// written; then the former checkpoint remains.
 void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& state);
-/// Collective. The same on all ranks. FileError if the file is no checkpoint, damaged, or of another version of the
-/// program.
+/// Collective. Returns the checkpoint on all ranks. FileError if the file is no checkpoint, damaged, or of another
+/// version of the program.
 Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path);
 /// Removes the file if it exists and is a checkpoint. Only rank 0 acts.
 void remove_checkpoint(MPI_Comm comm, const std::string& path);

@@ -84,19 +84,19 @@ class File {
   /// A complete dataset with its attribute `unit`; missing parent groups are created.
   void dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
                const std::string& unit);
-  /// The same for a dataset that is never rewritten; small ones are stored in their object header.
+  /// A complete dataset that is never rewritten; a small one is stored in its object header.
   void fixed_dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
                      const std::string& unit);
   /// Overwrites the values of an existing dataset, without a change of metadata.
   void rewrite(const std::string& name, const std::vector<double>& values);
   /// Unchanged text in two columns, [n,2].
   void texts(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows);
-  /// The same, with escapes for characters that readers reject.
+  /// Unchangeable text in two columns, with escapes for characters that readers reject.
   void table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows);
 
   /// Sets the unit of a dataset that has none yet.
   void label(const Id& dataset, const std::string& unit);
-  /// Returns the dataset if its owner may hold it open, or an invalid one if too many are open.
+  /// Returns the dataset if its owner may keep it open, or an invalid identifier if too many datasets are open.
   Id hold_open(Id dataset);
 
   hid_t id() const { return file_.get(); }
@@ -118,8 +118,9 @@ class File {
   std::size_t open_ = 0;  // datasets held open
 };
 
-/// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. The first 2,000 of a file remain open, the
-/// others are open only during a write: an open one needs 20 kB, and a long train has fifty thousand.
+/// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. The first 2,000 datasets of a file remain
+/// open, the others are open only during a write, because an open dataset needs 20 kB and a long train has fifty
+/// thousand.
 class Series {
  public:
   struct Rows {

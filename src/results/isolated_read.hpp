@@ -13,7 +13,7 @@ namespace traverse::results {
 std::string isolated_bytes(const std::string& path, const std::function<void(base::Bytes&)>& read);
 
 /// The result of `read` in a child process. An Error that it throws is thrown here. FileError if the process ends by a
-/// signal, or exceeds the processor time or memory that such a file can need. path: of the file, for messages.
+/// signal, or exceeds the processor time or memory that such a file can need. path: path of the file, for messages.
 template <class Read>
 auto isolated_read(const std::string& path, Read&& read) {
   const std::string written = isolated_bytes(path, [&](base::Bytes& bytes) {

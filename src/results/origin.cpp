@@ -128,7 +128,7 @@ std::vector<options::Entry> origin_of(const std::string& path) {
     double line = 0.0;
     (void)options::parse_number(sources[i].second, line);
     if (stored[i].first == "output_file" || is_of_single_run(stored[i].first)) continue;
-    // All entries are in a file now, also those of the command line: the files that they name are found in it.
+    // All entries are in a file now, also the entries of the command line: the files that they name are found in it.
     entries.push_back(
         {stored[i].first, stored[i].second, prefix + sources[i].first, std::max(1, static_cast<int>(line))});
   }

@@ -19,8 +19,8 @@ void record_origin(hdf5::File& file);
 /// Whether the path is an existing HDF5 file.
 bool is_hdf5(const std::string& path);
 
-/// The options of the run of a results file, except for its output file and those of a single run. Afterwards files
-/// that they name are read from the results file. InputError if it contains no options.
+/// The options of the run of a results file, except for its output file and options that apply to a single run only.
+/// Afterwards files that the options name are read from the results file. InputError if it contains no options.
 std::vector<options::Entry> origin_of(const std::string& path);
 /// The results file that origin_of has read; empty: none.
 const std::string& opened_origin();

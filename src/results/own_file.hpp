@@ -44,7 +44,7 @@ FileId id_of(const Descriptor& file) noexcept;
 
 /// Creates a file at a free path; invalid on failure, with the reason in errno.
 Descriptor make_file(const std::string& path);
-/// Opens an existing ordinary file, neither a link nor one that blocks.
+/// Opens an existing ordinary file. Links and files that block are rejected.
 Descriptor open_ordinary(const std::string& path, bool to_write);
 
 /// Whether the file is HDF5 with the attribute program = "traverse".

@@ -1,5 +1,5 @@
-// Creates or opens the results file, locks it (flock), checks that it is one of Traverse's own, and removes what was
-// created if the run ends before it has results.
+// Creates or opens the results file, locks it (flock), checks that Traverse has written it, and removes created files
+// and folders if the run ends before it has results.
 #include "results/place.hpp"
 
 #include <sys/file.h>

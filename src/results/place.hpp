@@ -18,8 +18,8 @@ namespace traverse::results {
 class Place {
  public:
   Place() = default;
-  /// An empty path is no place. FileError if the path is a folder, a link or a special file, cannot be written, is open
-  /// in another process, or is a file that is no results file of Traverse.
+  /// Claims a path; with an empty path there is no file. FileError if the path is a folder, a link or a special file,
+  /// cannot be written, is open in another process, or is a file that is no results file of Traverse.
   explicit Place(std::string path);
   Place(Place&& other) noexcept;
   Place& operator=(Place&& other) noexcept;

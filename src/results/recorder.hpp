@@ -55,23 +55,23 @@ struct Shape {
 /// A loss of contact until the following impact.
 struct Separation {
   std::string vehicle, contact;  // its number in the train, the wheel or contact
-  double x = 0.0;                // m, of its body at the separation
+  double x = 0.0;                // position of its body at the separation, m
   double start = 0.0;            // s
   double duration = 0.0;         // s
   double approach_speed = 0.0;   // m/s; 0: no impact until the end
-  double impact_force = 0.0;     // N, the greatest of the following compression
+  double impact_force = 0.0;     // N, greatest force of the following compression
 };
 
 /// Extremes over the run, for the terminal and as attributes of /summary.
 struct Extreme {
-  double value = 0.0;  // signed, of the largest magnitude
+  double value = 0.0;  // value of the largest magnitude, with its sign
   double time = 0.0;
   double place = 0.0;  // station, m
 };
 /// The peak of a filtered quantity.
 struct LowPassed {
   Extreme extreme;
-  double frequency = 0.0, interval = 0.0;  // Hz of the filter, s between its input instants
+  double frequency = 0.0, interval = 0.0;  // frequency of the filter, Hz; interval of its input instants, s
   std::string filter;                      // its name
 };
 /// The largest unloading of a wheel, relative to its initial force.
@@ -79,13 +79,13 @@ struct Unloading {
   double value = 0.0, time = 0.0;  // s
   std::string wheel{};             // "vehicle 3, rear_wheel"
 };
-/// The same for low-passed forces, with the longest time of unloading.
+/// The largest unloading of a wheel by low-passed forces, with the longest time of unloading.
 struct FilteredUnloading {
   Unloading extreme;
-  double frequency = 0.0, interval = 0.0;  // Hz of the filter, s between its input instants
+  double frequency = 0.0, interval = 0.0;  // frequency of the filter, Hz; interval of its input instants, s
   std::string filter;                      // its name
   double level = 0.0;                      // unloading from which a wheel is considered unloaded
-  double longest = 0.0;                    // s without interruption
+  double longest = 0.0;                    // longest time without interruption, s
   double longest_from = 0.0;               // s
   std::string longest_wheel;
 };
@@ -109,12 +109,12 @@ struct Summary {
   double structure_energy = 0.0;  // largest kinetic and strain energy, J
   double linear_defect = 0.0;     // largest residual of linear vehicles' mechanisms, over their weights
   double energy_left = 0.0;       // removed outside the active window, J
-  /// The same relative to the structure's motion: the square root of energy_left over structure_energy.
+  /// The removed energy relative to the structure's motion: the square root of energy_left over structure_energy.
   double rest_error() const;
   double energy_scale =
       0.0;  // largest term, J, without initially stored energy and the forward motion of a driven train
   double largest_energy = 0.0;  // largest stored energy, J
-  double static_error = 0.0;    // relative, of static solutions, by rounding
+  double static_error = 0.0;    // relative rounding error of static solutions
   long steps = 0;
   long rejected_steps = 0;    // repeated with a shorter step
   long solves = 0;            // beam solves
@@ -139,7 +139,7 @@ class Recorder {
   Recorder(MPI_Comm comm, Place place, const Layout& layout,
            const std::vector<std::pair<std::string, std::string>>& attributes,
            const std::vector<std::pair<std::string, std::string>>& options);
-  /// The same; the place is claimed here.
+  /// Like the constructor above, but claims the place of the file itself.
   Recorder(MPI_Comm comm, const std::string& file, const Layout& layout,
            const std::vector<std::pair<std::string, std::string>>& attributes,
            const std::vector<std::pair<std::string, std::string>>& options);
@@ -189,7 +189,7 @@ class Recorder {
   void attributes(const std::string& group, const std::vector<Attribute>& list);
   /// Writes all buffered data and the summary as attributes, and closes the file. FileError if the disk fails.
   void finish(const Summary& summary);
-  /// The same with the summary of a study; those named in `at_root` become attributes of / too.
+  /// Like finish(), with the summary of a study. The attributes named in `at_root` are stored at / too.
   void finish_with(const std::vector<Attribute>& summary, const std::vector<std::string>& at_root = {});
 
  private:

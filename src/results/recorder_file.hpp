@@ -33,7 +33,7 @@ struct Recorder::Impl {
   std::size_t block_rows;
   std::size_t buffered = 0;  // samples in memory
   std::chrono::steady_clock::time_point last_flush = std::chrono::steady_clock::now();
-  double flush_cost = 0.0;           // s, of the last one
+  double flush_cost = 0.0;           // duration of the last flush, s
   std::vector<std::string> objects;  // objects of the file at the first call of secure()
   bool closed = false;
 

@@ -1,4 +1,4 @@
-// Prints the speeds that were added near the peaks.
+// Prints how many speeds were added and the remaining uncertainty of the peaks.
 #include "results/refined.hpp"
 
 #include <fmt/format.h>
@@ -15,15 +15,18 @@ long added_speeds(const Refined& refined) { return std::count(refined.added.begi
 
 void print(const Refined& refined) {
   const long added = added_speeds(refined), given = static_cast<long>(refined.added.size()) - added;
-  std::string remaining = "no peak over the speed is above what was found";
+  std::string remaining = "no speed between the computed ones can have a higher peak";
   if (refined.wanted == 0.0)
-    remaining = refined.uncertainty > 0.0
-                    ? fmt::format("a limit may still be broken between two of them ({}); -sweep_refine 1e-2 goes on",
-                                  refined.curve)
-                    : "no limit that is kept at them can be broken between two of them";
+    remaining =
+        refined.uncertainty > 0.0
+            ? fmt::format(
+                  "between two computed speeds a limit may still be exceeded ({}); -sweep_refine 1e-2 adds more speeds",
+                  refined.curve)
+            : "every limit that is satisfied at the computed speeds is also satisfied between them";
   else if (refined.uncertainty > 0.0)
-    remaining = fmt::format("peaks over the speed are at most {:.1g} above what was found ({}){}", refined.uncertainty,
-                            refined.curve, refined.uncertainty > refined.wanted ? ", more than was wanted" : "");
+    remaining = fmt::format("between the computed speeds, peaks can be at most {:.1g} higher than found ({}){}",
+                            refined.uncertainty, refined.curve,
+                            refined.uncertainty > refined.wanted ? ", more than the requested accuracy" : "");
   fmt::print("  {} speeds added to {}; {}\n", added, given, remaining);
 }
 

@@ -1,4 +1,4 @@
-// Writes the datasets of resonance speeds v = f d/i and cancellation speeds, and prints those of the first mode in
+// Writes the datasets of resonance speeds v = f d/i and cancellation speeds, and prints the speeds of the first mode in
 // km/h.
 #include "results/resonance.hpp"
 

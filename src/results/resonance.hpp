@@ -18,7 +18,7 @@ struct Resonance {
   double speed = 0.0;       // m/s, predicted
   double width = 0.0;       // m/s: change of speed by which the first and the last axle differ by one period
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  double of_deflection = none, of_acceleration = none;  // m/s, of the peaks that the sweep has there
+  double of_deflection = none, of_acceleration = none;  // m/s, speeds of the peaks of the sweep near this speed
 };
 
 /// A speed at which a force leaves no free vibration of one mode of a simple span.

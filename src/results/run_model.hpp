@@ -12,8 +12,8 @@ namespace traverse::results {
 
 struct RunModel {
   int modes = 0;           // 0: by elements
-  int elements = 0;        // elements of the longest span, or of the rail in a sleeper bay
-  bool in_bays = false;    // elements are those of a sleeper bay
+  int elements = 0;        // elements in the longest span, or rail elements in a sleeper bay
+  bool in_bays = false;    // `elements` is the number in a sleeper bay
   double time_step = 0.0;  // s; 0: exact in time, or chosen for each run
   double accuracy = 0.0;   // accuracy for which mesh, step and modes were chosen; 0: they were given
   /// Name and relative error of each peak with an error estimate.

@@ -20,12 +20,13 @@ struct StoredStudy {
   void keep(base::Bytes& bytes);
 };
 
-/// A digest of each run's row of results, in the order of the columns: a number below 2^53. datasets: as stored.
+/// A digest of each run's row of results, in the order of the columns: a number below 2^53. datasets: the stored
+/// datasets.
 std::vector<double> row_digests(const std::map<std::string, std::vector<double>>& datasets);
 inline constexpr const char* row_digest = "row_digest";  // the name of its dataset
 
-/// Empty if there is no file, or none with a study. FileError if it cannot be read, or if its rows differ from those
-/// that were written.
+/// Reads the study of a file; empty if there is no file or the file has no study. FileError if it cannot be read, or if
+/// its rows differ from the rows that were written.
 StoredStudy read_study(const std::string& path);
 
 }  // namespace traverse::results

@@ -27,7 +27,7 @@ class StudyStatistics {
   /// Statistics of one number (a column at a probe) over the finished runs of a group.
   struct Numbers {
     std::size_t samples = 0;
-    double mean = 0.0, deviation = 0.0;       // the latter of the samples, with n - 1
+    double mean = 0.0, deviation = 0.0;       // deviation of the samples, with n - 1
     std::vector<double> quantile, low, high;  // NaN without a bound
   };
   std::size_t groups() const { return groups_.size(); }

@@ -115,7 +115,7 @@ std::string point_text(const options::Study& study, std::size_t run) {
 
 namespace {
 
-/// Which run it is.
+/// Adds the values of the varied options in a run.
 void add_point(const options::Study& study, const std::string& name, std::size_t run, std::vector<Attribute>& list) {
   if (!study.sweep) return list.push_back({name + "_run", static_cast<long>(run)});
   for (const options::StudyDimension& d : study.dimensions) {
@@ -127,7 +127,7 @@ void add_point(const options::Study& study, const std::string& name, std::size_t
   }
 }
 
-/// The largest (or least) number of a column, where it is known: with its time, place and run.
+/// Adds the largest (or least) number of a column with its time, place and run, if it is known.
 void add_extreme(const StudyTable& table, const std::string& name, const std::string& column, bool largest,
                  std::vector<Attribute>& list) {
   StudyPlace place;

@@ -51,7 +51,7 @@ class StudyTable {
   std::vector<Verdict> verdicts() const;
   std::size_t runs() const { return runs_; }
   std::size_t probes() const { return probes_; }
-  /// Numbers in a row: those of each column, for each probe or one, in the order of the columns.
+  /// Numbers in a row, in the order of the columns; a column has one number, or one number for each probe.
   std::size_t width() const { return width_; }
   void put(std::size_t run, const double* row);
   /// Sets the reason why runs cannot evaluate the quantity of a limit, in words.
@@ -93,13 +93,13 @@ struct StudyPlace {
   double value = 0.0;
 };
 bool find_extreme(const StudyTable& table, const std::string& column, bool largest, StudyPlace& place);
-/// The same among the runs from first to end - 1.
+/// Searches only the runs from first to end - 1.
 bool find_extreme(const StudyTable& table, const std::string& column, bool largest, StudyPlace& place,
                   std::size_t first, std::size_t end);
 
 /// "track_seed 5, train_speed 83.3"; for a sweep "A3 at 83.3 m/s (300 km/h)".
 std::string point_text(const options::Study& study, std::size_t run);
-/// Peaks of all runs, each with its run, or for a sweep with its train and speed; unknown ones are omitted.
+/// Peaks of all runs, each with its run, or for a sweep with its train and speed. Unknown peaks are omitted.
 std::vector<Attribute> summary_of(const StudyTable& table);
 void print_study(const StudyTable& table);
 

@@ -54,7 +54,7 @@ std::vector<std::string> row_of(const StudyTable& table, std::size_t train, cons
               : "unknown"};
 }
 
-/// [trains, probes]: from the first run of each train that has it.
+/// Static deflections [trains, probes], from the first run of each train that has them.
 std::vector<double> static_deflections(const StudyTable& table) {
   const std::vector<double>& of_runs = table.find("static_deflection")->values;
   const std::size_t trains = trains_of(table.study()), probes = table.probes();

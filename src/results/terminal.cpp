@@ -134,7 +134,8 @@ std::string damped_part(const modes::DampedModes& modes, std::size_t i) {
                      modes.decay_rate(i), damped_kind(modes, i));
 }
 
-/// Whether each damped mode is the undamped one of its row: so for C = a M + b K, as long as all oscillate.
+/// Whether each damped mode corresponds to the undamped mode of its row. This is true for C = a M + b K if all modes
+/// oscillate.
 bool same_modes(const modes::Modes& modes, const modes::DampedModes& damped) {
   constexpr double rounding = 1e-9;
   if (modes.omega.size() != damped.size()) return false;

@@ -1,4 +1,4 @@
-// What a user reads while a run goes on: what was modelled, progress, and the summary. Rank 0 prints.
+// Output on the terminal during a run: the description of the model, the progress and the summary. Rank 0 prints.
 #pragma once
 
 #include <chrono>
@@ -13,19 +13,20 @@ namespace traverse::results {
 /// "12 ms", "3.4 s", "2 min 05 s", "1 h 10 min".
 std::string duration_text(double seconds);
 
-/// "modelled" lines: each one a thing and, after it, why or how it was chosen.
+/// Prints the lines "modelled": each has a part of the model, followed by the reason or method of its choice.
 void print_modelled(const std::vector<std::string>& lines);
 
-/// A table: each column as wide as its longest text, which stands on the right.
+/// Prints a table. Each column is as wide as its longest text; texts are aligned on the right.
 void print_columns(std::vector<std::vector<std::string>> rows);
 
-/// Progress with the time left: on a terminal one line rewritten, otherwise a line every tenth of the run and every
-/// half minute, and none for runs that end within two seconds. Costs nothing measurable when called every step.
+/// Prints progress with the remaining time: on a terminal in one line that is rewritten, otherwise in a line for each
+/// tenth of the run and every half minute. Runs that end within two seconds have no such line. The cost of a call in
+/// every step is not measurable.
 class Progress {
  public:
   Progress(double start, double end, bool quiet);
   void update(double t, long steps);
-  /// Of a sweep from 0 to 1: the part of its work that is done, and how many of its runs.
+  /// Progress of a sweep: the completed part of its work, from 0 to 1, and the number of completed runs.
   void runs(double part, std::size_t done, std::size_t all);
   void done();
 
@@ -41,7 +42,8 @@ class Progress {
 };
 
 void print_summary(const Summary& summary, const std::string& file);
-/// With damping each row ends with a damped mode. Both sides ascend; where they are not the same modes, a line says so.
+/// Prints natural modes; with damping each row ends with a damped mode. Both lists are ascending. If a row has two
+/// different modes, a line reports it.
 void print_modes(const modes::Modes& modes, double omega1, double omega2, double rayleigh_a, double rayleigh_b,
                  const modes::DampedModes& damped = {});
 

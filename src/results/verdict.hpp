@@ -28,7 +28,7 @@ struct Verdict {
   options::VerdictLimit limit;
   std::string unit;
   EvaluatedQuantity found;
-  std::size_t runs = 1, exceeded_in = 0;  // number of runs with this quantity, and of those that exceed the limit
+  std::size_t runs = 1, exceeded_in = 0;  // number of runs with this quantity, and number of runs that exceed the limit
 
   bool evaluated() const { return found.why.empty(); }
   bool within_limit() const { return found.value <= limit.value; }
@@ -45,7 +45,7 @@ void print_verdicts(const std::vector<Verdict>& verdicts, const std::vector<std:
 struct LimitResults {
   std::vector<options::VerdictLimit> limits;
   std::vector<double> value, x;  // [runs][limits], EvaluatedQuantity::unknown if a run does not have it; m
-  std::vector<std::string> why;  // [limits], of runs without the quantity
+  std::vector<std::string> why;  // [limits], reason of runs without the quantity
 
   LimitResults() = default;
   LimitResults(const std::vector<options::VerdictLimit>& by, std::size_t runs)

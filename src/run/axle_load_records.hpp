@@ -27,7 +27,7 @@ class AxleLoadRecords {
   void add(double t, const train::Fleet& fleet);
   /// The records, for the results file.
   std::vector<results::Recorder::Dataset> datasets() const;
-  /// Number of the vehicle and name of the wheel for each passage.
+  /// Number of the vehicle and name of the wheel for each record.
   std::vector<std::pair<std::string, std::string>> wheels(const train::Fleet& fleet) const;
   bool empty() const { return records_.empty(); }
   void keep(base::Bytes& bytes) { bytes(records_, at_start_, next_); }

@@ -39,7 +39,7 @@ std::string path_for(const Scene& scene) {
   return scene.output.file.empty() ? "" : scene.output.file + ".checkpoint";
 }
 
-/// InputError if results and checkpoint, including their temporary files, would be the same file.
+/// Throws InputError if results and checkpoint, including their temporary files, would be the same file.
 void check_distinct_outputs(const std::string& results, const std::string& checkpoint) {
   if (checkpoint.empty() || results.empty()) return;
   std::error_code ignored;

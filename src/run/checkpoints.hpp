@@ -15,8 +15,8 @@
 
 namespace traverse::app {
 
-/// Digest of all inputs that determine the results: the options, except for those of duration, file names and display,
-/// and the files that they name.
+/// Digest of all inputs that determine the results: the options, without the options for duration, file names and
+/// display, and the files that the options name.
 std::string digest_of(const Scene& scene);
 
 /// Collective. The checkpoint of the option `restart`; empty if it is not given. InputError if it belongs to another
@@ -24,13 +24,13 @@ std::string digest_of(const Scene& scene);
 /// line does not give one.
 std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene);
 
-/// Collective. Claims the place of the results and checks that of the checkpoint, before any computation. InputError or
-/// FileError if a file would be overwritten that is not the output of an earlier run.
+/// Collective. Claims the place of the results and checks the place of the checkpoint, before any computation.
+/// InputError or FileError if a file would be overwritten that is not the output of an earlier run.
 results::Place claim_outputs(MPI_Comm comm, const Scene& scene);
 
 class Checkpoints {
  public:
-  /// For a run whose parts must outlive this object. state: all data that are in none of the parts.
+  /// The parts of the run must outlive this object. state: all data that are in none of the parts.
   Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& observer, results::Recorder& recorder,
               results::Checkpoint state);
 

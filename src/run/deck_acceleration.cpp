@@ -76,10 +76,10 @@ double cutoff_frequency(const Scene& scene, const SharedBeam& shared, bool affor
   const std::vector<double> f = first_frequencies(shared);
   const double first = f.empty() ? 0.0 : f.front(), third = f.empty() ? 0.0 : f.back();
   const double greatest = std::max({least_frequency, first_factor * first, third});
-  notes.push_back(fmt::format(
-      "deck accelerations without and with a low-pass at {:.6g} Hz: the greatest of 30 Hz, 1.5 f1 = {:.6g} Hz and "
-      "f{} = {:.6g} Hz; -output_lowpass changes it",
-      greatest, first_factor * first, f.size(), third));
+  notes.push_back(
+      fmt::format("deck accelerations are given unfiltered and low-passed at {:.6g} Hz, the largest of 30 Hz, 1.5 f1 = "
+                  "{:.6g} Hz and f{} = {:.6g} Hz; -output_lowpass changes it",
+                  greatest, first_factor * first, f.size(), third));
   return greatest;
 }
 

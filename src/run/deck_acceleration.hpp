@@ -22,7 +22,8 @@ bool filters_deck(const Scene& scene);
 /// Whether at least two frequencies exist and computing them is cheap.
 bool frequencies_are_cheap(const beam::Beam& beam);
 
-/// Collective. The first three distinct bending frequencies, Hz, ascending; with model_modes those of its modes.
+/// Collective. The first three distinct bending frequencies, Hz, ascending; with model_modes the frequencies of its
+/// modes.
 std::vector<double> first_frequencies(const SharedBeam& shared);
 
 /// Collective, after SharedBeam::prepare. The cut-off frequency (Hz) of deck accelerations in this scene; 0: they are

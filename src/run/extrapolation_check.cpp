@@ -91,7 +91,7 @@ void ExtrapolationCheck::add(double t, const train::Fleet& fleet, const structur
     const train::MovingVehicle& vehicle = fleet.vehicles[static_cast<std::size_t>(s.vehicle)];
     record(t, s.part,
            s.torsion ? vehicle.mechanism.torsion_spring_moment(vehicle.state, s.spring)
-                     : vehicle.mechanism.spring_force(vehicle.state, s.spring));
+                     : vehicle.mechanism.spring_tension(vehicle.state, s.spring));
   }
   for (const Support& s : supports_)
     if (const std::vector<double>& forces = foundation.of_kind[s.row]; s.place < forces.size())

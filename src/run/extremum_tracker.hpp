@@ -44,7 +44,7 @@ class ExtremumTracker {
   void record_last(const std::vector<double>& kinks, Record&& record) const {
     if (samples_.count >= 3) evaluate(3, kinks, record);
   }
-  /// The same, and records the last value too.
+  /// Like record_last(), and records the last value too.
   template <class Record>
   void finish(const std::vector<double>& kinks, Record&& record) const {
     record_last(kinks, record);
@@ -121,8 +121,8 @@ inline JumpExtremum extremum_after_jump(double before, double after, double slop
   return {duration > 0.0 && std::isfinite(duration), after + slope * (duration + b), duration};
 }
 
-/// The extremes of a curve with jumps at the passages of loads, in pieces between passages: shear or axial force. With
-/// damping b K it relaxes after a jump, V = S + r exp(-t/b), where S is smooth.
+/// The extremes of a curve over time with jumps when loads pass the probe: shear or axial force. The curve consists of
+/// pieces between two such passages. With damping b K it relaxes after a jump, V = S + r exp(-t/b), where S is smooth.
 class JumpingCurve {
  public:
   JumpingCurve() = default;
@@ -153,7 +153,7 @@ class JumpingCurve {
     smooth_.reset();
     known_ = false;
   }
-  /// The part of r that remains at a time in the present piece.
+  /// The part of r that remains at a time in the present piece between two passages.
   double transient_at(double t, double b) const {
     return transient_ == 0.0 ? 0.0 : transient_ * std::exp((begin_ - t) / b);
   }

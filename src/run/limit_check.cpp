@@ -17,7 +17,7 @@ using results::EvaluatedQuantity;
 struct Quantities {
   const LimitCheck& check;
   const results::Summary& summary;
-  std::span<const Extreme> deflections;  // the largest one at each probe
+  std::span<const Extreme> deflections;  // largest deflection at each probe
 
   EvaluatedQuantity deck_acceleration() const {
     if (!summary.probes) return no_bridge();

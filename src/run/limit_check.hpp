@@ -20,10 +20,10 @@ class LimitCheck {
 
   /// Collective. Evaluates an observed instant; v: this rank's displacements of the structure.
   void sample(double t, const double* v);
-  /// The same if only the rotations at the rotations' unknowns are known, rad.
+  /// Evaluates an instant at which only the rotations at the rotations' unknowns are known, rad.
   void rotations(double t, std::span<const double> slopes) { rotations_->record(t, slopes); }
 
-  /// After the last instant. deflections: the largest one at each probe.
+  /// The verdicts, after the last instant. deflections: the largest deflection at each probe.
   std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Extreme> deflections) const;
 
   void keep(base::Bytes& bytes) {

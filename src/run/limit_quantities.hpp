@@ -22,12 +22,12 @@ class DeckRotations {
   explicit DeckRotations(const beam::Beam& beam);
   /// Collective. v: this rank's displacements.
   void add(double t, const double* v);
-  /// The same from given rotations, rad, in the order of unknowns().
+  /// Records given rotations, rad, in the order of unknowns().
   void record(double t, std::span<const double> slopes) {
     for (std::size_t i = 0; i < 2; ++i) ends_.raise(std::abs(slopes[i]), t, i);
     for (std::size_t i = 0; i < x_.size(); ++i) joints_.raise(std::abs(slopes[2 * i + 3] - slopes[2 * i + 2]), t, i);
   }
-  /// The unknowns of the ends, then those of the left and right side of each joint.
+  /// The unknowns of the ends, then the unknowns of the left and right side of each joint.
   const std::vector<int>& unknowns() const { return unknowns_; }
 
   // Magnitudes, rad; below 0: none.

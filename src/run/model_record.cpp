@@ -27,7 +27,7 @@ void add_rows(Recorder& recorder, const std::string& name, std::size_t columns, 
   recorder.datasets({{"/model/" + name, std::move(shape), std::move(values), std::move(unit)}});
 }
 
-/// Rows of x and value; two rows at a step.
+/// Rows of x and value; two rows at a jump.
 std::vector<double> along(const beam::Distribution& quantity, double from, double to) {
   std::vector<double> rows;
   const auto add = [&](double x, double inside) { rows.insert(rows.end(), {x, quantity.at(x, inside)}); };
@@ -128,7 +128,8 @@ void record_load(const MovingLoad& load, const std::string& name, Recorder& reco
   add_rows(recorder, "line_loads/" + name, 3, std::move(lines), "m, m, N/m");
 }
 
-/// How courses run: their number, the first vehicle or force of each, and its speed over time where that bends.
+/// Stores the courses: their number, the first vehicle or force of each, and its speed at the times at which its
+/// acceleration changes.
 template <class Moving>
 void record_courses(const Moving& moving, const std::string& name, Recorder& recorder) {
   std::vector<double> rows;

@@ -14,7 +14,7 @@ namespace traverse::app {
 
 /// The static wheel loads of a train and the forces that move with it.
 norm::LoadModel static_train(std::string name, const std::vector<coupling::StaticLoad>& weights);
-/// The trains of a scene, one for each train of its sweep. shared: of all calling ranks.
+/// The trains of a scene, one for each train of its sweep. shared: the beam that all calling ranks share.
 std::vector<norm::LoadModel> static_trains(const Scene& scene, const SharedBeam& shared);
 
 /// Not collective; the result is the same on every rank.

@@ -14,7 +14,7 @@ void add_probes(const Source& source, Outputs& outputs);    // outputs_beam.cpp
 void add_supports(const Source& source, Outputs& outputs);  // outputs_beam.cpp
 void add_balance(const Source& source, Outputs& outputs);   // outputs_beam.cpp
 void add_rail(const Source& source, Outputs& outputs);      // outputs_beam.cpp
-/// The other quantities of given modes than deflections.
+/// The quantities of given modes other than deflections.
 void add_outputs_of_modes(const Source& source, Outputs& outputs);  // outputs_beam.cpp
 void add_foundation(const Source& source, Outputs& outputs);        // outputs_foundation.cpp
 void add_hanging(const Source& source, Outputs& outputs);           // outputs_foundation.cpp

@@ -35,7 +35,7 @@ struct Observed {
   std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam, at the ends of spans
   coupling::Observation motion;
   std::optional<beam::GroundForces> ground;     // with a bridge
-  std::optional<beam::SleeperForces> sleepers;  // of output_sleepers
+  std::optional<beam::SleeperForces> sleepers;  // forces of the sleepers in output_sleepers
   std::optional<beam::RailDevices> devices;     // with a rail
   EnergyTerms energy;
 };
@@ -92,7 +92,7 @@ class Outputs {
       for (const Row<Thing>& row : table) row.append(thing, values);
     });
   }
-  /// The same for `count` things: [n, count] or [n, count, components]. get(now, i) returns thing i.
+  /// Adds the table for `count` objects: [n, count] or [n, count, components]. get(now, i) returns object i.
   template <class Thing, std::size_t rows, class Get>
   void add_each(const std::string& group, const Row<Thing> (&table)[rows], std::size_t count, Get get) {
     for (const Row<Thing>& row : table) describe(group + row.name, row.unit, {count}, row.components);

@@ -1,5 +1,5 @@
-// Outputs of the structure: its response and that of a rail at the probes, the reactions of supports, and the balance
-// of all forces.
+// Outputs of the structure: responses of the bridge and of a rail at the probes, the reactions of supports, and the
+// balance of all forces.
 #include <numeric>
 
 #include "output_groups.hpp"
@@ -17,20 +17,20 @@ constexpr Row<Response> motion_rows[] = {
     {"acceleration", "m/s2", of<&Response::acceleration>},
 };
 
-// For beams by elements.
+// Quantities of beams by elements.
 constexpr Row<Response> force_rows[] = {
     {"moment", "N m", of<&Response::moment>},
     {"axial_displacement", "m", of<&Response::axial_displacement>},
     {"axial_force", "N", of<&Response::axial_force>},
 };
 
-// For the bridge only.
+// Quantities of the bridge only.
 constexpr Row<Response> shear_rows[] = {{"shear", "N", of<&Response::shear>}};
 
 constexpr Row<Triple> support_rows[] = {{"reaction", "N, N, N m", [](const Triple& reaction) { return reaction; }}};
 
-/// Resultants {x, y} of all forces on the structure, and their sum. Those along x are zero if the structure has no
-/// axial unknowns.
+/// Resultants {x, y} of all forces on the structure, and their sum. The resultants along x are zero if the structure
+/// has no axial unknowns.
 struct Balance {
   Pair load{}, support{}, foundation{}, inertia{}, drag{}, residual{};
 };
@@ -44,7 +44,7 @@ constexpr Row<Balance> balance_rows[] = {
     {"residual", "N, N", of<&Balance::residual>},
 };
 
-/// gravity: for the structure's own weight, m/s2; 0 without it. gradient: of the beam.
+/// gravity: gravity for the structure's own weight, m/s2; 0 without it. gradient: gradient of the beam.
 Balance balance_of(const Observed& now, double gravity, bool axial, double gradient) {
   const beam::GroundForces& ground = *now.ground;
   Balance b;

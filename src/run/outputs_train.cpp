@@ -40,7 +40,7 @@ constexpr Row<SensorMotion> sensor_rows[] = {
     {"pitch_rate", "rad/s", of<&SensorMotion::pitch_rate>},
 };
 
-// On the second body.
+// The reaction of a joint on its second body.
 constexpr Row<Triple> joint_rows[] = {{"reaction", "N, N, N m", identity}};
 constexpr Row<double> spring_rows[] = {{"force", "N", identity}};  // positive in tension
 constexpr Row<double> torsion_spring_rows[] = {{"moment", "N m", identity}};
@@ -70,8 +70,8 @@ Triple reaction(const train::MovingVehicle& unit, int joint) {
   return {r.x(), r.y(), r.z()};
 }
 
-double spring_force(const train::MovingVehicle& unit, int spring) {
-  return unit.mechanism.spring_force(unit.state, spring);
+double spring_tension(const train::MovingVehicle& unit, int spring) {
+  return unit.mechanism.spring_tension(unit.state, spring);
 }
 
 /// The outputs of one vehicle of the train.
@@ -133,7 +133,7 @@ class VehicleOutputs {
       });
     for (const multibody::Spring& s : model.springs)
       outputs_.add(group(s.name), spring_rows, [&fleet = fleet_, unit = unit_, i = spring++](const Observed&) {
-        return spring_force(fleet.vehicles[unit], i);
+        return spring_tension(fleet.vehicles[unit], i);
       });
     for (const multibody::TorsionSpring& s : model.torsion_springs)
       outputs_.add(group(s.name), torsion_spring_rows, [&fleet = fleet_, unit = unit_, i = torsion++](const Observed&) {
@@ -166,7 +166,7 @@ void add_couplers(const Source& source, Outputs& outputs) {
     };
     const auto spring = [&fleet = source.fleet, first](const Observed&, std::size_t i) {
       const train::CoupledGap& gap = fleet.couplers[first + i];
-      return spring_force(fleet.vehicles[gap.unit], gap.part);
+      return spring_tension(fleet.vehicles[gap.unit], gap.part);
     };
     if (c.joint)
       outputs.add_each(group, coupler_rows, c.gaps.size(), joint);

@@ -18,12 +18,12 @@
 namespace traverse::app {
 namespace {
 
-constexpr double min_steps = 5.0;  // steps for each passage
+constexpr double min_steps = 5.0;  // steps for each crossing of a probe
 
 constexpr double default_solves = 5.0;  // stage solves of the default method, for which contact_impact_steps is defined
 
-/// The times at which a wheel or force passes a probe; empty if there are too many of them for the steps.
-std::vector<double> passages(const Scene& scene, const Plan& plan) {
+/// The times at which a wheel or force crosses a probe; empty if there are too many of them for the steps.
+std::vector<double> crossing_times(const Scene& scene, const Plan& plan) {
   std::vector<double> times;
   for (const std::vector<double>& one : passages_of(scene)) times.insert(times.end(), one.begin(), one.end());
   std::erase_if(times, [&](double t) { return t >= plan.end_time; });
@@ -80,8 +80,8 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
     integrate::Settings settings{plan_.end_time, plan_.time_step, plan_.interval,
                                  system_.known_events(plan_.end_time, scene.model.step_kinks),
                                  scene.contact_tolerance.value_or(1e-3 * plan_.time_step)};
-    if (scene.model.step_probes) settings.passages = passages(scene, plan_);
-    if (!static_only_) add_axle_passages(settings.passages);
+    if (scene.model.step_probes) settings.crossing_times = crossing_times(scene, plan_);
+    if (!static_only_) add_axle_passages(settings.crossing_times);
     settings.stored = plan_.stored;
     settings.type = scene.model.method;
     settings.kinks = scene.model.step_kinks && !static_only_;
@@ -117,9 +117,9 @@ void Passage::limit_to_active_window(std::vector<std::string>& notes) {
                                                                 : 0.0;
   if (tolerance == 0.0) return;
   system_.limit_to_active_window(tolerance, scene_.output.probes);
-  notes.push_back(
-      base::detail(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",
-                               tolerance, scene_.model.window_tolerance >= 0.0 ? "" : "; -model_window 0 steps all")));
+  notes.push_back(base::detail(
+      fmt::format("parts of the bridge that move less than {:g} of the largest motion are not computed in a step{}",
+                  tolerance, scene_.model.window_tolerance >= 0.0 ? "" : "; -model_window 0 computes all")));
 }
 
 void Passage::start(std::vector<std::string>& notes) {

@@ -17,7 +17,7 @@ namespace traverse::app {
 /// The vehicles and loads of a scene. static_only: they do not move.
 coupling::SystemInput system_input(const Scene& scene, bool static_only);
 
-/// The bridge by modes if vehicles run on these; otherwise by elements; null without a bridge.
+/// The bridge by modes if vehicles run on its modes, otherwise by elements; null without a bridge.
 std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
                                               const coupling::SystemInput& input);
 
@@ -59,7 +59,7 @@ class Passage {
   coupling::SystemInput input_;
   coupling::System system_;
   Plan plan_{0.0, 1.0, 1.0};
-  std::optional<integrate::Stepper> stepper_;  // one of the two
+  std::optional<integrate::Stepper> stepper_;  // a run has one of the two steppers
   std::optional<integrate::ModalStepper> modal_;
 };
 

@@ -1,7 +1,7 @@
-// The extremes of the section forces at a probe. At the passage of a load the moment has a kink and the shear jumps
-// (also the axial force, if the load has a component along x); the values on both sides are extremes. They are known if
-// a step ends at the passage; otherwise they are extrapolated, where possible, by straight lines from the two instants
-// before and the two after it.
+// The extremes of the section forces at a probe. A passage is the instant at which a load passes the probe. At a
+// passage the moment has a kink over time and the shear jumps (also the axial force, if the load has a component along
+// x); the values on both sides are extremes. They are known if a step ends at the passage; otherwise they are
+// extrapolated, where possible, by straight lines from the two instants before and the two after it.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace traverse::app {
 class ProbeForces {
  public:
   ProbeForces() = default;
-  /// axial: the beam has an axial force; passages_known: all passages and their times are known in advance.
+  /// axial: the beam has an axial force; passages_known: the times of all passages are known in advance.
   ProbeForces(bool axial, bool passages_known)
       : shear_(!passages_known), axial_(!passages_known), has_axial_(axial), known_(passages_known) {}
 
@@ -53,7 +53,7 @@ class ProbeForces {
 
   struct Forces {
     double time = 0.0, moment = 0.0, shear = 0.0, axial = 0.0;
-    /// Linear interpolation or extrapolation by this one and another.
+    /// Linear interpolation or extrapolation with these forces and the forces at another instant.
     Forces at(double t, const Forces& through) const {
       const double part = (t - time) / (through.time - time);
       return {t, moment + part * (through.moment - moment), shear + part * (through.shear - shear),
@@ -81,7 +81,7 @@ class ProbeForces {
   template <class Record>
   void add_jumping(double t, const beam::Response& r, const std::vector<double>& passages, double lag,
                    Record&& record) {
-    if (instants_ > 0 && t <= latest_[0].time) return;  // the same instant again
+    if (instants_ > 0 && t <= latest_[0].time) return;  // this instant was already added
     const bool has_transient = known_ && lag > 0.0;
     const Forces relaxed = {t, r.moment, r.shear - (has_transient ? r.unrelaxed_shear : 0.0),
                             r.axial_force - (has_transient ? r.unrelaxed_axial_force : 0.0)};
@@ -109,7 +109,7 @@ class ProbeForces {
       add_to_piece(relaxed, r, lag, record);
     }
   }
-  /// Adds an instant on one side of all passages to the present piece, or to a new one.
+  /// Adds an instant on one side of all passages of loads to the present interval between passages, or to a new one.
   template <class Record>
   void add_to_piece(const Forces& now, const beam::Response& r, double lag, Record& record) {
     if (has_before_ && instants_ == 1) record_sides(latest_[0].at(before_passage_.time, now), now, lag, record);
@@ -166,10 +166,11 @@ class ProbeForces {
   ExtremumTracker moment_;
   LaggedMomentTracker lagging_moment_;
   JumpingCurve shear_, axial_;
-  std::array<Forces, 2> latest_{};         // of the piece between two passages, relaxed, the last one first
-  std::size_t instants_ = 0, passed_ = 0;  // instants in this piece; number of past passages
+  std::array<Forces, 2> latest_{};  // relaxed forces in the interval between two passages, the latest first
+  std::size_t instants_ = 0,
+              passed_ = 0;  // number of instants in this interval between passages; number of past passages
   bool has_before_ = false;
-  Forces before_passage_;  // forces just before a passage between two instants; those behind it are not yet known
+  Forces before_passage_;  // forces just before a passage between two instants; the forces after it are not yet known
   std::array<Forces, 8> history_{};
   std::size_t next_ = 0, count_ = 0;
   double largest_moment_ = 0.0;  // N m

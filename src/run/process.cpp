@@ -43,7 +43,7 @@ void leave_together(MPI_Comm comm, const Error& error) {
   complain(error);
   if (ranks > 1) MPI_Abort(comm, error.status());
   std::fflush(nullptr);
-  std::_Exit(error.status());  // HDF5 may not survive closing what it could not write
+  std::_Exit(error.status());  // HDF5 may crash when it closes a file that it could not write
 }
 
 Error as_error(const std::exception& failure) {

@@ -15,7 +15,8 @@
 namespace traverse::app {
 namespace {
 
-// s, of a coach in a stage: computed by its rank only, and its contacts, which every rank solves with all others.
+// Time for a coach in a stage, s: the part that only its rank computes, and its contacts, which every rank solves
+// together with all others.
 constexpr double vehicle_seconds = 3.0e-6, contact_seconds = 1.7e-6;
 constexpr double messages = 9.0;            // number of messages in a stage, as counted on two ranks (doc/scaling.md)
 constexpr double delay = 0.5e-6;            // s, mean delay of ranks at a message
@@ -98,7 +99,7 @@ RankChoice choose_ranks(MPI_Comm comm, const Scene& scene) {
   MPI_Comm_size(comm, &ranks);
   if (ranks == 1) return {};
   const StageWork work = stage_work(scene);
-  if (scene.all_ranks) return {ranks, fmt::format("ranks: all {} take the steps, as asked for", ranks)};
+  if (scene.all_ranks) return {ranks, fmt::format("ranks: all {} share the time steps (-step_ranks all)", ranks)};
   if (!work.single_rank_reason.empty())
     return {1, fmt::format("ranks: 1 of {} takes all steps, the others wait: {}", ranks, work.single_rank_reason)};
   const double latency = message_latency(comm);

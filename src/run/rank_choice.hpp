@@ -15,12 +15,12 @@ struct StageWork {
   double unknowns = 0.0;             // unknowns of the structure in the steps
   double seconds_per_unknown = 0.0;  // s, for one of the unknowns
   double vehicles = 0.0;             // vehicles that the ranks share
-  bool cut = true;                   // the ranks share the unknowns; false for the few active ones on a long bridge
-  std::string single_rank_reason;    // the reason for one rank, in words; empty: ranks may share the steps
+  bool cut = true;  // whether the ranks share the unknowns; false for the few active unknowns on a long bridge
+  std::string single_rank_reason;  // the reason for one rank, in words; empty: ranks may share the steps
 };
 StageWork stage_work(const Scene& scene);
 
-/// Duration of a stage on `ranks` ranks, s; latency: of a message between two of them, s.
+/// Duration of a stage on `ranks` ranks, s. latency: duration of a message between two ranks, s.
 double stage_seconds(const StageWork& work, int ranks, double latency);
 /// The number of ranks, at most `most`, with the shortest stage; fewer if more ranks gain little.
 int best_ranks(const StageWork& work, int most, double latency);

@@ -26,7 +26,7 @@ constexpr double min_steps_per_period = 4.0, good_steps_per_period = 8.0, second
 // If the crossing of a bridge lasts this number of first periods, the deflection is static within 1 %, for any step.
 constexpr double slow_crossing_periods = 50.0;
 
-// Errors of wheel forces over a bump of 2 m: 1 % with 20 steps, a tenth with 8, nearly half with 4.
+// Errors of wheel forces over a bump of 2 m: 1 % with 20 steps per wave, 10 % with 8, nearly 50 % with 4.
 constexpr double min_steps_per_wave = 8.0, good_steps_per_wave = 20.0;
 // Sleepers and contact oscillations excite wheel forces less: a part of the variation is lost.
 constexpr double steps_per_sleeper = 4.0, steps_per_oscillation = 10.0;

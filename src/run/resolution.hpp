@@ -1,5 +1,5 @@
 // Checks whether a given mesh and step resolve the scene. An implicit integrator remains stable with a balanced energy
-// at any step, and every mesh produces a result: neither shows that the result is wrong.
+// for every time step, and every mesh produces a result: a wrong result has no other sign.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ void check_mesh(const Scene& scene, std::vector<std::string>& notes);
 void check_times(const Plan& plan);
 
 /// InputError if a given step does not resolve periods of the bridge or waves of the track. If it is only so long that
-/// results are inaccurate, a warning is appended to `notes`. first_period: of the beam, s, 0 if unknown; high_order:
-/// the integrator's order is above 2.
+/// results are inaccurate, a warning is appended to `notes`. first_period: first period of the beam, s, 0 if unknown;
+/// high_order: the integrator's order is above 2.
 void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
                  std::vector<std::string>& notes);
 

@@ -23,7 +23,7 @@ std::vector<Extreme> sorted(std::vector<Extreme> peaks) {
   return peaks;
 }
 
-/// Of the sorted peaks with the same place and sign the nearest one in time; null if none is within max_shift, s.
+/// The peak nearest in time among the sorted peaks with the same place and sign; null if none is within max_shift, s.
 const Extreme* nearest(const std::vector<Extreme>& peaks, const Extreme& to, double max_shift) {
   const Extreme* nearest_peak = nullptr;
   double distance = max_shift;

@@ -1,7 +1,7 @@
 // Extremes (peaks) of a run. Between samples a curve is interpolated by a polynomial of degree four (turn.hpp). The
-// least and the greatest value at every probe form the envelopes along the bridge. At the passage of a wheel the moment
-// at a probe has a kink, which gets its own sample (option step_probes), and the shear jumps (probe_forces.hpp). With
-// damping b K both relax after that within a time of b, which may be much shorter than a step.
+// least and the greatest value at every probe form the envelopes along the bridge. When a wheel passes a probe, the
+// moment there has a kink over time, which gets its own sample (option step_probes), and the shear jumps
+// (probe_forces.hpp). With damping b K both relax after that within a time of b, which may be much shorter than a step.
 #pragma once
 
 #include <array>
@@ -39,8 +39,9 @@ struct SecondDifference {
 class ResponseExtremes {
  public:
   ResponseExtremes() = default;
-  /// passages: for each probe the times of passages; lag: of the moments, b of Rayleigh damping in s, if responses have
-  /// rates; axial: the beam has axial displacements; passages_known: the list of passages is complete.
+  /// passages: for each probe the times at which loads pass it; lag: lag of the moments, b of Rayleigh damping in s, if
+  /// responses have rates; axial: the beam has axial displacements; passages_known: the list of these times is
+  /// complete.
   ResponseExtremes(std::vector<std::vector<double>> passages, std::size_t wheels, double lag = 0.0, bool axial = false,
                    bool passages_known = true);
 
@@ -60,7 +61,7 @@ class ResponseExtremes {
   void reset_roughness() { roughness_ = {}; }
   /// The largest extreme of each probe or wheel.
   const std::vector<Extreme>& largest_of_each(Quantity q) const { return largest_of_each_[q]; }
-  /// For a probe's deflection, acceleration, moment or shear.
+  /// The range of a probe's deflection, acceleration, moment or shear.
   const Range& range(Quantity q, std::size_t probe) const { return ranges_[probe][q]; }
   std::size_t probes() const { return ranges_.size(); }
   void keep(base::Bytes& bytes) {
@@ -68,7 +69,7 @@ class ResponseExtremes {
   }
 
  private:
-  /// Tracked for each probe.
+  /// The motions whose extremes are tracked for each probe.
   static constexpr std::array motions = {deflection, acceleration, axial_displacement};
   void record_peak(Quantity q, std::size_t place, double value, double time);
   auto recorder_of(Quantity q, std::size_t probe);
@@ -84,7 +85,7 @@ class ResponseExtremes {
   std::vector<std::array<Range, quantities>> ranges_;
   std::array<std::vector<Extreme>, quantities> peaks_;
   std::array<Extreme, quantities> largest_{};
-  SecondDifference roughness_;  // in m/s2 and N
+  SecondDifference roughness_;  // second differences of accelerations, m/s2, and wheel forces, N
   bool failed_ = false;
   std::array<std::vector<Extreme>, quantities> largest_of_each_;
 };
@@ -105,7 +106,7 @@ double peak_difference(const ResponseExtremes& rough, const ResponseExtremes& fi
 /// For each probe of the scene the times at which wheels and forces pass it, s. Empty if the positions of the wheels
 /// are not known in advance, or if they run on the rail of a layered track.
 std::vector<std::vector<double>> passages_of(const Scene& scene);
-/// Whether these are all passages.
+/// Whether passages_of() returns all times at which loads pass probes.
 bool all_passages_known(const Scene& scene);
 /// The empty extremes of a run of the scene. lag: b of Rayleigh damping if responses have rates, s.
 ResponseExtremes peaks_for(const Scene& scene, std::size_t wheels, double lag);

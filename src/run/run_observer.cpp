@@ -247,7 +247,7 @@ void RunObserver::keep(base::Archive& archive) {
   if (lag_) archive.same(*lag_);
   if (limit_check_) archive.same(*limit_check_);
   archive.same(axle_passages_);
-  // Only on the first rank.
+  // The first rank only stores the deck's accelerations.
   deck_ ? archive.same(*deck_) : archive.same();
   filtered_wheels_ ? archive.same(*filtered_wheels_) : archive.same();
   archive.same(summary_.structure_energy, summary_.energy_residual, summary_.largest_energy, summary_.energy_scale);
@@ -304,7 +304,7 @@ results::Summary RunObserver::finish() {
   return summary_;
 }
 
-// At every probe, if that is cheap.
+// Computes the static deflections, at every probe if that is cheap.
 void RunObserver::record_static_deflections() {
   const std::vector<double>& probes = scene_.output.probes;
   const auto size = static_cast<double>(probes.size()) * beam_->mesh().nodes();

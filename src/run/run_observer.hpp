@@ -41,7 +41,7 @@ class RunObserver {
   /// Stores the wheels' forces, which are filtered at the end of the run.
   void keep_wheel_forces(FilteredWheels wheels) { filtered_wheels_ = std::move(wheels); }
 
-  /// Records the passages of wheels over given places of the track.
+  /// Records the forces of wheels as they pass given places of the track.
   void record_axle_passages(AxleLoadRecords passages) { axle_passages_ = std::move(passages); }
 
   /// Compares the run with the scene's limits at its end.
@@ -57,7 +57,7 @@ class RunObserver {
   /// Time of the latest instant, s.
   double last_time() const { return sample_.time; }
   const results::Summary& extremes() const { return summary_; }
-  /// The extremes with those of wheels and contacts; after the last sample.
+  /// The summary with the extremes, also of wheels and contacts. Call after the last sample.
   const results::Summary& finished_extremes();
   /// Compares the run with its trial runs, which ended at `until`, s.
   void check_extrapolation(double until);
@@ -97,7 +97,7 @@ class RunObserver {
   const Outputs* outputs_;  // null if this rank writes no file
   bool recorded_;           // whether any rank stores samples
   std::vector<beam::Response> drag_response_;
-  std::vector<double> with_drag_;  // accelerations including those of modal damping
+  std::vector<double> with_drag_;  // accelerations including the accelerations of modal damping
   ResponseExtremes peaks_;
   ExtrapolationCheck extrapolation_check_;
   std::optional<DeckAcceleration> deck_;

@@ -9,14 +9,14 @@
 
 namespace traverse::app {
 
-std::string digest_of(const Scene& scene, std::span<const std::string_view> free,
+std::string digest_of(const Scene& scene, std::span<const std::string_view> excluded,
                       const std::vector<options::InputText>& files, std::string_view more) {
   auto entries = scene.options;
   std::erase_if(entries, [&](const auto& option) {
     const std::string& name = option.first;
     const bool display_only = name == "verbose" || name.starts_with("ts_monitor") || name.starts_with("log_") ||
                               name.find("_view") != name.npos;
-    return display_only || std::find(free.begin(), free.end(), name) != free.end();
+    return display_only || std::find(excluded.begin(), excluded.end(), name) != excluded.end();
   });
   std::sort(entries.begin(), entries.end());
   base::Digest digest;

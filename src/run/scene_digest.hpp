@@ -11,9 +11,9 @@
 
 namespace traverse::app {
 
-/// The digest of the scene's options, except for those in `free` and those of display, and of the texts of files;
-/// `more`: a further text.
-std::string digest_of(const Scene& scene, std::span<const std::string_view> free,
+/// A 64-bit hash (16 hex digits) of the scene's options, the files' texts and `more`. Options in `excluded`, and
+/// options that only change the display, are not included.
+std::string digest_of(const Scene& scene, std::span<const std::string_view> excluded,
                       const std::vector<options::InputText>& files, std::string_view more = {});
 
 }  // namespace traverse::app

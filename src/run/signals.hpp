@@ -33,7 +33,7 @@ int caught_signal();
 bool checkpoint_requested();
 /// Collective. The signal of any rank of comm.
 int signal_on_any(MPI_Comm comm);
-/// Collective. The same, and whether `wanted` is true on any rank.
+/// Collective. The signal of any rank, and whether `wanted` is true on any rank.
 struct Requests {
   int signal = 0;
   bool wanted = false;

@@ -9,17 +9,17 @@
 namespace traverse::app {
 namespace {
 
-// s, for an unknown in a stage with its share of the step's end: of a continuous bridge, of separate spans, under a
+// Time for an unknown in a stage with its share of the step's end, s: continuous bridge, separate spans, bridge with a
 // layered track.
 constexpr double continuous = 7.2e-9, separate = 3.8e-9, layered = 16.6e-9;
 constexpr double layered_unknowns = 5.0;   // number of unknowns in a column of a layered track
 constexpr double elements_of_span = 20.0;  // if they are not chosen yet
-// s, in a stage: constant part, a body of a mechanism, a body of a linear vehicle, a probe.
+// Time in a stage, s: constant part, for a body of a mechanism, for a body of a linear vehicle, for a probe.
 constexpr double per_stage = 2e-6, per_body = 9.6e-7, per_linear_body = 1.6e-7, per_probe = 2e-8;
 constexpr double rough_track_factor = 3.0;  // factor for a rough track, where contacts need more iterations
-// s, of a run's stage in a batch: a vehicle, an element.
+// Time for a run's stage in a batch, s: for a vehicle, for an element.
 constexpr double per_lane_vehicle = 1e-7, per_lane_element = 5e-9;
-// s, of an instant by modes: a mode, a mode at a probe; factor for dampers that couple the modes.
+// Time for an instant by modes, s: for a mode, for a mode at a probe; factor for dampers that couple the modes.
 constexpr double per_mode = 2e-9, per_mode_and_probe = 4e-10, coupled_factor = 8.0;
 
 double bodies_of(const Scene& scene) {

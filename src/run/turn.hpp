@@ -26,9 +26,9 @@ struct Samples {
   }
 };
 
-/// The extreme of the curve near sample i, which is extreme between its neighbours; smooth(a, b): the curve has no kink
-/// from sample a to b. With three samples, a neighbour much closer than the other one is replaced by the next sample
-/// behind it; if there is none, the extreme is the sample itself.
+/// The extreme of the curve near sample i, which is extreme between its neighbours. smooth(a, b): whether the curve has
+/// no kink from sample a to sample b. With three samples, a neighbour much closer than the other neighbour is replaced
+/// by the next sample behind it; if that does not exist, the extreme is the sample itself.
 template <class Smooth>
 Extreme interpolate_extremum(const Samples& samples, std::size_t i, Smooth&& smooth) {
   const auto &t = samples.time, &y = samples.value;

@@ -1,5 +1,5 @@
-// Extremes of the normal force between steps by interpolation of the last samples, without those where the wheel is in
-// flight or passes a kink of the surface.
+// Extremes of the normal force between steps by interpolation of the last samples, except where the wheel is in flight
+// or passes a kink of the surface.
 #include "run/wheel_extremes.hpp"
 
 #include <algorithm>

@@ -15,7 +15,8 @@ namespace traverse::app {
 class WheelExtremes {
  public:
   WheelExtremes() = default;
-  /// kinks: ascending stations at which the track or the bridge has a kink, so that a force over time has one too.
+  /// kinks: ascending stations at which the track or the bridge has a kink in slope, so that a wheel force over time
+  /// has a kink too.
   WheelExtremes(std::size_t wheels, std::vector<double> kinks);
 
   /// Adds the next instant of a wheel whose centre is at x.
@@ -23,10 +24,10 @@ class WheelExtremes {
   /// After the last instant.
   void finish();
 
-  /// N; place: the wheel in the order of the fleet; infinite: no instant yet.
+  /// The least force, N; place: the wheel in the order of the fleet; infinite before the first instant.
   const Extreme& least() const { return least_; }
   const Extreme& greatest() const { return greatest_; }
-  /// Relative to the force at the start; below 0: no instant yet.
+  /// The largest unloading relative to the force at the start; below 0 before the first instant.
   const Extreme& unloading() const { return unloading_; }
   void keep(base::Bytes& bytes) { bytes(latest_, at_start_, least_, greatest_, unloading_); }
 

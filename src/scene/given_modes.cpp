@@ -225,7 +225,7 @@ class ModesParser {
   beam::GivenModes modes_;                        // shapes, slopes and outputs as in the file
   bool has_slopes_ = false;
   double last_x_ = 0.0;
-  std::size_t stations_ = 0;  // of the current track so far
+  std::size_t stations_ = 0;  // number of stations of the current track so far
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Estimates the memory of a scene from measured bytes per node, unknown, vehicle, force and probe, and compares it with
-// the memory of the machine or of the control group.
+// the memory of the machine or of the cgroup of the process.
 #include "limits.hpp"
 
 #include <fmt/format.h>
@@ -17,13 +17,13 @@ namespace {
 // Bytes for each item, measured in runs with many of them.
 constexpr double a_node = 500.0, a_nodal_unknown = 750.0, a_probe = 2200.0, a_vehicle = 6e4, a_pair_of_vehicles = 1e3,
                  a_force = 400.0, a_spring = 800.0, a_sweep_peak = 200.0;
-constexpr double most_peaks = 1e8;  // of a sweep; 32 bits can number them
+constexpr double most_peaks = 1e8;  // limit for a sweep; 32 bits can number them
 constexpr int lapack_copies = 3, few_modes = 2;
 
 /// The memory of one kind of item.
 struct Need {
   double bytes = 0.0;
-  std::string option, what;  // the option that sets their number (empty: that of the mesh), and a description
+  std::string option, what;  // the option that sets their number (empty: the option of the mesh), and a description
 };
 
 double memory_of_machine() {

@@ -27,7 +27,7 @@ constexpr ReferenceWagon reference_wagons[] = {
     {"C3", 20.0, 4.50}, {"C4", 20.0, 3.40}, {"D2", 22.5, 7.45}, {"D3", 22.5, 5.90},
     {"D4", 22.5, 4.65}, {"D5", 22.5, 3.62}, {"E4", 25.0, 5.90}, {"E5", 25.0, 4.75},
 };
-constexpr double bogie_wheelbase = 1.8, overhang = 1.5;  // m; overhang: from the buffers to the outer axle
+constexpr double bogie_wheelbase = 1.8, overhang = 1.5;  // m; overhang: distance from the buffers to the outer axle
 
 }  // namespace
 
@@ -48,7 +48,7 @@ AxleList hslm_a(int train) {
                                                   {11, 27.0, 2.0, 210.0}}};
   const auto [coaches, length, bogie, force] = types[static_cast<std::size_t>(train - 1)];
   constexpr std::array power_car = {0.0, 3.0, 14.0, 17.0};
-  constexpr double coupling = 3.525;  // from a power car's last axle to the first one of the end coach
+  constexpr double coupling = 3.525;  // distance from a power car's last axle to the first axle of the end coach
   const double whole = 2.0 * power_car.back() + coupling + (coaches + 2) * length;
   std::vector<double> behind(power_car.begin(), power_car.end());
   behind.push_back(power_car.back() + coupling);

@@ -15,11 +15,11 @@ struct AxleList {
 
 /// Train A1 to A10, EN 1991-2, table 8.4 and figure 8.12.
 AxleList hslm_a(int train);
-/// HSLM-B of EN 1991-2: this number of forces of 170 kN at this distance, m, both from the standard's charts over the
+/// HSLM-B of EN 1991-2: a number of forces of 170 kN at a distance, m. Both follow from the standard's charts over the
 /// span.
 AxleList hslm_b(int forces, double distance);
 
-/// This number of reference wagons of a line category of EN 15528, annex A: four axles, 9.81 m/s2.
+/// A number of reference wagons of a line category of EN 15528, annex A: four axles, 9.81 m/s2.
 AxleList en15528(std::string_view line, int wagons);
 
 /// The forces of a file with two columns: x in m, growing in the travel direction or `backward`, and force in N. Throws

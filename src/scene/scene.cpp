@@ -19,7 +19,7 @@ using options::Options;
 
 constexpr double largest_window_tolerance = 0.1;
 
-/// The relative motion below which parts are excluded from the steps; -1: automatic.
+/// The relative motion below which parts of the bridge are excluded from the time steps; -1: automatic.
 double read_window(const Options& o) {
   const std::string value = o.text("model_window");
   if (value == "auto") return -1.0;

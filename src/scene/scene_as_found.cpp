@@ -15,7 +15,7 @@ constexpr double station_rounding = 1e-9;  // m
 
 bool is_nearly(double x, double other) { return std::abs(x - other) < station_rounding; }
 
-/// Cracks with a width, over which EI is reduced. Both ends become nodes of every mesh.
+/// Reads cracks with a width over which EI is reduced. Both ends become nodes of every mesh.
 void read_weak_stretches(const Options& o, const std::vector<double>& x, beam::BeamModel& beam) {
   if (!o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_width", "needs beam_cracks_EI_factor");
   const std::vector<double> width = o.numbers("beam_cracks_width", x.size(), "one per station");

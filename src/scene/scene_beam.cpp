@@ -14,10 +14,10 @@ namespace {
 
 using options::Options;
 
-constexpr double most_stations = 1e6;  // of equally spaced springs
+constexpr double most_stations = 1e6;  // limit for equally spaced springs
 
-/// An even number of elements per span, so that midspan is a node. The error of deflections is of fourth order in the
-/// element length.
+/// The number of elements per span for the accuracy. It is even, so that midspan is a node. The error of deflections is
+/// of fourth order in the element length.
 int elements_from_accuracy(double accuracy) {
   const double wanted = 10.0 * std::pow(1e-3 / accuracy, 0.25);
   return std::max(4, 2 * static_cast<int>(std::lround(wanted / 2.0)));
@@ -125,7 +125,7 @@ void add_point(const Options& o, const beam::BeamModel& beam, const std::string&
   points.push_back(point);
 }
 
-/// The listed stations, or equally spaced ones from the first to the last.
+/// The listed stations, or equally spaced stations from the first to the last.
 std::vector<double> read_stations(const Options& o, const std::string& name) {
   std::vector<double> x = o.numbers(name + "_x");
   if (!o.has(name + "_spacing")) return x;
@@ -223,6 +223,15 @@ beam::Foundation read_foundation(const Options& o, const beam::BeamModel& beam) 
 
 namespace {
 
+/// A tension T adds T v'^2/2 per length to the strain energy, as a rotational bed of the stiffness T does.
+void read_tension(const Options& o, beam::BeamModel& beam) {
+  if (!o.has("beam_tension")) return;
+  if (beam.foundation.rotational_bed)
+    o.refuse("beam_tension", "acts as a rotational bed; give either this or foundation_rotational_bed");
+  if (beam.GA) o.refuse("beam_tension", "allowed for beams without shear deformation (beam_GA)");
+  beam.foundation.rotational_bed = beam::Bed{read_distribution(o, "beam_tension"), 0.0, {}};
+}
+
 void read_ground(const Options& o, beam::BeamModel& beam) {
   beam.ground = {o.choice("surface_left") == "rigid", o.choice("surface_right") == "rigid"};
 }
@@ -232,8 +241,9 @@ void read_ground(const Options& o, beam::BeamModel& beam) {
 void read_beam(const Options& o, Scene& scene) {
   if (read_given_bridge(o, scene)) return read_ground(o, *scene.beam);
   if (!o.has("beam_spans")) {
-    for (const char* prefix : {"beam_E", "beam_GA", "beam_mass", "beam_rotary", "beam_cracks", "beam_temperature",
-                               "beam_damping", "beam_rayleigh", "support_", "foundation_", "surface_"}) {
+    for (const char* prefix :
+         {"beam_E", "beam_GA", "beam_mass", "beam_rotary", "beam_tension", "beam_cracks", "beam_temperature",
+          "beam_damping", "beam_rayleigh", "support_", "foundation_", "surface_"}) {
       const options::Entry* entry = o.first_with_prefix(prefix);
       if (entry != nullptr) o.refuse(entry->name, "there is no beam without beam_spans");
     }
@@ -251,6 +261,7 @@ void read_beam(const Options& o, Scene& scene) {
   read_cracks(o, beam);
   read_supports(o, beam);
   beam.foundation = read_foundation(o, beam);
+  read_tension(o, beam);
   read_bearings(o, beam);
   beam.temperature = read_temperature(o);
   read_damping(o, scene.damping);

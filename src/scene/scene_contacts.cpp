@@ -26,7 +26,7 @@ double VehicleReader::stiffness(contact::LawKind kind, double radius, const std:
                                   has(other_poisson) ? number(other_poisson) : poisson);
 }
 
-/// The contact law. radius: of eq. 48. other: the prefix of the options of the second material.
+/// The contact law. radius: effective radius of eq. 48. other: prefix of the options of the second material.
 contact::Law VehicleReader::law(double radius, const std::string& other) const {
   contact::Law law;
   const std::string kind = o_.choice(key("law"));

@@ -42,7 +42,7 @@ std::optional<beam::Layer> read_optional_layer(const Options& o, const std::stri
   return std::nullopt;
 }
 
-/// A stretch of the track, whose layers have been read.
+/// Reads a part of the track with different properties (TrackStretch). The layers of the track have been read before.
 beam::TrackStretch read_stretch(const Options& o, const std::string& name, const beam::LayeredTrack& track) {
   const std::string prefix = "track_" + name + "_";
   beam::TrackStretch stretch{name, o.number(prefix + "from"), o.number(prefix + "to"), {}, true};

@@ -37,8 +37,8 @@ MovingLoad placed(const AxleList& axles, double first, double direction) {
   return load;
 }
 
-/// Distributes each force over three sleepers (EN 1991-2, 6.3.6.1). from_zero: the foremost part is at the position of
-/// the foremost force.
+/// Distributes each force over three sleepers (EN 1991-2, 6.3.6.1). from_zero: the foremost of the three parts is at
+/// the position of the foremost force.
 void spread(double spacing, bool from_zero, double direction, MovingLoad& load) {
   MovingLoad parts;
   for (std::size_t i = 0; i < load.forces.size(); ++i)
@@ -107,7 +107,7 @@ MovingLoad read_one_load(const Options& o, const LoadBlock& from, const std::str
   return load;
 }
 
-/// Appends the forces of one block to those of the blocks before it.
+/// Appends the forces of one block to the forces of the blocks before it.
 void append(const MovingLoad& load, MovingLoad& all) {
   const std::size_t before = all.forces.size(), size = before + load.forces.size();
   all.forces.insert(all.forces.end(), load.forces.begin(), load.forces.end());

@@ -72,7 +72,7 @@ void VehicleReader::joint_friction(multibody::Joint& j) const {
   }
 }
 
-/// The numbers of joints of this type; those of other types are refused.
+/// Reads the additional numbers of this joint type; numbers of other types are refused.
 void VehicleReader::joint_numbers(multibody::Joint& j) const {
   for (const multibody::JointRow& row : multibody::joint_rows()) {
     for (std::size_t i = 0; i < row.numbers.size(); ++i) {

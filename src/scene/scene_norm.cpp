@@ -50,7 +50,7 @@ void read_damping_bound(const Options& o, Scene& scene) {
                   "damping at all others",
                   100.0 * ratio, o.choice("model_damping_bound"), span,
                   more > 0.0 ? fmt::format(", with {:.3g} % by 6.4.6.4", 100.0 * more) : ""));
-  scene.damping.ratios = {ratio, ratio};  // the same law for elements and modes
+  scene.damping.ratios = {ratio, ratio};  // elements and modes have the same damping law
 }
 
 void read_norm(const Options& o, Scene& scene) {

@@ -14,14 +14,14 @@ namespace traverse::app {
 /// A block of options of a train or a load.
 struct Block {
   std::string name;                   // "train", "load" or a name from the options trains and loads
-  std::vector<std::string> vehicles;  // of a train, front one first
+  std::vector<std::string> vehicles;  // vehicles of a train, from the front
   /// The name of an option of this block.
   std::string option(std::string_view word) const { return name + "_" + std::string(word); }
 };
 
 /// The names of all vehicles.
 struct NamedVehicles {
-  std::vector<std::string> train;   // of all trains, front one first
+  std::vector<std::string> train;   // vehicles of all trains, from the front
   std::vector<Block> trains;        // one per train
   std::vector<std::string> unused;  // defined, but in no train
 };
@@ -43,7 +43,7 @@ double entrance(const Scene& scene, double direction);
 base::SpeedLaw read_speed_file(const options::Options& options, const Block& block, double front);
 /// Whether a load has line loads, moments or a part that varies over time.
 bool has_line_loads_or_variation(const options::Options& options, const Block& block);
-/// A load of moments alone (load_moments), the first at `entrance` without positions.
+/// Sets a load that consists of moments only (load_moments). Without given positions the first moment is at `entrance`.
 void place_moments(const options::Options& options, const Block& block, double entrance, MovingLoad& load);
 /// Adds load_moments to the forces of a load.
 void add_moments(const options::Options& options, const Block& block, MovingLoad& load);
@@ -61,7 +61,7 @@ void check_courses(const options::Options& options, Scene& scene);
 
 /// Declares the options of the trains' couplers.
 void declare_couplers(options::Options& options);
-/// Declares the options of the stretches of a layered track.
+/// Declares the options of the parts of a layered track with different properties (TrackStretch).
 void declare_stretches(options::Options& options);
 /// Reads a coupler of a train, without checking its bodies.
 Coupler read_coupler(const options::Options& options, const Block& train, const std::string& name);
@@ -76,7 +76,7 @@ void read_modes_of_given(const options::Options& options, Scene& scene);
 beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);
 /// x, or the span end that equals x within rounding. The spans must have been read.
 double as_division(const beam::BeamModel& beam, double x);
-/// Reads cracks as springs, or as stretches of reduced EI. EI must have been read.
+/// Reads cracks as springs, or as ranges of reduced EI. EI must have been read.
 void read_cracks(const options::Options& options, beam::BeamModel& beam);
 /// Reads elastic and settled supports. Supports and foundation must have been read.
 void read_bearings(const options::Options& options, beam::BeamModel& beam);

@@ -187,7 +187,7 @@ void record_tables(Scene& scene) {
   });
 }
 
-/// Adds a note if neither the bridge nor its foundation dissipates energy.
+/// Adds a note if the bridge and its foundation dissipate no energy.
 void record_damping(Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   if (scene.analysis != Analysis::transient || scene.damping.rayleigh || scene.damping.ratios || beam.given ||

@@ -34,8 +34,8 @@ Roughness read_roughness(const Options& o, const std::string& prefix, const trac
   return {spectrum, wavelengths[0], wavelengths[1], start, to_the_left};
 }
 
-/// x at which the roughness begins: the foremost wheel of trains to the right or, if all run to the left, the foremost
-/// wheel of these, so that the train starts on level track.
+/// x at which the roughness begins: the foremost wheel of trains to the right or, if all trains run to the left, their
+/// foremost wheel, so that the train starts on level track.
 double start_of_roughness(const Scene& scene, bool& to_the_left) {
   std::optional<double> right, left;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {

@@ -191,7 +191,8 @@ class Axes {
   std::optional<std::size_t> joint_;  // the axis that several dimensions share
 };
 
-/// The dimension of a varied option and of those with the same values, without the values. taken: the varied options.
+/// The dimension of a varied option and of the options with the same values, without the values. taken: the varied
+/// options.
 StudyDimension dimension_of(const Options& o, const std::string& option, const VaryReader& reader,
                             std::vector<std::string>& taken) {
   const std::string given = o.first_with_prefix(reader.name())->name;

@@ -86,7 +86,8 @@ std::vector<std::string> vehicles_in(const Options& o) {
   return names;
 }
 
-/// Refuses a part that is in no list of its vehicle: its options look like those of another vehicle, VEHICLE_PART.
+/// Refuses a part that is in no list of its vehicle: its options look like the options of another vehicle,
+/// VEHICLE_PART.
 void check_unlisted_part(const Options& o, const std::string& name, const std::vector<std::string>& vehicles) {
   const std::string prefix = "vehicle_" + name + "_";
   if (o.entries().has(prefix + "file")) return;
@@ -130,7 +131,7 @@ NamedVehicles declare_vehicles(Options& o) {
   for (const std::string& name : types) declare_vehicle(o, name);
   std::vector<std::string> others;
   for (const std::string& name : vehicles_in(o)) {
-    // an option of a part of a vehicle found so far may end like that of a vehicle
+    // an option of a part of a vehicle found so far may end like an option of a vehicle
     if (o.knows("vehicle_" + name + "_file") || (o.knows("vehicle_" + name + "_bodies"))) continue;
     declare_vehicle(o, name);
     check_unlisted_part(o, name, types);

@@ -34,7 +34,7 @@ class VaryReader {
   std::vector<double> block(double& count) const;
   /// "uniform", "normal" or "lognormal"; empty for listed values.
   std::string law() const;
-  /// This number of values drawn by the law.
+  /// Draws `count` values from the law.
   std::vector<double> draws(std::uint64_t seed, std::size_t count) const;
   /// Checks that the values are given in one way only.
   void check_one_way() const;

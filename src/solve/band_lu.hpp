@@ -1,5 +1,5 @@
 // LU with partial pivoting of a banded matrix: the Newton matrix of a long train of coupled vehicles, in which each
-// vehicle is coupled to its neighbours only. Storage and elimination are those of LAPACK's band routines.
+// vehicle is coupled to its neighbours only. Storage and elimination are as in LAPACK's band routines.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@ int half_bandwidth(const Eigen::MatrixXd& A);
 class BandLu {
  public:
   void compute(const Eigen::MatrixXd& A, int half_bandwidth);
-  /// The same in three steps: zeros, the entries (i, j) with |i - j| <= half_bandwidth, the factors.
+  /// compute() in three calls: set zeros, set the entries (i, j) with |i - j| <= half_bandwidth, factorise.
   void set_zero(int size, int half_bandwidth);
   double& entry(int i, int j) { return lu_(2 * band_ + i - j, j); }
   void factor();

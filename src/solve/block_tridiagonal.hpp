@@ -27,8 +27,8 @@ struct BlockTridiagonal {
   /// are not read, because the matrix must be symmetric.
   static BlockTridiagonal from(Mat matrix, int block_size);
 
-  /// this = a*A + b*B + c*C, all four of the same shape (otherwise std::logic_error); no allocation. They may be the
-  /// same.
+  /// this = a*A + b*B + c*C. All four must have the same shape (otherwise std::logic_error) and may be the same object.
+  /// No allocation.
   void combine(double a, const BlockTridiagonal& A, double b, const BlockTridiagonal& B, double c,
                const BlockTridiagonal& C);
 };
@@ -64,18 +64,18 @@ class SubstructuredCholesky {
   /// time. Subnormal numbers (below 2.2e-308) are set to zero during the solve.
   void solve(double* x, int columns = 1) const;
 
-  /// Collective. The same for one column whose right-hand side the callback writes into x, a few hundred nodes at a
-  /// time, each of this rank's nodes once, in an order chosen by the solver, just before they are eliminated.
+  /// Collective. Solves for one column. The callback writes the right-hand side into x, a few hundred nodes at a time,
+  /// just before they are eliminated; each of this rank's nodes once, in an order chosen by the solver.
   void solve(double* x, RhsCallback& rhs_callback) const;
 
-  /// Collective. As above, for a right-hand side that is zero outside this rank's nodes [first, past) (none if they are
-  /// equal), if only the solution inside is needed: other values of x are neither read nor written. The solution is
-  /// assumed to be zero outside. The resulting error decays from the window's ends as responses do, so that the caller
-  /// must add a margin.
+  /// Collective. Solves with the callback within a window, this rank's nodes [first, past) (empty if both are equal).
+  /// The right-hand side is zero outside the window; values of x outside it are not read and not written. The solution
+  /// is assumed to be zero outside. The resulting error decays from the window's ends as responses do, so that the
+  /// caller must add a margin.
   void solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past, RhsCallback& rhs_callback) const;
 
-  /// Collective. Several columns in a window, in a buffer of the window's nodes only: node i, component c of a column
-  /// is at x[(i - first)*block + c + column*(past - first)*block].
+  /// Collective. Solves for several columns in a window. x has the window's nodes only: component c of node i is at
+  /// x[(i - first)*block + c + column*(past - first)*block].
   void solve_local(double* x, int columns, std::ptrdiff_t first, std::ptrdiff_t past) const;
 
   /// The smallest ratio of a pivot to its diagonal entry in the matrix, over all unknowns of all ranks, of the last

@@ -49,7 +49,7 @@ struct LaneOf<1> {
   using Stored = double;
 };
 
-/// One unknown of C = 1, 2, 4 or 8 columns, or of C chains; arithmetic is entry by entry.
+/// One unknown in each of C = 1, 2, 4 or 8 columns, or of C chains; arithmetic is entry by entry.
 template <int C>
 using Lane = typename LaneOf<C>::Type;
 
@@ -148,7 +148,7 @@ struct Panel {
     }
   }
 
-  /// The entries of a column are `stride` behind those of the column before.
+  /// The entries of a column are `stride` behind the entries of the previous column.
   void load(Extent<B> block, const double* x, std::ptrdiff_t stride) {
     gather(block, [=](int c) { return x + c * stride; });
   }

@@ -70,7 +70,7 @@ struct Part {
 
   Range nodes;
   bool followed = false;
-  std::ptrdiff_t middle = -1;   // -1: neither a middle nor chains
+  std::ptrdiff_t middle = -1;   // -1: the part has no middle and no chains
   std::array<Chain, 2> chains;  // the first one has one node more, or as many
 };
 

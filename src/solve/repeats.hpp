@@ -1,4 +1,6 @@
-// Detection of repeating values along the beam, such as the factors on equal spans, and their storage only once.
+// Detection of repeating values along the beam, such as the factors on equal spans, and their storage only once. Here
+// a step is the elimination of one node of a chain (parts.hpp). A step
+// here is one item of a sequence along the beam: a node, or one elimination of a factorisation.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +12,10 @@
 
 namespace traverse::solve {
 
-/// Short periods are stored several times, so that at least this number of steps is read consecutively.
+/// Short periods are stored several times, so that at least this number of steps is consecutive in memory.
 inline constexpr std::ptrdiff_t min_consecutive_steps = 64;
 
-/// Fewer steps are all stored: they fit into a cache.
+/// Sequences with at most this number of steps are stored completely: they fit into a cache.
 inline constexpr std::ptrdiff_t min_steps_to_search = 256;
 
 /// Adds numbers to a hash, which is equal for equal numbers.
@@ -26,14 +28,15 @@ std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
   return hash;
 }
 
-/// Steps [from, to) whose values are at the places from `at` on and repeat after `length` places.
+/// Steps [from, to) whose values have the storage indices from `at` on and repeat after `length` indices.
 struct Stored {
   std::ptrdiff_t from = 0;
   std::ptrdiff_t to = 0;
   std::ptrdiff_t at = 0;
   std::ptrdiff_t length = 1;
-  std::ptrdiff_t place(std::ptrdiff_t k) const { return at + (k - from) % length; }
-  /// The end of the steps from k on, and the first of the steps up to k, with consecutive places.
+  std::ptrdiff_t storage_index(std::ptrdiff_t k) const { return at + (k - from) % length; }
+  /// The end of the steps with consecutive storage indices from k on, and the first step with consecutive storage
+  /// indices up to k.
   std::ptrdiff_t row_end(std::ptrdiff_t k) const { return std::min(to, k + length - (k - from) % length); }
   std::ptrdiff_t row_begin(std::ptrdiff_t k) const { return k - (k - from) % length; }
 };
@@ -91,8 +94,8 @@ class PeriodSearch {
   std::ptrdiff_t next_ = first_search;
 };
 
-/// The places of steps 0, 1, ...: consecutive, except for steps that repeat.
-class StoredSteps {
+/// The storage indices of steps 0, 1, ...: consecutive, except for steps that repeat.
+class StoredSequence {
  public:
   void start(std::ptrdiff_t steps) {
     steps_ = steps;
@@ -104,21 +107,21 @@ class StoredSteps {
     return *std::upper_bound(stored_.begin(), stored_.end() - 1, k, before);
   }
 
-  /// Records that steps [from, to) repeat those a period before, which are the last ones with a place. Returns the
-  /// number of places to add, each a copy of the place a period before it.
+  /// Records that steps [from, to) repeat those a period before, which are the last stored ones. Returns the number
+  /// of values to append, each a copy of the value a period before it.
   std::ptrdiff_t repeat(std::ptrdiff_t from, std::ptrdiff_t to, std::ptrdiff_t period) {
     const std::ptrdiff_t begin = from - period;
     const std::ptrdiff_t copies = std::min((min_consecutive_steps + period - 1) / period, (to - begin) / period);
-    const std::ptrdiff_t place = stored_.back().place(begin);
+    const std::ptrdiff_t storage_index = stored_.back().storage_index(begin);
     stored_.back().to = begin;
     if (stored_.back().from == begin) stored_.pop_back();
-    stored_.push_back({begin, to, place, copies * period});
-    if (to < steps_) stored_.push_back({to, steps_, place + copies * period, steps_ + 1});
+    stored_.push_back({begin, to, storage_index, copies * period});
+    if (to < steps_) stored_.push_back({to, steps_, storage_index + copies * period, steps_ + 1});
     return (copies - 1) * period;
   }
 
-  /// Assigns places to all steps: hash(k) is equal for equal steps, same(i, j) compares two steps. Returns for each
-  /// place the step whose values it stores.
+  /// Assigns storage indices to all steps: hash(k) is equal for equal steps, same(i, j) compares two steps. Returns for
+  /// each storage index the step whose values it has.
   template <class Hash, class Same>
   std::vector<std::ptrdiff_t> assign(std::ptrdiff_t steps, Hash hash, Same same) {
     start(steps);

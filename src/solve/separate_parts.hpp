@@ -43,7 +43,7 @@ class SeparateParts {
   /// Factorises the matrix of a kind; `fixed` is for all this rank's unknowns. See SubstructuredCholesky::factor.
   void factor(int kind, const BlockTridiagonal& A, const std::vector<char>& fixed);
 
-  /// As the functions of SubstructuredCholesky, without communication. A window must consist of whole parts.
+  /// Same meaning as in SubstructuredCholesky, without communication. A window must consist of whole parts.
   void solve(double* x, int columns = 1) const;
   void solve(double* x, RhsCallback& rhs_callback) const;
   void solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past, RhsCallback& rhs_callback) const;

@@ -13,7 +13,7 @@
 namespace traverse::solve {
 
 struct PivotRecord {
-  double smallest_ratio = 1.0;      // of a pivot to its diagonal entry in the matrix
+  double smallest_ratio = 1.0;      // smallest ratio of a pivot to its diagonal entry in the matrix
   std::ptrdiff_t bad_unknown = -1;  // the local unknown whose pivot is not positive; -1: none
   double bad_pivot = 0.0;
   double bad_diagonal = 0.0;
@@ -27,7 +27,7 @@ struct Slice {
   const BlockTridiagonal& matrix;
   const char* fixed;  // null: none
   std::uint64_t next_fixed;
-  const double* original;  // null: those of the matrix
+  const double* original;  // null: the diagonal entries of the matrix
 
   Extent<B> block() const { return {matrix.block}; }
 

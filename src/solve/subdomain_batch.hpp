@@ -6,8 +6,7 @@
 // stored completely.
 //
 // If the rows of all chains repeat, and their pivot blocks repeat to rounding, the values of one period are used for
-// all periods that follow (Stored): the solution is that of a matrix whose pivot blocks have a change of this
-// magnitude.
+// all periods that follow (Stored): this is equivalent to a change of the matrix's pivot blocks of this magnitude.
 #pragma once
 
 #include <algorithm>
@@ -118,7 +117,7 @@ class SubdomainBatch {
   }
   Factors factors(std::size_t lane, std::ptrdiff_t k) const;
   double* address(const Columns& x, std::ptrdiff_t node) const { return x.x + (node - x.origin) * block_.size(); }
-  // For the steps from k on, counted from k.
+  // The sweep over the elimination steps from k on, counted from k.
   LaneSweep<B> lane_sweep(const Columns& x, std::ptrdiff_t k) const;
   template <int C, std::size_t N>
   ColumnSweep<B, C, N> column_sweep(const Columns& x, std::size_t lane, std::ptrdiff_t k) const;
@@ -141,13 +140,13 @@ class SubdomainBatch {
   std::array<Part, parts_per_batch> parts_;
   Range nodes_;
   std::ptrdiff_t steps_ = 0;         // steps of the longest chain
-  std::ptrdiff_t common_steps_ = 0;  // steps that all chains have, none of them to a middle
+  std::ptrdiff_t common_steps_ = 0;  // steps that all chains have, without the steps to a middle
   std::ptrdiff_t fill_nodes_ =
-      0;  // nodes per chain with fill: those of the longest fill; the others are padded with zeros
+      0;  // nodes per chain with fill: the number of the longest fill; the other chains are padded with zeros
 
   // With the pivot block D_k, the coupling U_k to node k + 1 and the coupling S_k of the separator (rows) to node k
-  // (columns), in the layout of Factors, the first two indexed by places:
-  StoredSteps stored_;
+  // (columns), in the layout of Factors, the first two by storage indices:
+  StoredSequence stored_;
   std::vector<LaneEntry> lower_;    // U_k^T D_k^{-1}
   std::vector<LaneEntry> inverse_;  // D_k^{-1}
   std::vector<LaneEntry> fill_;     // S_k D_k^{-1}

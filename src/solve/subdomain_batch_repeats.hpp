@@ -9,9 +9,9 @@
 
 namespace traverse::solve {
 
-// Inverse pivot blocks of two steps are equal if they differ by rounding errors only: by the effect of a change of the
-// matrix by `rounding`, relative to the roots of its diagonal entries. If pivots decrease slowly along a chain without
-// supports, such changes accumulate. The blocks must therefore also be equal to the relative tolerance
+// Inverse pivot blocks of two elimination steps are equal if they differ by rounding errors only: by the effect of a
+// change of the matrix by `rounding`, relative to the roots of its diagonal entries. If pivots decrease slowly along a
+// chain without supports, such changes accumulate. The blocks must therefore also be equal to the relative tolerance
 // `repeat_tolerance`.
 inline constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 inline constexpr double repeat_tolerance = 1e-10;
@@ -25,7 +25,7 @@ Block<B> SubdomainBatch<B>::coupling(const Slice<B>& slice, std::size_t lane, st
 
 template <int B>
 Block<B> SubdomainBatch<B>::stored_inverse(std::size_t lane, std::ptrdiff_t k) const {
-  const LaneEntry* from = inverse_.data() + stored_.at(k).place(k) * block_.triangle();
+  const LaneEntry* from = inverse_.data() + stored_.at(k).storage_index(k) * block_.triangle();
   Block<B> result(block_);
   for (int c = 0; c < block_.size(); ++c) {
     for (int r = 0; r < block_.size(); ++r) result(r, c) = from[packed(r, c)].chain[lane];
@@ -59,7 +59,7 @@ bool SubdomainBatch<B>::same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::
   return true;
 }
 
-/// Compares the pivots to rounding; with the same rows, the other values are then the same too.
+/// Compares the pivots to rounding. If they and the rows are equal, all other values are equal too.
 template <int B>
 bool SubdomainBatch<B>::same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const {
   for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -78,7 +78,8 @@ bool SubdomainBatch<B>::same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std
   return true;
 }
 
-/// Uses the values of the period before for the steps from `from` on whose rows repeat. Returns the first other step.
+/// Uses the values of the previous period for the steps from `from` on whose rows repeat. Returns the first step whose
+/// rows do not repeat.
 template <int B>
 std::ptrdiff_t SubdomainBatch<B>::repeat(const Slice<B>& slice, std::ptrdiff_t from, std::ptrdiff_t period,
                                          std::array<Front, lanes>& fronts) {

@@ -8,7 +8,8 @@
 
 namespace traverse::solve {
 
-// Number of steps per sweep; values that a callback has written, or that several sweeps use, then remain in a cache.
+// Number of elimination steps per sweep; values that a callback has written, or that several sweeps use, then remain in
+// a cache.
 inline constexpr std::ptrdiff_t tile = 128;
 
 inline constexpr unsigned all_chains = (1U << lanes) - 1U;
@@ -42,7 +43,7 @@ class RhsWriter {
 
 template <int B>
 Factors SubdomainBatch<B>::factors(std::size_t lane, std::ptrdiff_t k) const {
-  const std::ptrdiff_t place = stored_.at(k).place(k);
+  const std::ptrdiff_t place = stored_.at(k).storage_index(k);
   return {first(lower_, place * block_.area(), lane), first(inverse_, place * block_.triangle(), lane),
           k < fill_nodes_ ? first(fill_, k * block_.area(), lane) : nullptr};
 }

@@ -222,7 +222,7 @@ void Substructure<B>::solve_single(const Request& request, int column) {
 }
 
 /// Eliminates the inner nodes and writes this rank's message: for each column the reduced right-hand side of its
-/// separator, and its contribution to that of the next separator.
+/// separator, and its contribution to the right-hand side of the next separator.
 template <int B>
 template <int C>
 void Substructure<B>::reduce(const Request& request, int column) {

@@ -81,7 +81,7 @@ class Substructure final : public AnySubstructure {
   PivotRecord record_;
   bool factored_ = false;
 
-  BlockTridiagonal reduced_matrix_;       // of the separators, in the order of the ranks
+  BlockTridiagonal reduced_matrix_;       // matrix of the separators, in the order of the ranks
   std::vector<double> reduced_diagonal_;  // their diagonal entries in the original matrix
   std::vector<double> outgoing_;          // messages: this rank's and all ranks'
   std::vector<double> incoming_;

@@ -57,8 +57,8 @@ struct LaneSweep {
   }
 };
 
-/// C columns along N neighbouring chains. The entries of a column are `stride` behind those of the column before; if
-/// they are packed, the columns of each unknown are contiguous, and so are the unknowns of a node.
+/// C columns along N neighbouring chains. The entries of a column are `stride` behind the entries of the previous
+/// column; if they are packed, the columns of each unknown are contiguous, and so are the unknowns of a node.
 template <int B, int C, std::size_t N, bool Packed = false>
 struct ColumnSweep {
   using Unknowns = Panel<B, C>;

@@ -9,9 +9,9 @@
 
 namespace traverse::structure {
 namespace {
-constexpr int steps_between_checks =
-    16;                          // between updates of the largest displacement and velocity, and divisions of ranges
-constexpr int split_factor = 4;  // least length of a range at rest between two loads, over the reach of a load
+constexpr int steps_between_checks = 16;  // number of time steps between updates of the largest displacement and
+                                          // velocity, and between divisions of ranges
+constexpr int split_factor = 4;           // least length of a range at rest between two loads, over the reach of a load
 }  // namespace
 
 ActiveWindow::ActiveWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> probes,
@@ -30,7 +30,7 @@ int ActiveWindow::local(int column) const {
   return std::clamp(column - beam_.first_column(), 0, beam_.local_columns());
 }
 
-// For the nodes [first, past).
+// Updates the largest motion with the nodes [first, past).
 void ActiveWindow::record_largest(const double* v, const double* w, int first, int past) {
   const int block = beam_.block();
   for (int i = block * first; i < block * past; ++i) {
@@ -69,7 +69,7 @@ void ActiveWindow::open(const std::vector<Range>& loaded, int reach) {
   merge(moving_);
 }
 
-// The next node, or the end of the part of this one.
+// The next node, or the end of the part that contains this node.
 int ActiveWindow::next(int node) const {
   if (!parts_) return node + 1;
   const auto& begins = beam_.parts();
@@ -100,7 +100,7 @@ Range ActiveWindow::trimmed(const Range& range, const double* v, const double* w
   return r;
 }
 
-// From ranges of this rank's nodes to the ranges of columns on all ranks.
+// Converts the ranges of this rank's nodes to the ranges of columns on all ranks.
 void ActiveWindow::share_ends() {
   const int begin = beam_.first_column();
   ends_.clear();

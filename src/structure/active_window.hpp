@@ -1,7 +1,7 @@
 // The ranges of the bridge that move, one around each train. Ahead of a train nothing has moved yet; behind it
-// vibrations decay. Stages and steps exclude what is at rest: whole spans that do not touch their neighbours, and
-// single nodes of a continuous bridge, where waves are included until they are below the tolerance. The energy of nodes
-// that are set to rest is lost; it is added up.
+// vibrations decay. Stages and time steps exclude the parts at rest: whole separate spans, and single nodes of a
+// continuous bridge, where waves are included until they are below the tolerance. The energy of nodes that are set to
+// rest is lost; it is added up.
 #pragma once
 
 #include <array>
@@ -15,16 +15,16 @@ namespace traverse::structure {
 
 class ActiveWindow {
  public:
-  /// tolerance: over the largest displacement and velocity so far of each unknown of a column; smaller motions are set
-  /// to rest. probes: the columns of probes, which are set to rest only below `quiet`. rest: displacements at rest
-  /// of this rank's unknowns, null for 0; the pointer is stored.
+  /// tolerance: relative to the largest displacement and velocity so far of each unknown of a column; smaller motions
+  /// are set to rest. probes: the columns of probes, which are set to rest only below `quiet`. rest: displacements at
+  /// rest of this rank's unknowns, null for 0; the pointer is stored.
   ActiveWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> probes,
                const double* rest);
 
   static constexpr double quiet = 1e-9;
 
-  /// Collective. From a state: the window has the moving ranges and the loaded ones (columns, as merge() returns them;
-  /// if parts of the beam do not touch, whole parts).
+  /// Collective. Sets the window from a state: it contains the moving and the loaded ranges of columns, as merge()
+  /// returns them. If the beam has connected parts, it contains whole parts.
   void begin(BeamMotion& motion, double* v, double* w, const std::vector<Range>& loaded);
   /// Collective. Extends the window for a step with loads on these columns, whose effect is negligible outside `reach`
   /// columns.
@@ -33,10 +33,10 @@ class ActiveWindow {
   /// it is at rest between them.
   void close(BeamMotion& motion, double* v, double* w);
 
-  /// J, energy lost by setting nodes to rest so far, this rank's share.
+  /// Energy lost so far by setting nodes to rest, J, this rank's share.
   double energy_left() const { return energy_left_; }
   double tolerance() const { return tolerance_; }
-  /// Columns, as merge() returns them.
+  /// The moving ranges of columns, as merge() returns them.
   const std::vector<Range>& moving() const { return moving_; }
   void keep(base::Archive& archive) {
     archive.same(moving_, loaded_, reach_, largest_, steps_);
@@ -66,13 +66,13 @@ class ActiveWindow {
   std::vector<Range> moving_;  // columns
   std::vector<Range> loaded_;  // in the last step
   int reach_ = 0;
-  std::vector<Range> split_;  // of a step
+  std::vector<Range> split_;  // ranges of the next step, without the quiet ranges between them
   std::vector<int> ends_;
   struct Largest {
     double displacement = 0.0, rate = 0.0;
   };
-  std::array<Largest, beam::kinds> largest_{};  // of each unknown of a column
-  double energy_left_ = 0.0;                    // this rank's share
+  std::array<Largest, beam::kinds> largest_{};  // largest motion of each unknown of a column
+  double energy_left_ = 0.0;                    // J, this rank's share
   int steps_ = 0;
 };
 

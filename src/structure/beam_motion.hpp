@@ -36,7 +36,7 @@ struct NodalLoad {
 
 class BeamMotion final : private solve::RhsCallback {
  public:
-  /// dead_load: of this rank's unknowns; null: none. The pointer and both references are stored.
+  /// dead_load: dead load on this rank's unknowns; null: none. The pointer and both references are stored.
   BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load);
 
   /// Sets the method of the next steps, for their length; the acceleration at the start is unchanged.
@@ -52,10 +52,10 @@ class BeamMotion final : private solve::RhsCallback {
   /// Whether stages are solved by solve(); if not, the beam has hinges or a nonlinear foundation, and predicted() is
   /// used.
   bool fused() const { return elements_.has_value(); }
-  /// Fused, with Rayleigh damping only, as step_free() requires.
+  /// Whether stages are fused and the damping is Rayleigh damping only, as step_free() requires.
   bool proportional() const { return fused() && proportional_; }
 
-  /// Collective. Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
+  /// Collective. Computes Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
   void solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads);
   /// Whether the first stages of steps compute the dissipation.
   void measure(bool on) { measure_ = on; }
@@ -66,9 +66,10 @@ class BeamMotion final : private solve::RhsCallback {
     double rate = 0.0;   // W/s, with Rayleigh damping only
   };
   Dissipation dissipation() const { return dissipation_; }
-  /// Collective. The same for some nodes between steps, with the acceleration at the start of the next step.
+  /// Collective. The dissipated power and its rate for some nodes between two steps, with the acceleration at the start
+  /// of the next step.
   Dissipation dissipation(const std::vector<Range>& nodes, const double* v, const double* w);
-  /// Collective. w^T C w of a solved stage, this rank's share. Only if fused.
+  /// Collective. The power w^T C w of a solved stage, this rank's share. Only if fused.
   double power(std::size_t stage, const double* v, const double* w);
 
   /// v~ and w~ of this rank's unknowns.
@@ -91,9 +92,9 @@ class BeamMotion final : private solve::RhsCallback {
   /// v, w and the acceleration at the end of the step, which is the start of the next one.
   void finish(double* v, double* w);
 
-  /// If parts of the beam do not touch: a whole step of the parts among the nodes [first, past) that only the dead load
-  /// acts on. A few parts at a time pass through all stages while their numbers are in the cache. Adds to
-  /// `dissipation`, at the start of the step.
+  /// Computes a whole time step of the separate parts among the nodes [first, past) on which only the dead load acts.
+  /// All stages of a few parts are computed while their numbers are in the cache. Adds the dissipation at the start of
+  /// the step to `dissipation`.
   void step_free(int first, int past, double* v, double* w, Dissipation& dissipation);
 
   /// Restricts stages and ends of steps to these nodes of this rank, outside which the motion is negligible. All ranks
@@ -105,14 +106,14 @@ class BeamMotion final : private solve::RhsCallback {
   double set_to_rest(int first, int past, const double* rest, double* v, double* w);
 
  private:
-  struct Sum {  // of v_n, w_n and the stored vectors
+  struct Sum {  // linear combination of v_n, w_n and the stored vectors
     double v = 0.0, w = 0.0;
     Weights stored{};
     void add(double by, const Sum& other);
   };
   struct Stage {
     Sum v_predicted, w_predicted, a, e;
-    Sum v, w;                               // of the solved stage
+    Sum v, w;                               // displacement and rate of the solved stage
     double rate = 0.0, displacement = 0.0;  // k1, k2
   };
   struct View {  // the vectors of the nodes [first, past)
@@ -161,16 +162,16 @@ class BeamMotion final : private solve::RhsCallback {
   std::vector<Stage> stages_;
   Sum v_end_, w_end_, a_end_, v_error_, w_error_;
 
-  // Of the present stage
+  // Data of the present stage
   View view_;
   const Stage* stage_ = nullptr;
   bool measure_ = false;    // compute the dissipation at the start of steps
   bool measuring_ = false;  // compute it in this stage
   const std::vector<NodalLoad>* loads_ = nullptr;
-  std::array<Ghosts, 3> ghosts_{};  // of e, w and w~, or of the errors of v and w
+  std::array<Ghosts, 3> ghosts_{};  // neighbours' values of e, w and w~, or of the errors of v and w
   double* target_ = nullptr;        // the solution at the first unknown of the view
   Dissipation dissipation_;
-  std::array<std::vector<double>, most_accelerations> scratch_;  // of step_free
+  std::array<std::vector<double>, most_accelerations> scratch_;  // work arrays of step_free
 };
 
 }  // namespace traverse::structure

@@ -28,7 +28,7 @@ struct AddedSprings {
   };
   long version = 0;  // changes with every change of the springs, the same on all ranks
   const std::vector<Term>* terms = nullptr;
-  std::vector<double> k, c;  // of every point
+  std::vector<double> k, c;  // stiffness and damping of every point
 };
 
 class BeamOperator {
@@ -59,8 +59,8 @@ class BeamOperator {
 
   /// Collective. The neighbours' columns next to this rank's; unchanged if there is no neighbour.
   void borders(const double* x, double* left, double* right) const;
-  /// Collective. Exchanges `count` numbers: those of the first column with the left neighbour, those of the last column
-  /// with the right one.
+  /// Collective. Exchanges `count` numbers of the first column with the left neighbour rank, and `count` numbers of the
+  /// last column with the right neighbour rank.
   void exchange(const double* first, const double* last, int count, double* left, double* right) const;
 
   /// Collective. r = sign*(M m + C* c + K* k); a null pointer omits its term. Arrays of this rank's unknowns; the rows
@@ -81,9 +81,9 @@ class BeamOperator {
   /// The largest relative error of all results of solve_static, estimated from the last corrections.
   double static_error() const { return static_error_; }
 
-  /// The factorisation of shift2 M + shift C* + K* with added springs, if any; 0, 0 is the static one. Those of the
-  /// last few shifts are stored. Shifts are compared with a tolerance, since time integrators compute the same shift
-  /// with rounding errors.
+  /// The factorisation of shift2 M + shift C* + K* with added springs, if any; with the shifts 0, 0 it is the static
+  /// one. The factorisations for the last few shifts are stored. Shifts are compared with a tolerance, since time
+  /// integrators compute the same shift with rounding errors.
   const BeamFactor& factored(double shift, double shift2, const AddedSprings* added = nullptr);
   /// Deletes the factorisations of time steps, so that later results do not depend on earlier steps.
   void delete_step_factors() {
@@ -109,8 +109,8 @@ class BeamOperator {
     long stamp;
     BeamFactor beam;
   };
-  /// The matrices for factorisations: of all this rank's columns, whose mass is stored separately, or of one kind of
-  /// its parts. The damping only if it is not pure Rayleigh damping.
+  /// The matrices for factorisations of all this rank's columns (their mass is stored separately) or of one kind of its
+  /// parts. They include the damping only if it is not pure Rayleigh damping.
   struct Shifted {
     solve::BlockTridiagonal mass, damping, stiffness;
   };
@@ -136,14 +136,14 @@ class BeamOperator {
   double stiffness_damping_;             // b of eq. 19, s
   std::vector<double> damping_factors_;  // b for the bridge's unknowns, 0 for others of a column
   mutable std::vector<double> relative_;
-  std::vector<double> load_, residual_;  // of solve_static
+  std::vector<double> load_, residual_;  // work arrays of solve_static
   double static_error_ = 0.0;
   bool damped_ = false;
   mutable std::vector<double> halo_;  // values of the columns on the left and on the right
   std::optional<BeamFactor> mass_factor_;
   std::list<Factor> factors_;  // most recent first
   std::vector<std::vector<double>>
-      flexibility_modes_;  // of set_modal_flexibility: each shape over its omega, this rank's unknowns
+      flexibility_modes_;  // set by set_modal_flexibility: each shape divided by its omega, this rank's unknowns
   long stamp_ = 0;
   long factorisations_ = 0;
 };

@@ -1,5 +1,6 @@
-// Products with a block tridiagonal matrix whose blocks are mostly zero, for many nodes at a time: each non-zero entry
-// of a row's blocks is stored for all nodes. Rows that repeat along the beam are stored once.
+// Products with a block tridiagonal matrix whose blocks are mostly zero, for many nodes at a time. The block row of a
+// node has one row for each of its unknowns. An entry that is non-zero at some node is stored for all nodes; block rows
+// that repeat along the beam are stored once.
 #pragma once
 
 #include <vector>
@@ -15,22 +16,22 @@ class BlockRows {
   BlockRows() = default;
   /// left: the block that couples the last column of the left neighbour rank (rows) to this rank's first column
   /// (columns).
-  BlockRows(const solve::BlockTridiagonal& rows, const std::vector<double>& left);
+  BlockRows(const solve::BlockTridiagonal& matrix, const std::vector<double>& left);
 
   /// r += A x for the nodes [first, past), at most beam::tile. x begins at node first - 1, ends at node past and has
-  /// beam::nodes_per_step more readable numbers; its values outside the beam must be finite. `r` begins at node first.
+  /// beam::nodes_per_chunk more readable numbers; its values outside the beam must be finite. `r` begins at node first.
   void add(int first, int past, const beam::Planes& x, const beam::Planes& r) const;
 
  private:
   struct Entry {
-    int row = 0, column = 0;
-    int shift = 0;  // 0: of the previous node, 1: of the same node, 2: of the next one
-    std::vector<double> along;
-    std::ptrdiff_t from = 0, to = 0;  // all other values of `along` are zero
+    int unknown = 0, column = 0;
+    int shift = 0;  // 0: block with the previous node, 1: with the node itself, 2: with the next node
+    std::vector<double> values;
+    std::ptrdiff_t from = 0, to = 0;  // all other values are zero
   };
-  std::vector<Entry> entries_;   // row by row
-  std::vector<int> row_begins_;  // index of each row's first entry, and the end
-  solve::StoredSteps stored_;
+  std::vector<Entry> entries_;       // unknown by unknown
+  std::vector<int> unknown_begins_;  // index of each unknown's first entry, and the end
+  solve::StoredSequence stored_;
 };
 
 }  // namespace traverse::structure

@@ -19,7 +19,7 @@ ComplexModes::ComplexModes(const std::vector<double>& omega, const std::vector<d
                            const Eigen::MatrixXd& cross_damping) {
   const auto m = static_cast<Eigen::Index>(omega.size());
   const Eigen::Map<const Eigen::VectorXd> frequency(omega.data(), m), decay(sigma.data(), m);
-  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(2 * m, 2 * m);  // of (Omega u, u')
+  Eigen::MatrixXd rates = Eigen::MatrixXd::Zero(2 * m, 2 * m);  // time derivative of (Omega u, u')
   rates.topRightCorner(m, m) = frequency.asDiagonal();
   rates.bottomLeftCorner(m, m) = -rates.topRightCorner(m, m);
   rates.bottomRightCorner(m, m) = -cross_damping;

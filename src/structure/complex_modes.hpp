@@ -22,8 +22,8 @@ struct ComplexModes {
                const Eigen::MatrixXd& cross_damping);
 
   Eigen::VectorXcd lambda;      // 1/s
-  Eigen::MatrixXd state;        // (Omega u, u') of (Re y, Im y)
-  Eigen::MatrixXd coordinates;  // (Re y, Im y) of (Omega u, u')
+  Eigen::MatrixXd state;        // matrix from (Re y, Im y) to (Omega u, u')
+  Eigen::MatrixXd coordinates;  // matrix from (Omega u, u') to (Re y, Im y)
 
  private:
   void solve(const Eigen::MatrixXd& rates);

@@ -12,11 +12,11 @@ namespace traverse::structure {
 
 namespace {
 constexpr std::size_t most_stored_values = std::size_t{8} << 20;  // numbers in columns that are not in use
-constexpr double negligible = 1e-18;         // of a column's peak: a smaller response is negligible
+constexpr double negligible = 1e-18;         // smaller responses, relative to a column's peak, are set to zero
 constexpr std::ptrdiff_t least_margin = 32;  // nodes
-constexpr int short_part = 100;              // columns: statics lose 0.02 eps n^4 of their digits
+constexpr int short_part = 100;              // columns: up to this length the static error 0.02 eps n^4 is small
 
-/// For elements with m unknowns.
+/// Adds the response of the elements to `loads` to v, for elements with m unknowns.
 template <int m>
 void respond_by(const ElementCompliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
   using Vector = Eigen::Matrix<double, m, 1>;
@@ -170,7 +170,7 @@ Compliance::Place Compliance::place_of(int element) const {
           static_cast<int>(part.first) * beam_.block()};
 }
 
-// The same on all ranks; for a beam with parts the whole part.
+// Returns the same columns on all ranks. If the beam has connected parts, it returns the whole part.
 std::pair<int, int> Compliance::reach(int element, const Column& c) const {
   if (operator_.parts() == nullptr) return {c.first, c.last};
   const auto end = std::upper_bound(beam_.parts().begin(), beam_.parts().end(),
@@ -239,7 +239,8 @@ std::ptrdiff_t Compliance::solve_window(const BeamFactor& factor, int element) {
     load_element(element, first, past);
     factor.solve_local(work_.data(), m_, first, past);
     operator_.solves += m_;
-    // The response at the window's ends inside the bridge, and its peak: for each column over all ranks.
+    // For each unit load: its largest response in the window, and at those window ends that are inside the bridge;
+    // maximum over all ranks.
     std::array<double, 2 * 2 * beam::kinds> sizes{};
     for (int j = 0; j < m_; ++j) {
       const double* x = work_.data() + j * size;

@@ -17,7 +17,7 @@ class ElementCompliance {
   /// The elements that respond to a load on one element: [first, last) of the list.
   struct Response {
     int first = 0, last = 0;
-    std::size_t begin = 0;  // of their blocks
+    std::size_t begin = 0;  // index of the first value of their blocks
   };
   const Response& response(int b) const { return responses_[b]; }
   /// The displacement of unknown i of element a under a unit load on unknown j of element b, at (i, j) of a matrix of
@@ -45,11 +45,11 @@ class Compliance final : public ElementCompliance {
   /// if any.
   void prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements);
 
-  /// The same for each element alone: block() of an element with itself only. On one rank.
+  /// Like prepare(), but only for the compliance of each element under forces on itself. On one rank.
   void prepare_individual(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements);
 
-  /// Collective. The number of the beam's columns outside which a response is negligible, for these shifts. 0 if parts
-  /// of the beam do not touch: a response ends with its part.
+  /// Collective. The distance in columns of the beam beyond which a response is negligible, for these shifts. 0 if the
+  /// beam has connected parts, because a response ends with its part.
   int reach(double shift, double shift2);
 
   /// v += A^-1 loads, with 2*per_node nodal values for each element of the last prepare. This rank's slice.
@@ -61,7 +61,7 @@ class Compliance final : public ElementCompliance {
   struct Column {
     std::size_t slot = 0;
     long stamp = 0;
-    int low = 0, high = 0;       // unknowns whose response exceeds rounding, counted from that of the place
+    int low = 0, high = 0;       // range of unknowns whose response exceeds rounding, counted from Place::unknown
     int first = 0, last = 0;     // beam columns on all ranks that respond: [first, last); without parts
     std::vector<double> values;  // (high - low) x 2*per_node, column by column
     void keep(base::Bytes& bytes) { bytes(slot, stamp, low, high, first, last, values); }
@@ -69,7 +69,7 @@ class Compliance final : public ElementCompliance {
   /// The place of an element: equal elements of equal parts of the beam share a slot, and thus a column.
   struct Place {
     std::size_t slot = 0;
-    int unknown = 0;  // local, the first of the part; 0 if the beam is one part
+    int unknown = 0;  // first local unknown of the part; 0 if the beam is one part
   };
   Place place_of(int element) const;
   bool find_columns();
@@ -89,26 +89,26 @@ class Compliance final : public ElementCompliance {
   BeamOperator& operator_;
   const beam::Line& line_;
   bool short_parts_ = false;                          // statics by parts lose no digits
-  std::vector<std::size_t> kind_slot_;                // of the first element of each kind of part
+  std::vector<std::size_t> kind_slot_;                // slot of the first element of each kind of part
   std::list<Column> columns_;                         // most recent first
   std::size_t stored_values_ = 0;                     // number of stored values
   std::vector<std::list<Column>::iterator> of_slot_;  // column with the stamp of the last prepare, or the end
   struct Active {
     const Column* column;
-    int unknown;      // of its place
+    int unknown;      // first local unknown of its part; 0 if the beam is one part
     int first, last;  // beam columns that respond: [first, last)
   };
-  std::vector<Active> active_;  // of the elements of the last prepare
+  std::vector<Active> active_;  // active entries for the elements of the last prepare
   std::vector<int> elements_;
   bool individual_ = false;  // the last prepare was prepare_individual
   long stamp_ = -1, reach_stamp_ = -1;
   std::ptrdiff_t margin_;  // last half width of windows, in nodes on each side of an element
-  struct {                 // of the previous prepare
+  struct {                 // results of the previous prepare
     std::vector<int> elements;
     std::vector<Response> responses;
     std::vector<double> blocks;
   } before_;
-  std::vector<int> previous_index_;     // of each element, its index in the previous list; -1: none
+  std::vector<int> previous_index_;     // index of each element in the previous list; -1: not in that list
   std::vector<double> new_blocks_;      // blocks that are not in the previous list
   std::vector<std::size_t> new_begin_;  // their positions in blocks_
   std::vector<double> work_;            // solutions: nodes x block, column by column

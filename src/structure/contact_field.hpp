@@ -10,7 +10,7 @@ namespace traverse::structure {
 /// beam::Line::unknowns, is its slot plus offset[k].
 struct ContactField {
   std::array<int, 6> offset{};
-  std::vector<int> slot;                    // of each element
+  std::vector<int> slot;                    // slot of each element
   int ground = 0;                           // a slot with zeros, for rigid ground
   const double *v = nullptr, *w = nullptr;  // m and rad; their rates
   double* load = nullptr;                   // N, N m

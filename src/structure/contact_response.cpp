@@ -6,7 +6,7 @@
 namespace traverse::structure {
 namespace {
 
-constexpr std::size_t many_elements = 4;  // from here on one solution costs less than a column for each unknown
+constexpr std::size_t many_elements = 4;  // from this number on one solution costs less than a column for each unknown
 
 }  // namespace
 
@@ -23,7 +23,7 @@ ContactResponse::ContactResponse(const beam::Beam& beam, const BeamOperator& op)
   }
 }
 
-// If the beam has a track, responses are short, and so are the columns.
+// If the beam has a track, the responses extend over few columns, so that columns of the compliance are cheap.
 bool ContactResponse::worthwhile(std::size_t elements) const {
   return uniform_ && !operator_.shared() && beam_.block() == line_.per_node && elements >= many_elements;
 }

@@ -1,5 +1,5 @@
-// The response of the structure to forces on elements, by one solution for all of them: A z = P, with A of a stage
-// (ElementStructure). On one rank; if parts of the structure do not touch, only for the nodes near the forces.
+// The response of the structure to forces on elements, by one solution A z = P for all forces, with the matrix A of a
+// stage (ElementStructure). It is for one rank; on separate parts only nodes near the forces are included.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace traverse::structure {
 
 class ContactResponse {
  public:
-  /// Both must outlive it.
+  /// Beam and operator must outlive this object.
   ContactResponse(const beam::Beam& beam, const BeamOperator& op);
 
   /// Whether this is faster than the columns of Compliance for forces on so many elements.
@@ -58,7 +58,7 @@ class ContactResponse {
   std::vector<int> elements_;
   std::vector<Range> stepped_;
   std::vector<Run> runs_;
-  std::vector<std::size_t> held_;  // of the elements' unknowns
+  std::vector<std::size_t> held_;  // indices of held unknowns among the elements' unknowns
   ContactField field_;
   std::vector<double> z_, v_free_, w_free_, v_, w_;
 };

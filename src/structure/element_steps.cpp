@@ -6,7 +6,7 @@
 namespace traverse::structure {
 namespace {
 
-constexpr double measured_steps = 2.0;  // of one stage, between computations of the dissipation
+constexpr double measured_steps = 2.0;  // time between computations of the dissipation, in steps of one stage
 
 }  // namespace
 
@@ -211,7 +211,7 @@ bool ElementStructure::measured_between_steps() const {
   return fused() && (motion_->proportional() || method_.stages.size() == 1);
 }
 
-// Between steps, of all moving nodes.
+// Measures the dissipation of all moving nodes between two steps.
 void ElementStructure::measure_dissipation(const double* v, const double* w) {
   if (!measured_between_steps() || !statics_->damped()) return;
   add_dissipation(motion_->dissipation(active_nodes(), v, w));

@@ -1,4 +1,4 @@
-// The structure by elements: the beam with its nodes split over ranks, its foundation, the track on it.
+// The structure by elements: the beam, its foundation and the track on it; its nodes are distributed over the ranks.
 //
 //   v' = w,  M w' = P + contacts - C* w - K* v,   P: its own weight and the moving forces
 //
@@ -8,8 +8,8 @@
 // foundations, this is inside a Newton iteration (NonlinearFoundation).
 //
 // For a beam without hinges and with linear foundations, the computation of stages is fused with the solver's sweep
-// (BeamMotion). With Rayleigh damping only, spans that do not touch those under the loads pass through all stages of a
-// step at once, and steps exclude what is at rest (ActiveWindow).
+// (BeamMotion). With Rayleigh damping only, all stages of a time step are computed at once on separate spans without
+// loads, and time steps exclude the ranges at rest (ActiveWindow).
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ namespace traverse::structure {
 
 class ElementStructure final : public Structure {
  public:
-  /// `op`: the operator of the beam if there is one already, with its factorisations.
+  /// `op`: an existing operator of the beam with its factorisations; null: a new operator is created.
   ElementStructure(const beam::Beam& beam, double gravity, std::shared_ptr<BeamOperator> op = nullptr);
 
   bool linear() const override { return !nonlinear_; }
@@ -78,7 +78,7 @@ class ElementStructure final : public Structure {
   void keep(base::Archive& archive) override;
 
  private:
-  enum class Kind { statics, state, step, fused };  // of the present stage
+  enum class Kind { statics, state, step, fused };  // kind of the present stage
   struct Stage {
     Kind kind = Kind::statics;
     double shift = 0.0, shift2 = 0.0;
@@ -109,11 +109,12 @@ class ElementStructure final : public Structure {
 
   Compliance compliance_;
   ContactResponse response_;
-  bool uses_response_ = false;                    // in passes: response_, not the columns of compliance_
+  bool uses_response_ = false;                    // whether passes use response_ instead of the columns of compliance_
   std::optional<NonlinearFoundation> nonlinear_;  // only for a nonlinear foundation
   std::vector<NodalLoad> nodal_forces_;           // moving forces, unknowns ascending
   Stage stage_;
-  // This rank's unknowns: z of the present stage, v~ and w~, and its load if there is a Newton iteration.
+  // Vectors of this rank's unknowns: z, v~ and w~ of the present stage, and the load of the stage for a Newton
+  // iteration.
   std::vector<double> z_, v_predicted_, w_predicted_, stage_load_, work_;
   std::vector<double> element_work_;
 
@@ -123,7 +124,7 @@ class ElementStructure final : public Structure {
   std::optional<BeamMotion> motion_;
   std::optional<ActiveWindow> window_;
   double longest_span_ = 0.0;                 // m
-  double window_tolerance_ = 0.0;             // 0: all nodes are in the steps
+  double window_tolerance_ = 0.0;             // 0: time steps include all nodes
   std::vector<int> probe_columns_;            // columns of probes
   std::vector<double> static_displacements_;  // deflections under the dead load only; empty: none
   std::array<Powers, most_accelerations> powers_;
@@ -134,13 +135,13 @@ class ElementStructure final : public Structure {
   bool measuring_ = false, to_measure_ = true;
   struct {
     double dissipated = 0.0, worked = 0.0;
-    std::vector<double> v, w;  // of the motion's ranges
-  } before_;                   // the start of a step that may be rejected
+    std::vector<double> v, w;  // values of the active ranges of the motion
+  } before_;                   // state at the start of a step that may be rejected
   std::vector<Range> free_;    // nodes of parts without loads in the step
   std::vector<Range> loaded_, active_, all_;
   std::vector<Reach> reaches_;
   bool stepped_ = false;     // since the last restart
-  bool incomplete_ = false;  // free_ is at the start of the last step
+  bool incomplete_ = false;  // the nodes of free_ still have their state at the start of the last step
   bool measures_errors_ = false;
 };
 

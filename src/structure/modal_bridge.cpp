@@ -86,7 +86,7 @@ void ModalBridge::set_damping(const std::vector<double>& ratios) {
     damping = share_of_modes(forces);
     set_forces_on_others(forces, damping);
   }
-  Eigen::VectorXd root(m);  // of each mode's own damping
+  Eigen::VectorXd root(m);  // square root of each mode's own damping
   for (std::size_t i = 0; i < modes(); ++i) {
     const double omega = basis_.omega[i];
     if (omega <= 0.0) throw InputError("model_modes: the beam floats; hold it with supports or a foundation");
@@ -101,7 +101,8 @@ void ModalBridge::set_damping(const std::vector<double>& ratios) {
     cross_damping_ = 0.5 * (damping + damping.transpose());
 }
 
-/// From the `forces` of the damping that is not Rayleigh damping, minus the modes' own share.
+/// Sets the damping forces on the other modes: the `forces` of the damping other than Rayleigh damping, minus the
+/// modes' share.
 void ModalBridge::set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share) {
   Eigen::MatrixXd others = on_shapes(beam_.mass()) * share - forces;
   for (Eigen::Index k = 0; k < others.rows(); ++k)
@@ -247,8 +248,8 @@ void ModalBridge::record_weight(beam::Recovery& recovery, double gravity) {
 }
 
 /// The influence line of a response at a probe, minus the modes' share. By the theorem of Maxwell and Betti it is the
-/// deflection of the structure under a load: the linear form of the nodal values of the probe's element that gives the
-/// response.
+/// deflection of the structure under a load. The nodal forces of this load are the coefficients of the nodal values of
+/// the probe's element in the response.
 ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size_t p,
                                              double beam::Response::*quantity) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
@@ -267,8 +268,8 @@ ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size
   return line;
 }
 
-/// The influence line of the sum of displacements times `load`, minus the modes' share; `form` is the sum for each
-/// mode.
+/// The influence line of the sum of displacements times `load`, minus the modes' share; `form` is this sum for each
+/// mode shape.
 ModalBridge::Line ModalBridge::line_of(const std::vector<double>& load,
                                        const std::function<double(std::size_t)>& form) {
   Line line{static_solution(load)};

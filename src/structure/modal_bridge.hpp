@@ -32,39 +32,40 @@ struct PiecewiseCubic {
   std::size_t pieces() const { return breaks.size() - 1; }
 };
 
-/// The response at stations as linear forms of the modes' coordinates, rates and accelerations: [mode][station].
+/// The response at stations as linear combinations of the modes' coordinates, rates and accelerations. The members are
+/// the coefficients: [mode][station].
 struct ModalProbes {
   std::size_t count = 0;
-  std::vector<double> deflection;          // of q; of q'' it is the acceleration
+  std::vector<double> deflection;          // coefficients of q; with q'' they give the acceleration
   std::vector<double> deflection_by_rate;  // empty if damping forces act on no other modes
   std::vector<double> moment, moment_by_rate, moment_by_acceleration;
   std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: due to the beam's own weight
 };
 
-/// Rotations at nodes as linear forms of the modes' coordinates.
+/// Rotations at nodes as linear combinations of the modes' coordinates.
 struct ModalSlopes {
   std::size_t count = 0;
   std::vector<double> of_q;    // [mode][rotation]
   std::vector<double> weight;  // rad, due to the beam's own weight
-  /// As ModalBridge::influence: the modal forces, then the rotations.
+  /// Same layout as ModalBridge::influence: first the modal forces, then the rotations.
   PiecewiseCubic influence;
 };
 
 class ModalBridge {
  public:
-  /// Collective. With these modes of bending. `ratios`: damping ratios of each mode, the last one for all further
-  /// modes; empty: the beam's Rayleigh damping. InputError if the beam is not supported. The operator may be used by
-  /// others; the beam must outlive this object.
+  /// Collective. A bridge with these modes of bending. `ratios`: damping ratios of each mode, the last one for all
+  /// further modes; empty: the beam's Rayleigh damping. InputError if the beam is not supported. The operator may be
+  /// used by others; the beam must outlive this object.
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, modes::Basis basis, const std::vector<double>& ratios);
-  /// The `count` lowest modes, and all further ones with the last frequency.
+  /// Collective. A bridge with the `count` lowest modes, and all further modes with the last frequency.
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios)
       : ModalBridge(beam, statics, modes::bending_basis(beam, count), ratios) {}
 
-  /// Collective. The `count` lowest of the modes that the beam's model gives. There are no other modes that could
-  /// deflect statically, and moments are unknown. From then on the operator's statics use these modes.
+  /// Collective. A bridge with the `count` lowest modes that the beam's model gives. There are no other modes that
+  /// could deflect statically, and moments are unknown. From then on the operator's statics use these modes.
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count);
 
-  /// Collective. Adds the response at stations to the forms, and its static correction to the influence. gravity: 0
+  /// Collective. Adds the response at stations to probes(), and its static correction to influence(). gravity: 0
   /// without self-weight.
   void add_probes(const std::vector<double>& stations, double gravity);
 
@@ -78,7 +79,7 @@ class ModalBridge {
   const std::vector<double>& omega() const { return basis_.omega; }  // rad/s
   /// Half of the diagonal of the modes' damping phi^T C* phi, given ratios included, 1/s: decay rates unless coupled.
   const std::vector<double>& sigma() const { return sigma_; }
-  /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 where C* is diagonal.
+  /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 if it is diagonal.
   const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
   bool coupled() const { return cross_damping_.size() > 0; }
   /// Whether dampers couple modes with each other, or with the other modes (after add_probes).

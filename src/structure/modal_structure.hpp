@@ -61,14 +61,14 @@ class ModalStructure final : public Structure {
    public:
     explicit ModalCompliance(const ModalStructure& structure)
         : ElementCompliance(structure.per_node()), structure_(structure) {}
-    /// For the structure's present stage.
+    /// Computes the compliance for the structure's present stage.
     void prepare(const std::vector<int>& elements);
 
    private:
     void fill(int a, double* to) const;
     const ModalStructure& structure_;
     std::vector<int> elements_, elements_before_, previous_index_;
-    double shift_ = -1.0, shift2_ = -1.0;  // of the stage of the blocks
+    double shift_ = -1.0, shift2_ = -1.0;  // shifts of the stage for which the blocks were computed
     std::vector<double> blocks_before_;
     std::vector<double> loaded_shapes_;  // S^-1 times the shapes of the loaded element: [unknown][mode]
   };
@@ -95,15 +95,15 @@ class ModalStructure final : public Structure {
   std::vector<double> weight_;               // phi^T of the self-weight, N
   double weight_work_ = 0.0;                 // J, self-weight times v_0
   std::vector<beam::ElementLoad> forces_;    // the moving forces
-  std::vector<double> modal_force_;          // of the moving forces
-  double shift_ = 0.0, shift2_ = 0.0;        // of the stage: rates, accelerations over displacements
+  std::vector<double> modal_force_;          // modal forces of the moving forces
+  double shift_ = 0.0, shift2_ = 0.0;        // factors of the stage: rates and accelerations over displacements
   // The diagonal of the stage's S = s2 + 2 sigma s + omega^2; for coupled modes S^-1 including the damping between
   // them.
   std::vector<double> stiffness_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
   Eigen::MatrixXd inverse_;
-  std::vector<double> v_predicted_, w_predicted_, z_;  // as in ElementStructure
-  std::vector<int> elements_;                          // of the last compliance
+  std::vector<double> v_predicted_, w_predicted_, z_;  // same meaning as in ElementStructure
+  std::vector<int> elements_;                          // elements of the last computed compliance
   ModalCompliance compliance_;
   Method method_;
   std::array<std::vector<double>, most_accelerations> accelerations_;  // q'' at the start of the step and at its stages
@@ -113,7 +113,7 @@ class ModalStructure final : public Structure {
     double dissipated = 0.0, worked = 0.0;
     std::vector<double> v, w;
   } before_;
-  std::vector<double> q_, displacements_;  // modal forces and their displacements
+  std::vector<double> q_, displacements_;  // modal forces, and modal displacements due to them
   // Observed nodal values, the static solution; q, q', q'' and the modes' share of the static solution.
   std::vector<double> v_nodal_, w_nodal_, a_nodal_, static_displacement_, observed_, share_;
   Eigen::MatrixXd nodal_;  // [unknown][as observed_]

@@ -12,8 +12,8 @@
 // has no effect on the result.
 //
 // Sleepers and bearings that slide along x have a history: the force and the displacement of the last accepted state.
-// Within a step their law is that of a spring between two limits, which is monotone like the others; update_slip()
-// after the step sets the history for the next one.
+// Within a time step their law is the law of a spring between two limits, which is monotone like the others;
+// update_slip() sets the history for the next step after the step.
 //
 // A rank has the points of all elements that touch its columns, so that neighbours compute the same forces from the
 // same values.
@@ -37,8 +37,8 @@ struct NonlinearForces {
   /// For the sleepers over a gap, from left to right: the upward force on each, N, and the opening of its gap, m. A
   /// negative opening is the compression of the ballast's spring.
   std::vector<double> below_sleepers, open_gaps;
-  double of_ground = 0.0;     // N, on all sleepers whose ballast is on the ground without a mass
-  double along_ground = 0.0;  // N along x, of sleepers that slide on the ground, on the rail
+  double of_ground = 0.0;     // N, upward force on all sleepers whose ballast is on the ground without a mass
+  double along_ground = 0.0;  // N, force along x on the rail from sleepers that slide on the ground
 };
 
 class NonlinearFoundation {
@@ -53,11 +53,12 @@ class NonlinearFoundation {
   void evaluate(const double* v, const double* w);
   /// Nodal forces of this rank's unknowns, held ones included.
   void add_forces(double* nodal) const;
-  /// This rank's share, J and W. The energy lost by sliding is not part of the dissipation.
+  /// Stored energy, J, and dissipated power, W, this rank's share. Energy lost by sliding is not part of the
+  /// dissipation.
   double energy() const;
   double dissipation() const;
   double slip_loss() const { return slip_loss_; }  // J, lost by sliding so far, this rank's share
-  /// Collective. The same on all ranks; `loads` of the bridge are appended.
+  /// Collective. Sets the forces, equal on all ranks, and appends the loads on the bridge to `loads`.
   void report(NonlinearForces& forces, std::vector<beam::ElementLoad>& loads) const;
 
   // Sliding sleepers and bearings ------------------------------------------------------------------------------------
@@ -93,20 +94,20 @@ class NonlinearFoundation {
  private:
   struct Point {
     beam::NonlinearPoint source;
-    std::size_t terms = 4;  // of the displacement
+    std::size_t terms = 4;  // number of terms of the displacement
     /// Index in the local unknowns, then in the left and the right neighbour's column; -1: none.
     std::array<int, beam::NonlinearShape::most> place{};
     std::array<double, beam::NonlinearShape::most> shape{};
     bool counted = false;    // included in this rank's sums
-    double reference = 0.0;  // N/m, for displacements of the order of that under the load
+    double reference = 0.0;  // N/m, stiffness for displacements of the order of the displacement under the load
     double predicted = 0.0;  // displacement and rate at z = 0
     double predicted_rate = 0.0;
     double zeta0 = 0.0;
     double force0 = 0.0;
-    double zeta = 0.0;            // of the last checked solution
+    double zeta = 0.0;            // value of zeta in the last checked solution
     double linear_force = 0.0;    // G at zeta
     double balanced_force = 0.0;  // G at zeta0
-    double mismatch = 0.0;        // difference of force and tangent, without rounding
+    double mismatch = 0.0;        // difference of force and tangent beyond rounding
     beam::FoundationForce state;
     // For a sliding sleeper or bearing: whether it is loaded, and force, displacement and energy of its slip history.
     bool loaded = false;
@@ -132,7 +133,7 @@ class NonlinearFoundation {
   MPI_Comm comm_;
   const BeamOperator& operator_;
   const beam::Foundation& foundation_;
-  std::size_t sleepers_ = 0;  // number of those over a gap, on all ranks
+  std::size_t sleepers_ = 0;  // number of sleepers over a gap, on all ranks
   int spans_, n_, block_;
   double point_load_;
   std::vector<Point> points_;

@@ -12,14 +12,14 @@ namespace {
 
 using beam::Direction;
 
-constexpr double tolerance = 1e-12;        // of the greatest force: remaining error of tangents
-constexpr int most_stage_iterations = 40;  // of a stage; with more the step is shortened
+constexpr double tolerance = 1e-12;        // remaining error of tangents, relative to the greatest force
+constexpr int most_stage_iterations = 40;  // limit of iterations in a stage; if exceeded, the step is shortened
 constexpr int most_static_iterations = 100;
 constexpr double near_tangent = 0.1;      // relative difference of stiffnesses: stored tangents are used
 constexpr int reuse_iterations = 4;       // iterations with them, then with the exact tangents only
-constexpr double loose_stiffness = 1e-6;  // of the reference stiffness: stiffness in statics without contact
+constexpr double loose_stiffness = 1e-6;  // stiffness in statics without contact, relative to the reference stiffness
 constexpr double overshoot = 0.5;         // slope at the end of a step over that at its start, at most
-constexpr int most_trials = 50;           // of the length of a step
+constexpr int most_trials = 50;           // limit of bisections for the length of a Newton step
 constexpr double unit_rounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 bool nearly_equal(double stored, double required, double share) {

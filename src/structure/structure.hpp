@@ -6,7 +6,7 @@
 //   the computed contact forces (apply_contact_loads).
 //
 // The state of a structure is v and w = v' of its own unknowns: nodal displacements, or modal coordinates. The kind of
-// structure determines what a stage is, how it is solved, and which of its data are stored.
+// structure determines the equations of a stage, their solution, and the stored data.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ struct NodalMotion {
   std::vector<double> drag;         // acceleration whose inertia forces equal modal damping forces; empty: none
   std::vector<double> coordinates;  // by modes: q of each mode, m kg^(1/2), on every rank
   NonlinearForces foundation;
-  std::vector<beam::ElementLoad> foundation_loads;  // of the nonlinear foundation
+  std::vector<beam::ElementLoad> foundation_loads;  // loads from the nonlinear foundation
 };
 
 /// A structure with n unknowns on this rank. All functions are collective, except those that only return a value.
@@ -67,7 +67,7 @@ class Structure {
   Structure& operator=(const Structure&) = delete;
 
   const beam::Beam& beam() const { return beam_; }
-  const beam::Line& line() const { return line_; }  // of wheels and forces
+  const beam::Line& line() const { return line_; }  // line on which wheels and forces move
   int per_node() const { return line_.per_node; }
   int unknowns() const { return n_; }
   /// The beam's matrices, for static problems.
@@ -82,7 +82,7 @@ class Structure {
   }
   /// Whether the structure is deformed without vehicles and moving forces.
   bool deformed_without_traffic() const { return gravity_ != 0.0 || beam_.model().strained(); }
-  /// Collective. Its displacements then, without nonlinear foundations: this rank's unknowns of the beam.
+  /// Collective. The displacements without traffic, without nonlinear foundations: this rank's unknowns of the beam.
   std::vector<double> displacements_without_traffic();
   /// Sets nodal forces on held unknowns to zero: the supports carry them.
   void release_held(double* nodal) const;
@@ -131,9 +131,9 @@ class Structure {
   // are cleared, new loads are added to the field, and the response is computed, until the contact forces no longer
   // change. Then the loads are applied.
 
-  /// After solve_free, with contacts on these elements, ascending.
+  /// Begins the passes with contacts on these elements, ascending. Call after solve_free.
   virtual const ContactField& begin_passes(const std::vector<int>& elements);
-  /// The displacements of each of them under forces on itself only.
+  /// The displacements of each of these elements under forces on itself only.
   virtual const ElementCompliance& own_compliance() const { return *own_; }
   virtual void clear_loads();
   /// Computes the field's v under its loads.
@@ -165,7 +165,7 @@ class Structure {
   virtual std::optional<double> energy_left() const { return std::nullopt; }
   /// The method of all following steps, for steps of 1 s.
   virtual void begin_motion(const Method& method) = 0;
-  /// The same for steps of h.
+  /// The method of all following steps, for steps of h, s.
   virtual void set_method(const Method& method, double h) = 0;
   /// The errors of all steps will be requested.
   virtual void measure_errors() {}
@@ -210,8 +210,8 @@ class Structure {
   int n_, ranks_ = 1;
 
  private:
-  std::vector<double> gathered_;  // of gather
-  // For the contacts' passes
+  std::vector<double> gathered_;  // buffer of gather
+  // Data of the contacts' passes
   ContactField field_;
   const ElementCompliance* own_ = nullptr;
   std::vector<double> v_free_, w_free_, v_pass_, w_pass_, loads_;

@@ -28,7 +28,7 @@ void with_block(int block, Body body) {
 
 /// The columns from the one before a tile to the one after it, an array for each unknown.
 struct Tile {
-  std::array<std::array<double, beam::tile + 2 + beam::nodes_per_step>, beam::kinds> plane;
+  std::array<std::array<double, beam::tile + 2 + beam::nodes_per_chunk>, beam::kinds> plane;
 
   beam::Planes planes() {
     beam::Planes result;

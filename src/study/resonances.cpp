@@ -16,9 +16,9 @@ constexpr double same_position = 0.005;  // m: two axles are at the same positio
 constexpr double repeated_share = 0.55;  // share of the train's weight that the axle distance has to repeat
 constexpr int highest_multiple = 4;      // largest i
 constexpr double largest_offset =
-    0.5;  // resonance widths: largest distance between a resonance speed and its computed peak
+    0.5;  // largest distance between a resonance speed and its computed peak, in resonance widths
 constexpr double resolved_offset =
-    0.25;                               // resonance widths: largest distance to a computed speed that resolves the peak
+    0.25;  // largest distance of a resonance speed to a computed speed that resolves the peak, in resonance widths
 constexpr std::size_t max_axles = 400;  // number of leading axles from which the axle distance is computed
 constexpr double rounding = 1e-9;
 constexpr int max_nodes = 1000;  // nodes of the largest bridge whose frequencies are computed for predictions only

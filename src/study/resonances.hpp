@@ -12,12 +12,12 @@
 
 namespace traverse::app {
 
-/// The axle distance (m): the shift of a train by which most of its weight falls on its own axles again. Each pair of
-/// axles counts with the lesser force. 0 if no shift repeats more than about half of the weight; the shortest one of
-/// equal shifts. x in m.
+/// The regular axle distance (m): the shift of a train after which most of its weight is at positions of axles of the
+/// unshifted train. Each pair of axles contributes the lesser of its forces. Of equal shifts the shortest is returned;
+/// 0 if no shift repeats more than about half of the weight. x in m.
 double regular_distance(std::span<const double> x, std::span<const double> forces);
 
-/// Ascending, Hz: the first three distinct bending frequencies at most. Empty for a bridge with so many nodes that
+/// At most the first three distinct bending frequencies, Hz, ascending. Empty for a bridge with so many nodes that
 /// computing them would be expensive.
 std::vector<double> resonant_frequencies(const SharedBeam& shared);
 

@@ -123,7 +123,7 @@ std::size_t max_speeds_of(const Study& study, std::size_t given) {
 /// Rounds of runs; each round has the speeds of the round before and added ones.
 class Rounds {
  public:
-  /// width: of a resonance, relative to the speed.
+  /// width: width of a resonance, relative to the speed.
   Rounds(MPI_Comm comm, const Scene& scene, StudyScenes& scenes, const results::RunModel& model, double width,
          results::StoredStudy stored, const std::vector<std::string>& notes)
       : comm_(comm),
@@ -207,7 +207,7 @@ class Rounds {
   double width_;
   results::StoredStudy stored_;  // runs of an earlier, interrupted study
   const std::vector<std::string>& notes_;
-  std::vector<double> given_;  // m/s, ascending, of the user
+  std::vector<double> given_;  // speeds of the user, m/s, ascending
   std::optional<results::StudyTable> table_;
   std::vector<char> known_;  // 1 for each run whose results are known
   std::optional<StudyFile> file_;

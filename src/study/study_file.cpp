@@ -20,7 +20,8 @@ namespace traverse::app {
 namespace {
 
 constexpr double write_every = 5.0,
-                 cost_factor = 20.0;  // s between two writes; ratio of this interval to the duration of a write
+                 cost_factor =
+                     20.0;  // least interval of two writes, s; ratio of this interval to the duration of a write
 
 /// Whether an option changes no run.
 bool changes_no_run(const std::string& name, const Study& study) {

@@ -28,7 +28,7 @@ std::vector<char> copy_known(MPI_Comm comm, const results::StoredStudy& stored, 
 /// The runs of a table in the form of a file.
 results::StoredStudy stored_of(const results::StudyTable& table);
 
-/// Course of the study.
+/// The progress of the study and the reason of its end.
 struct StudyCourse {
   long known = 0, separate_runs = 0;  // runs read from the file; runs computed outside their batch
   double wall_seconds = 0.0;

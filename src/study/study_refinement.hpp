@@ -9,17 +9,17 @@
 namespace traverse::app {
 
 /// The curves of the peaks at the governing probe, of the greatest wheel force and of the limited quantities, over the
-/// speeds in ascending order. There is one curve for each combination of the options that neither are speeds nor have
-/// statistics over them; its values are the greatest over the options that statistics are computed over. For a study
-/// whose speeds are refined.
+/// speeds in ascending order, for a study whose speeds are refined. Statistics are computed over some of the other
+/// options. There is one curve for each combination of the options without statistics; its values are the greatest over
+/// the options with statistics.
 std::vector<SpeedCurve> curves_of(const results::StudyTable& table);
 
 /// The curves of the limited quantities that are below their limits at all speeds so far, each with its limit.
 std::vector<LimitedCurve> curves_below_limits(const results::StudyTable& table);
 
-/// The next speeds of a table's study: until the peaks over the speed are known to `refine`, relative to their values,
-/// or, if `refine` is below 0, until no limit can be exceeded between two speeds. width: of a resonance, see
-/// refine_for_limits.
+/// The next speeds of a table's study. Speeds are added until the peaks over the speed are known to `refine`, relative
+/// to their values, or, if `refine` is below 0, until no limit can be exceeded between two speeds. width: width of a
+/// resonance, see refine_for_limits.
 Refinement next_speeds(const results::StudyTable& table, double width);
 
 /// The study with these speeds (m/s) added, in ascending order.

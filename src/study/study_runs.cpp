@@ -80,8 +80,8 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
 }
 
 /// The groups that contain unknown runs. A continued study computes whole groups again, so that its last digits equal
-/// those of an uninterrupted one. A sweep's groups contain unknown runs only, the longest first, so that all ranks end
-/// at about the same time.
+/// the digits of an uninterrupted study. A sweep's groups contain unknown runs only, the longest first, so that all
+/// ranks end at about the same time.
 Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   const bool sweep = scenes.study().sweep;
   Groups groups = scenes.groups(scenes.runner(0).runs->width(), sweep ? known : std::vector<char>());

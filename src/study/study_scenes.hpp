@@ -23,7 +23,8 @@ struct StudyRun {
 /// A base is a scene of a study. Runs of one base differ in speed and track seed only; bases differ in other options.
 class StudyScenes {
  public:
-  /// For a scene with a study or a sweep, which must outlive this object. InputError if speeds contradict each other.
+  /// The scene must have a study or a sweep and must outlive this object. Throws InputError if speeds contradict each
+  /// other.
   explicit StudyScenes(const Scene& scene);
   /// Replaces the study by one with more speeds between its slowest and its fastest.
   void enumerate(const Study& study);
@@ -34,8 +35,8 @@ class StudyScenes {
   std::size_t bases() const { return first_run_.size(); }
   /// A base as the user describes it, with all speeds of the study in its sweep.
   Scene base(std::size_t base) const;
-  /// The bases that may need the finest model: those of the first run, and of the least and the greatest value of each
-  /// option.
+  /// The bases that may need the finest model: the base of the first run, and the bases with the least and the greatest
+  /// value of each option.
   std::vector<std::size_t> extreme_bases() const;
 
   /// Sets the model chosen for the study, for mesh, step, modes and others that a base leaves open.
@@ -43,7 +44,7 @@ class StudyScenes {
   /// The object that computes the runs of a base.
   struct Runner {
     std::size_t base = 0;
-    bool merged = false;  // its runs are compatible with those of the other merged bases on its bridge
+    bool merged = false;  // its runs are compatible with the runs of the other merged bases on its bridge
     std::shared_ptr<CaseRunner> runs;
   };
   /// The last used runners are stored.
@@ -65,7 +66,7 @@ class StudyScenes {
   Study study_;
   std::optional<NumericalModel> chosen_;
   std::vector<double> speeds_;        // speeds of all runs, ascending, m/s
-  std::vector<std::uint64_t> seeds_;  // seeds of some tracks
+  std::vector<std::uint64_t> seeds_;  // seeds of random tracks
   std::vector<StudyRun> runs_;
   std::vector<std::size_t> first_run_;  // the first run of each base
   /// The first base, with which all others are compared, then those used last.

@@ -14,7 +14,7 @@ namespace traverse::app {
 
 class SweepFindings {
  public:
-  /// Both must outlive it.
+  /// Scene and runner must outlive this object.
   SweepFindings(const Scene& scene, const CaseRunner& runner);
 
   /// Resonance speeds (m/s) whose peaks are not resolved by the runner's speeds.

@@ -20,8 +20,9 @@ constexpr double min_corner = 5e-3;  // jump of slope: a wheel of 0.5 m bridges 
 constexpr double stations_per_wave = 16.0;
 constexpr int stations_between_lines = 8;
 constexpr double corner_reach = 0.25;  // m on either side of a corner, which a tyre or a rail bridges
-constexpr double same_station = 1e-9;  // of the distance of two rows: closer stations are equal
-constexpr double max_overshoot = 0.3;  // of a table's range of heights; three rows per wave cause a tenth
+constexpr double same_station = 1e-9;  // relative to the distance of two rows: closer stations are equal
+constexpr double max_overshoot =
+    0.3;  // limit relative to a table's range of heights; three rows per wave cause an overshoot of a tenth
 constexpr int wave_count = 240;
 static_assert(wave_count % Waves::lanes == 0);
 
@@ -82,7 +83,8 @@ void check_table(const std::vector<double>& x, const std::vector<double>& h, con
   }
 }
 
-/// A step from 0 to 1 over s in [0, 1], with slope and curvature 0 at both ends; derivatives with respect to s.
+/// A smooth transition from 0 to 1 over s in [0, 1], with slope and curvature 0 at both ends; derivatives with respect
+/// to s.
 Height smooth_step(double s) {
   return {s * s * s * (10.0 + s * (-15.0 + 6.0 * s)), 30.0 * s * s * (1.0 - s) * (1.0 - s),
           60.0 * s * (1.0 - s) * (1.0 - 2.0 * s)};
@@ -346,7 +348,7 @@ Height Profile::at(double x) const {
   return h;
 }
 
-// The height before mirroring.
+// The height of the profile before mirroring.
 Height Profile::unmirrored_at(double x) const { return with_dips(x, base_at(x)); }
 
 Height Profile::with_dips(double x, Height height) const {

@@ -10,9 +10,9 @@
 namespace traverse::track {
 namespace {
 
-constexpr double margin = 1.01;                              // of the reach
-constexpr double wall_reach = 0.999;                         // of the radius: the reach of a wheel at a wall
-constexpr double least_stations = 4.0, most_stations = 1e4;  // of a scan
+constexpr double margin = 1.01;                              // factor of the reach
+constexpr double wall_reach = 0.999;                         // reach of a wheel at a wall, relative to its radius
+constexpr double least_stations = 4.0, most_stations = 1e4;  // limits of the number of stations of a scan
 
 // A station with g and its slope.
 struct Sample {
@@ -156,7 +156,7 @@ class Scan {
     before_ = here;
   }
 
-  // Ends the side of a step, or the reach; the next stations are on the other side.
+  // Ends one side of a jump in height, or the reach; the next stations are on the other side.
   void end_side(double station) {
     if (falling_) found(station);
     point_.high = station;

@@ -14,9 +14,10 @@
 // a wheel leaves a valley) therefore cause no jump of force or energy, a valley as wide as the wheel is one contact,
 // and two separate points are two contacts.
 //
-// If the surface has a step, as at the end of a beam without a rigid support, each side has its own minima: a wheel
-// touches the floor below the step and its edge. On the wall between the two sides the distance is largest at one of
-// its ends, the one farther from the centre, which is the common part of both sides.
+// If the surface has a jump in height, as at the end of a beam without a rigid support, each side has its own minima: a
+// wheel touches the lower surface beside the jump and the edge of the higher surface. On the wall between the two sides
+// the distance is largest at the end of the wall that is farther from the centre; this end is the common part of both
+// sides.
 #pragma once
 
 #include <array>
@@ -29,21 +30,21 @@ namespace traverse::track {
 inline constexpr int most_points = 3;
 
 struct TouchingPoint {
-  double station = 0.0;          // m, to within the scan's interpolation
+  double station = 0.0;          // m, with the error of the scan's interpolation
   double depth = 0.0;            // radius minus distance if the deepest point just touches, m: at most 0
   double low = 0.0, high = 0.0;  // stations of the maxima of the distance on either side, or ends of the wheel's reach
-  int number = 0;                // among all points, from the left
+  int number = 0;                // index among all points, from the left
 };
 
 struct TouchingPoints {
   int count = 0;
-  std::array<TouchingPoint, most_points> points;  // the deepest ones, from left to right
+  std::array<TouchingPoint, most_points> points;  // the points with the largest depths, from left to right
   double deepest_omitted = 0.0;                   // depth of the deepest point that is not stored; minus infinity: none
   double height = 0.0;                            // Y, m
 };
 
-/// Half the length of track that a wheel can touch: the track below the wheel if there may be steps, otherwise a length
-/// that follows from the profile's largest slope.
+/// Half the length of track that a wheel can touch: the track below the wheel if the surface may jump in height,
+/// otherwise a length that follows from the profile's largest slope.
 double reach(const Profile& profile, double radius);
 double reach_of_steps(double radius);
 
@@ -55,7 +56,7 @@ inline bool is_sharp(const Profile& profile, double radius) { return radius * pr
 bool too_rough(const Profile& profile, double radius);
 
 /// The local minima of the distance for a centre at x. At the stations `steps`, ascending and within reach_of_steps of
-/// x, the surface may have a step of unknown height.
+/// x, the surface may have a jump of unknown height.
 TouchingPoints touching_points(const Profile& profile, double radius, double x, std::span<const double> steps = {});
 
 }  // namespace traverse::track

@@ -15,8 +15,8 @@ namespace traverse::track {
 namespace {
 
 constexpr double rotation_stations_per_wave = 96.0;
-constexpr double max_station = 1e15;                // stations; farther ones are equal in double precision
-constexpr std::size_t cached_stations = 4096;       // number of stations, a power of two
+constexpr double max_station = 1e15;           // limit of station numbers; larger numbers are equal in double precision
+constexpr std::size_t cached_stations = 4096;  // number of stations, a power of two
 constexpr std::size_t rotations_per_restart = 256;  // number of rotations of a wave before its phase is evaluated again
 constexpr int places_per_step = 8;
 

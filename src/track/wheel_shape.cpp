@@ -13,7 +13,7 @@
 namespace traverse::track {
 namespace {
 
-constexpr double max_turns = 1e6;  // of a wheel with a flat, each of which is an event of the run
+constexpr double max_turns = 1e6;  // limit of turns of a wheel with a flat, because each turn is an event of the run
 
 }  // namespace
 

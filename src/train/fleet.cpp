@@ -61,8 +61,8 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
       WheelContact c;
       c.vehicle = static_cast<int>(k);
-      c.sharp = track::is_sharp(this->profile(c), vehicle.wheels[i].radius);
-      if (!c.sharp && (mesh_ == nullptr || mesh_->steps().empty())) continue;
+      c.may_touch_several_points = track::is_sharp(this->profile(c), vehicle.wheels[i].radius);
+      if (!c.may_touch_several_points && (mesh_ == nullptr || mesh_->steps().empty())) continue;
       c.wheel = static_cast<int>(i);
       c.body = vehicle.wheels[i].body;
       c.law = vehicle.wheels[i].law;
@@ -70,7 +70,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       reset_contact(c);
       WheelContact& first = wheels[static_cast<std::size_t>(vehicle.first_wheel) + i];
       first.further = static_cast<int>(wheels.size());
-      first.sharp = c.sharp;
+      first.may_touch_several_points = c.may_touch_several_points;
       wheels.insert(wheels.end(), track::most_points - 1, c);
       c.sign = -1.0;
       wheels.insert(wheels.end(), track::most_points - 1, c);
@@ -174,14 +174,14 @@ std::vector<std::string> Fleet::partition(double t) {
   for (MovingVehicle& vehicle : vehicles)
     for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
       messages.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
-  number(t);
+  assign_coordinates(t);
   return messages;
 }
 
-bool Fleet::worn() const {
+bool Fleet::badly_conditioned() const {
   const auto vehicles_here = own();
   return std::any_of(vehicles_here.begin(), vehicles_here.end(),
-                     [](const MovingVehicle& v) { return v.dynamics->worn(v); });
+                     [](const MovingVehicle& v) { return v.dynamics->badly_conditioned(v); });
 }
 
 bool Fleet::accept() {
@@ -192,7 +192,7 @@ bool Fleet::accept() {
   return renewed;
 }
 
-void Fleet::number(double t) {
+void Fleet::assign_coordinates(double t) {
   origin_.clear();
   steady_rate_.clear();
   freedom_ = 0;

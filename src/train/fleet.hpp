@@ -20,7 +20,7 @@
 
 namespace traverse::train {
 
-/// One vehicle of the train, or several vehicles joined by couplers.
+/// A unit: one vehicle of the train, or several vehicles joined by couplers. A Member is one vehicle of the train.
 struct MovingVehicle {
   explicit MovingVehicle(Unit unit);
   const std::string& name() const { return mechanism.model().name; }
@@ -35,12 +35,12 @@ struct MovingVehicle {
   std::vector<contact::BodyContact> contacts;
   double weight = 0.0;        // N
   double scale = 0.0;         // N: scale of forces; the weight, or without gravity the mass times 1 m/s2
-  int offset = 0;             // of its independent coordinates in p
+  int offset = 0;             // index of its first independent coordinate in p
   int first_wheel = 0;        // in Fleet::wheels: one for each wheel, then the further ones of its wheels
   int first_pair = 0;         // in Fleet::pairs
   std::vector<int> touching;  // its wheels and pairs, by the indices of Fleet::contact
   Eigen::VectorXd Q;          // generalized forces of the wheels, n
-  bool converged = false;     // Fleet::set and touch skip it
+  bool converged = false;     // its iteration of the stage has converged; Fleet::set and touch skip it
 
   void keep(base::Bytes& bytes) {
     bytes(mechanism, state, Q);
@@ -50,18 +50,18 @@ struct MovingVehicle {
 
 /// A contact at the state evaluated last.
 struct Contact {
-  int vehicle = 0;
+  int vehicle = 0;  // index of the unit in Fleet::vehicles; Fleet::member returns the vehicle of the train
   int body = 0;
   int other_body = multibody::ground;
   contact::Law law;
   Touch touch;
   contact::Kinematics kinematics;
   contact::Force force;
-  double approach_speed = 0.0;          // of the present or next impact, m/s
+  double approach_speed = 0.0;          // approach speed of the present or next impact, m/s
   bool touched = false;                 // with a force in some stage of the last step
   bool released = false;                // opened by its damper while compressed; the elastic energy is lost
   std::array<int, 2> slots = {-1, -1};  // indices of the patches' elements in Fleet::elements(); -1: ground
-  double sign = 1.0;                    // of its force
+  double sign = 1.0;                    // sign of its force
   int active = 0;                       // the patch with the deepest penetration
   int slot() const { return slots[active]; }
   void keep(base::Bytes& bytes) {
@@ -74,25 +74,25 @@ struct PairContact : Contact {
   contact::PairGeometry geometry;
 };
 
-/// A wheel on the track. A wheel with a radius larger than that of the track's valleys, or one at a step of the
-/// surface, may touch at several points (track::TouchingPoints). It has further entries: the other points from left to
-/// right, then with the sign -1 the overlaps that neighbouring points share. Unused entries have no candidates, a
-/// negative penetration and no force; so has a wheel without a surface under it.
+/// A wheel on the track. A wheel with a radius larger than that of the track's valleys, or one at a jump of the
+/// surface's height, may touch at several points (track::TouchingPoints). It has further entries: the other points from
+/// left to right, then the common overlaps of neighbouring points, whose forces are subtracted (sign -1). Unused
+/// entries have no candidates, a negative penetration and no force; so has a wheel without a surface under it.
 struct WheelContact : Contact {
-  int wheel = 0;                 // of its vehicle
+  int wheel = 0;                 // index of the wheel in its vehicle
   std::array<Patch, 2> patches;  // the surface under the wheel, and beyond a near kink
   int candidates = 1;
   bool turns = false;        // it turns with its body; otherwise its angle is the distance over its radius
   double roll_origin = 0.0;  // initial angle (rad) or x (m) of the rolling
   int further = 0;           // index of the first further entry of this wheel; 0: none
   bool is_further = false;
-  bool sharp = false;            // its radius is larger than that of the track's valleys
-  double minimum_station = 0.0;  // sign -1: station of the minimum between the points, m
-  bool at_step = false;          // sign -1: the surface has a step there; the patches are its two sides
+  bool may_touch_several_points = false;  // its radius is larger than that of the track's valleys
+  double minimum_station = 0.0;           // sign -1: station of the minimum between the points, m
+  bool at_height_jump = false;            // sign -1: the height jumps there; the patches are on its two sides
 
   void keep(base::Bytes& bytes) {
     Contact::keep(bytes);
-    bytes(patches, candidates, roll_origin, minimum_station, at_step);
+    bytes(patches, candidates, roll_origin, minimum_station, at_height_jump);
   }
 };
 
@@ -129,7 +129,7 @@ class Fleet {
     const auto k = static_cast<std::size_t>(contact);
     return k >= wheels.size() || wheels[k].candidates > 0;
   }
-  /// The index of the contact's vehicle in the train.
+  /// The index of the contact's vehicle in `members`.
   int member(int contact) const;
 
   /// Makes the vehicles [first, past) those of this rank.
@@ -174,7 +174,7 @@ class Fleet {
   void set_rolling_speeds();
   /// The unsupported body with the largest displacement since `start`, in words; empty: none.
   std::string unsupported_body(const Fleet& start) const;
-  /// Mechanism::apply for a body of a vehicle of the train. InputError if that vehicle is linearised.
+  /// Calls Mechanism::apply for a body of a vehicle of the train. InputError if that vehicle is linearised.
   void apply(int member, int body, const Eigen::Vector3d& action);
   /// Called before a step, with the time of its middle: selects the prescribed accelerations of this step if they jump.
   /// True if one has jumped.
@@ -194,18 +194,18 @@ class Fleet {
   /// The largest VehicleDynamics::linearisation_residual of this rank's vehicles.
   double linearisation_residual() const;
 
-  /// Selects every vehicle's independent coordinates at t and numbers them. From then on p is the difference from a
-  /// steady motion that starts at the present state, with the train and rolling: small numbers, so that velocities
-  /// computed as shift times p keep their digits. Returns lines on redundant joints.
+  /// Selects every vehicle's independent coordinates at t and numbers them. From then on p is measured from a
+  /// steady motion that starts at the present state (travelling with the train, wheels rolling): p remains small, and
+  /// shift times p has little rounding error. Returns lines on redundant joints.
   std::vector<std::string> partition(double t);
 
   /// Whether the independent coordinates of a vehicle of this rank may be badly conditioned.
-  bool worn() const;
+  bool badly_conditioned() const;
   /// Accepts the states of this rank's vehicles, which were just evaluated. Replaces badly conditioned independent
-  /// coordinates: then the result is true, and number() has to follow.
+  /// coordinates: then the result is true, and assign_coordinates() must follow.
   bool accept();
-  /// Numbers the vehicles' independent coordinates with their state at t: see partition().
-  void number(double t);
+  /// Assigns indices in p to the vehicles' independent coordinates, with their state at t: see partition().
+  void assign_coordinates(double t);
 
   /// Sets positions, velocities and forces of this rank's vehicles from p and p' (freedom values each), unless they are
   /// set already. False if a mechanism cannot be assembled.
@@ -218,7 +218,8 @@ class Fleet {
   /// p and p' (freedom values each) for the vehicles' q and q' at t.
   void coordinates_of_state(double t, double* p, double* pd) const;
 
-  /// Records on which side of a line arcs are, after they may have moved around its end.
+  /// Stores for every arc-line contact on which side of the line the arc is; the side can change only around the line's
+  /// end.
   void record_sides();
 
   /// Determines the patches under the wheels and the list of beam elements under wheels.
@@ -230,15 +231,15 @@ class Fleet {
   /// Contact geometry of this rank's vehicles from the elements' unknowns v and rates w (2*per_node for each element of
   /// elements()). False if a body has passed through a surface.
   bool touch(int per_node, const double* v, const double* w);
-  /// Forces from the kinematics stored in the contacts.
+  /// Computes the contact forces from the kinematics stored in the contacts.
   void contact_forces();
-  /// Q of this rank's vehicles from the contact forces.
+  /// Computes Q of this rank's vehicles from the contact forces.
   void contact_loads();
   /// Adds a contact's forces to its vehicle's Q.
   static void add_load(const Contact& contact, double normal, double tangential, Eigen::VectorXd& Q);
   /// Contact forces as nodal values of the elements under wheels, 2*per_node each, on the beam.
   void element_loads(int per_node, std::vector<double>& loads) const;
-  /// The same from the wheels' normal forces and x only, before the geometry is known: vertical.
+  /// The same, vertical only, from the wheels' normal forces and x, before the geometry is known.
   void expected_loads(int per_node, std::vector<double>& loads) const;
   /// Whether a contact has a force, and its penetration; for a wheel with several points the sum and the deepest one.
   /// The further points of a wheel belong to its first entry.
@@ -270,7 +271,7 @@ class Fleet {
   void find_patches(WheelContact& c, double x, double from, double to, double low, double high);
   void find_sides(WheelContact& c, double step);
   void add_ground(WheelContact& c, bool before, double x, double low, double high);
-  std::span<const double> steps_near(const WheelContact& c) const;
+  std::span<const double> height_jumps_near(const WheelContact& c) const;
   void find_points(WheelContact& c);
   void reset_contact(WheelContact& c);
   bool touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find);
@@ -294,10 +295,10 @@ class Fleet {
   const track::Profile* profile_ = nullptr;
   int freedom_ = 0;
   int first_own_ = 0, past_own_ = 0;
-  std::vector<double> speeds_;                                   // of each of `vehicles` at t = 0, m/s
-  std::vector<int> course_;                                      // of each; -1: none
-  std::vector<std::shared_ptr<const track::Profile>> profiles_;  // of the courses; null: profile_
-  bool accelerations_jump_ = false;                              // prescribed ones
+  std::vector<double> speeds_;  // speed of each of `vehicles` at t = 0, m/s
+  std::vector<int> course_;     // index of the course (one of several trains) of each of `vehicles`; -1: none
+  std::vector<std::shared_ptr<const track::Profile>> profiles_;  // for each course; null: profile_
+  bool accelerations_jump_ = false;                              // whether a prescribed acceleration jumps at some time
   bool frozen_ = false;
   int failed_ = -1;
   double surface_height_ = 0.0;
@@ -306,7 +307,7 @@ class Fleet {
   std::vector<int> elements_;
   std::vector<double> origin_, steady_rate_;  // coordinates = origin + steady rate*t + p
   std::vector<double> position_, velocity_;   // independent coordinates of all vehicles, as set last
-  double time_ = 0.0;                         // of position_ and velocity_
+  double time_ = 0.0;                         // time of position_ and velocity_, s
   bool is_set_ = false;
 };
 

@@ -9,11 +9,11 @@
 namespace traverse::train {
 namespace {
 
-constexpr double at_end = 1e-10;  // m: of a patch
+constexpr double at_end = 1e-10;  // m: distance from the end of a patch
 
 }  // namespace
 
-// Selects the candidate with the deepest penetration; for the two sides of a step the one with the least.
+// Selects the candidate with the largest penetration; on the two sides of a jump in height the smallest.
 bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find) {
   const std::ptrdiff_t m = 2 * static_cast<std::ptrdiff_t>(per_node);
   const Eigen::Vector3d q = coordinates(c);
@@ -22,7 +22,7 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
   candidate.ahead = c.touch.ahead;
   if (c.candidates == 0) return true;
   double deepest = -std::numeric_limits<double>::infinity();
-  const double sign = c.at_step ? -1.0 : 1.0;
+  const double sign = c.at_height_jump ? -1.0 : 1.0;
   for (int i = 0; i < c.candidates; ++i) {
     const std::ptrdiff_t at = c.slots[i] < 0 ? 0 : m * c.slots[i];
     if (!train::touch(c.patches[i], profile(c), wheel(c).radius, q, qd, per_node, v + at, w + at, candidate, find))
@@ -50,7 +50,7 @@ bool Fleet::touch_points(WheelContact& c, int per_node, const double* v, const d
       const bool keep_left = left->touch.kinematics.penetration >= p.touch.kinematics.penetration;
       bool merged =
           left->touch.station > shared->minimum_station - at_end || p.touch.station < shared->minimum_station + at_end;
-      if (shared->at_step) {
+      if (shared->at_height_jump) {
         if (!touch_patches(*shared, per_node, v, w, Find::closest)) return false;
         merged = shared->touch.kinematics.penetration >= (keep_left ? p : *left).touch.kinematics.penetration;
       }
@@ -58,7 +58,7 @@ bool Fleet::touch_points(WheelContact& c, int per_node, const double* v, const d
         clear_touch(*shared);
         clear_touch(keep_left ? p : *left);
         if (keep_left) continue;
-      } else if (!shared->at_step) {
+      } else if (!shared->at_height_jump) {
         shared->patches[0].low = left->touch.station;
         shared->patches[0].high = p.touch.station;
         shared->candidates = 1;
@@ -168,7 +168,7 @@ bool Fleet::touches(int i) const {
 }
 
 bool Fleet::has_points(const WheelContact& c) const {
-  if (c.is_further || c.sharp) return true;
+  if (c.is_further || c.may_touch_several_points) return true;
   const auto is_candidate = [](const WheelContact& more) { return more.candidates > 0; };
   return c.further > 0 &&
          std::any_of(wheels.begin() + c.further, wheels.begin() + c.further + track::most_points - 1, is_candidate);

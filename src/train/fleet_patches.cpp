@@ -36,7 +36,7 @@ void Fleet::add_ground(WheelContact& c, bool before, double x, double low, doubl
 }
 
 // Finds the patches within [low, high] under a contact at x: the patch at x, and its neighbour beyond a kink between
-// `from` and `to`. If low or high is a step and x is there, the patch is the one between low and high.
+// `from` and `to`. If the surface jumps in height at low or high and x is there, the patch is between low and high.
 void Fleet::find_patches(WheelContact& c, double x, double from, double to, double low, double high) {
   c.candidates = c.active = 0;
   if (mesh_ == nullptr) {
@@ -72,7 +72,7 @@ void Fleet::find_patches(WheelContact& c, double x, double from, double to, doub
   }
 }
 
-// Sets the ends of the surface on both sides of a step.
+// Sets the ends of the surface on both sides of a jump in height.
 void Fleet::find_sides(WheelContact& c, double step) {
   c.candidates = c.active = 0;
   for (const bool from_left : {true, false}) {
@@ -83,7 +83,7 @@ void Fleet::find_sides(WheelContact& c, double step) {
   }
 }
 
-std::span<const double> Fleet::steps_near(const WheelContact& c) const {
+std::span<const double> Fleet::height_jumps_near(const WheelContact& c) const {
   if (mesh_ == nullptr) return {};
   const double x = coordinates(c).x(), reach = track::reach_of_steps(wheel(c).radius);
   const std::vector<double>& steps = mesh_->steps();
@@ -107,7 +107,7 @@ std::vector<double> Fleet::borders_of_patches(const WheelContact& c) const {
   return borders;
 }
 
-// Sets the contact to an open one far from the surface.
+// Sets the contact to one without a surface under it.
 void Fleet::reset_contact(WheelContact& c) {
   c.candidates = c.active = 0;
   c.slots = {-1, -1};
@@ -124,8 +124,8 @@ void Fleet::clear_touch(WheelContact& c) const {
 // initial guess of the solution.
 void Fleet::find_points(WheelContact& c) {
   const double x = coordinates(c).x(), radius = wheel(c).radius;
-  const std::span<const double> steps = steps_near(c);
-  const bool single = !c.sharp && steps.empty();
+  const std::span<const double> steps = height_jumps_near(c);
+  const bool single = !c.may_touch_several_points && steps.empty();
   track::TouchingPoints found;
   if (single) {
     found.count = 1;
@@ -165,8 +165,8 @@ void Fleet::find_points(WheelContact& c) {
     reset_contact(b);
     if (i + 1 >= found.count || found.points[i + 1].number != found.points[i].number + 1) continue;
     const track::TouchingPoint &left = found.points[i], &right = found.points[i + 1];
-    b.at_step = std::find(steps.begin(), steps.end(), left.high) != steps.end();
-    if (b.at_step)
+    b.at_height_jump = std::find(steps.begin(), steps.end(), left.high) != steps.end();
+    if (b.at_height_jump)
       find_sides(b, left.high);
     else
       find_patches(b, left.high, left.high, left.high, left.station, right.station);
@@ -182,7 +182,8 @@ void Fleet::place_wheels() {
   const bool ends = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
   for (WheelContact& c : wheels) {
     const double x = coordinates(c).x(), radius = wheel(c).radius, near = nearby * radius;
-    if (ends && coordinates(c).y() < profile(c).at(x).value - radius)  // fallen off the end: beside or below the beam
+    if (ends && coordinates(c).y() < profile(c).at(x).value -
+                                         radius)  // the wheel has fallen off the end: it is beside or below the beam
       c.candidates = 0;
     else if (c.further > 0)
       find_points(c);

@@ -69,7 +69,7 @@ std::string Fleet::unsupported_body(const Fleet& start) const {
       for (std::size_t s = 0; s < model.springs.size(); ++s) {
         const multibody::Spring& spring = model.springs[s];
         const bool attached = spring.bodies[0] == static_cast<int>(b) || spring.bodies[1] == static_cast<int>(b);
-        if (attached && vehicle.mechanism.spring_force(vehicle.state, static_cast<int>(s)) == 0.0)
+        if (attached && vehicle.mechanism.spring_tension(vehicle.state, static_cast<int>(s)) == 0.0)
           text += fmt::format(", its spring '{}' stays loose", spring.name);
       }
     }

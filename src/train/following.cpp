@@ -7,10 +7,11 @@
 namespace traverse::train {
 namespace {
 
-constexpr double long_stretch = 20.0;  // m: over which a slope lasts; the fade-in of spectra has this length
+constexpr double long_stretch =
+    20.0;  // m: length over which a slope is lasting; the fade-in of spectra has this length
 
-/// p with the least p^T A p / 2 and G p = 1, by columns: A p + G^T lambda = 0. Coordinates that neither A nor G
-/// determines remain zero, and dependent contact conditions are satisfied together.
+/// p with the least p^T A p / 2 and G p = 1, by columns: A p + G^T lambda = 0. Coordinates that A and G do not
+/// determine remain zero, and dependent contact conditions are satisfied together.
 Eigen::MatrixXd least_energy_motion(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G) {
   const Eigen::Index f = A.rows(), r = G.rows();
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(f + r, f + r), right = Eigen::MatrixXd::Zero(f + r, r);

@@ -18,7 +18,8 @@ class Following {
  public:
   /// M and K (f x f, kg and N/m) of the following coordinates, and G (r x f) of the contacts.
   Following(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K, const Eigen::MatrixXd& G);
-  /// From the rise of the surface under each wheel in time, actual and lasting, m/s.
+  /// The initial rates of the following coordinates, from the actual and the lasting rise of the surface under each
+  /// wheel in time, m/s.
   Eigen::VectorXd rates(const Eigen::VectorXd& rise, const Eigen::VectorXd& lasting) const {
     return lasting_ * lasting + sudden_ * (rise - lasting);
   }

@@ -147,7 +147,7 @@ multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) 
 
 multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) const {
   const std::vector<int>& independent = vehicle.mechanism.partition().independent;
-  Eigen::VectorXd x(p0_.size()), xd(p0_.size());  // from the state, which may be another rank's
+  Eigen::VectorXd x(p0_.size()), xd(p0_.size());  // computed from the state, which another rank may have sent
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const int coordinate = independent[static_cast<std::size_t>(i)];
     x[i] = vehicle.state.q[coordinate] - p0_[i] - vehicle.state.time * c_[i];

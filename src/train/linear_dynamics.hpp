@@ -15,8 +15,9 @@
 
 namespace traverse::train {
 
-/// About p0, moving with c: M, C, K (f x f), r0 (f), B (n x f) as above; driven = B^T N u (f): driven^T x'' is the
-/// power that drives the masses. q0, u (n): initial coordinates and steady rates of all bodies.
+/// The matrices about p0, moving with c: M, C, K (f x f), r0 (f) and B (n x f) of the equations above. driven = B^T N u
+/// (f): driven^T x'' is the power that drives the masses. q0, u (n): initial coordinates and steady rates of all
+/// bodies.
 struct LinearMatrices {
   const Eigen::MatrixXd &M, &C, &K, &B;
   const Eigen::VectorXd &r0, &p0, &c, &driven, &q0, &u;
@@ -27,7 +28,8 @@ class LinearDynamics : public VehicleDynamics {
   /// The reason why a vehicle cannot be linearised; empty: it can.
   static std::string obstacle(const MovingVehicle& vehicle);
 
-  /// About the vehicle's evaluated state at t = 0, with its contact forces in Q. cruise: c of its coordinates.
+  /// Linearises about the vehicle's evaluated state at t = 0, with its contact forces in Q. cruise: c of its
+  /// coordinates.
   LinearDynamics(MovingVehicle& vehicle, const double* cruise);
 
   LinearMatrices matrices() const { return {M_, C_, K_, B_, r0_, p0_, c_, driven_, q0_, u_}; }
@@ -42,7 +44,7 @@ class LinearDynamics : public VehicleDynamics {
   multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const override;
   bool observe(MovingVehicle& vehicle, const double* pdd) override;
   double linearisation_residual() const override { return linearisation_residual_; }
-  bool worn(const MovingVehicle&) const override { return false; }
+  bool badly_conditioned(const MovingVehicle&) const override { return false; }
   bool accept(MovingVehicle&) override { return false; }
 
   bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;

@@ -12,7 +12,7 @@ namespace traverse::train {
 /// moved to this state.
 double linearisation_residual_at(MovingVehicle& vehicle, const double* x);
 
-/// For every coordinate alone: the square root of that residual per unit of the coordinate, 1/m or 1/rad.
+/// The square root of that residual per unit of each coordinate alone, 1/m or 1/rad.
 std::vector<double> residual_roots(MovingVehicle vehicle);
 
 }  // namespace traverse::train

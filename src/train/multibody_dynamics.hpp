@@ -22,7 +22,9 @@ class MultibodyDynamics : public VehicleDynamics {
     return vehicle.mechanism.energy(vehicle.state);
   }
   bool observe(MovingVehicle&, const double*) override { return false; }
-  bool worn(const MovingVehicle& vehicle) const override { return vehicle.mechanism.worn(vehicle.state); }
+  bool badly_conditioned(const MovingVehicle& vehicle) const override {
+    return vehicle.mechanism.badly_conditioned(vehicle.state);
+  }
   bool accept(MovingVehicle& vehicle) override;
 
   bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;
@@ -43,12 +45,12 @@ class MultibodyDynamics : public VehicleDynamics {
 
   // reused in later stages and steps
   VehicleNewton newton_;
-  StageShifts shifts_;  // of the stage that J was computed for; 0: none
+  StageShifts shifts_;  // shifts of the stage for which J was computed; 0: none
   int partition_version_ = 0;
   bool curved_ = false;
 
   Eigen::VectorXd R_, r_;
-  Eigen::VectorXd pdd_;  // of the last residual
+  Eigen::VectorXd pdd_;  // p'' of the last residual
   Eigen::MatrixXd J_, NB_;
   Eigen::MatrixXd projector_;           // in place of B for joints with friction
   VehicleNewton::RowMatrix projected_;  // directions times projector

@@ -18,7 +18,7 @@ class NewtonInverse {
   enum class Form { whole, band, factors } form_ = Form::whole;
   Eigen::MatrixXd inverse_;
   solve::BandLu band_;
-  Eigen::MatrixXd lu_;                            // L D^-1 and D U in one matrix, of the permuted rows
+  Eigen::MatrixXd lu_;                            // L D^-1 and D U of the permuted rows in one matrix
   Eigen::VectorXi order_;                         // new position of each row
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;  // work space
 };

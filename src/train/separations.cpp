@@ -86,7 +86,7 @@ std::optional<Change> Separations::change(const Fleet& fleet, double t,
         found = Change{i, time_ + *s * h, gain, true, gain && fleet.contact(i).touched};
       } else if (gain && time_to_touch(i) < h) {  // a rebound within the step cannot be excluded
         found = Change{i, time_ + time_to_touch(i), gain, true, fleet.contact(i).touched};
-      } else if (gain && fleet.contact(i).touched) {  // it continued to rise, fell and rebounded
+      } else if (gain && fleet.contact(i).touched) {  // the wheel continued to rise, fell and rebounded
         found = Change{i, time_ + 0.5 * h, gain, true, true};
       }
     }

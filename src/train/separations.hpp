@@ -10,15 +10,15 @@
 
 namespace traverse::train {
 
-/// From the opening of a contact to the impact that ends the separation.
+/// A separation: from the opening of a contact to the impact that ends it.
 struct Separation {
   int contact = 0;              // index of Fleet::contact
   bool from_start = false;      // open since t = 0, without an opening
-  double x = 0.0;               // m, of the body at the opening
+  double x = 0.0;               // position of the body at the opening, m
   double start = 0.0;           // s
   double duration = -1.0;       // s; negative: open at the end of the run
   double approach_speed = 0.0;  // m/s, at the closing
-  double impact_force = 0.0;    // N, the greatest of the following compression
+  double impact_force = 0.0;    // N, greatest force of the following compression
 };
 
 /// An opening or closing of a contact between two instants.

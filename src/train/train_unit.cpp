@@ -123,8 +123,8 @@ int body_named(const Vehicle& type, const std::string& name) {
   return static_cast<int>(std::find_if(bodies.begin(), bodies.end(), same) - bodies.begin());
 }
 
-/// A coupler's part between two neighbours; its points refer to the front vehicle's origin, `to` to that of the rear
-/// one.
+/// A coupler's part between two neighbours. Its points refer to the front vehicle's origin, `to` to the rear vehicle's
+/// origin.
 template <class Part>
 Part placed(Part part, const Coupler& coupler, const std::array<const Member*, 2>& ends, double front, double rear) {
   for (std::size_t i = 0; i < 2; ++i)

@@ -15,7 +15,8 @@ struct Unit {
   std::vector<contact::BodyContact> contacts;
 };
 
-/// A vehicle of the train as part of its unit: the first indices of its parts there, in the order of its type.
+/// One vehicle of the train as part of its unit, which may contain several coupled vehicles: the first indices of its
+/// parts there, in the order of its type.
 struct Member {
   const Vehicle* type = nullptr;
   int unit = 0;

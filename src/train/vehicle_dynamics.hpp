@@ -18,12 +18,13 @@ class LinearDynamics;
 struct Contact;
 struct MovingVehicle;
 
-/// An implicit stage: a change x of p changes p' by rate*x and p'' by acceleration*x. Both 0: statics.
+/// The shifts of an implicit stage: a change x of p changes p' by rate*x and p'' by acceleration*x. Both are 0 in
+/// statics.
 struct StageShifts {
   double rate = 0.0;          // 1/s
   double acceleration = 0.0;  // 1/s2: rate*rate for Runge-Kutta types
   bool statics() const { return acceleration == 0.0; }
-  /// Equal within the accuracy that a Newton matrix needs.
+  /// Whether both stages are equal within the accuracy that a Newton matrix needs.
   bool like(const StageShifts& other) const {
     const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-6 * b; };
     return same(rate, other.rate) && same(acceleration, other.acceleration);
@@ -36,12 +37,12 @@ struct ContactRow {
   double scale = 0.0;  // N: scale of its vehicle
   int vehicle = 0;
   bool normal = true;
-  int slot = -1;  // of its element; -1: none
+  int slot = -1;  // slot of its element; -1: none
 };
 using ContactRows = std::span<const ContactRow>;
 
-/// A law's tangent with a line for each row: the derivative of its force by the displacement along the previous row
-/// (for a tangential row), and by that along the row itself, N/m.
+/// A law's tangent with a line for each contact row: the derivative of its force by the displacement along the previous
+/// contact row (for a tangential row), and by the displacement along the row itself, N/m.
 using RowTangent = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
 /// A list of numbers that detects differences from the previous list.
@@ -75,10 +76,10 @@ class NumberList {
 struct ContactCompliance {
   Eigen::MatrixXd H;      // r x r
   Eigen::MatrixXd P;      // r x r: 1 - H D, of size 0 where D is 0
-  RowTangent D;           // the tangent that H includes; of size 0 if none, as in a step
+  RowTangent D;           // the tangent that H includes; its size is 0 without a tangent, as in a time step
   Eigen::VectorXd c;      // r
   double residual = 0.0;  // largest entry of the equations of motion's residual over the vehicle's scale
-  NumberList list;        // of the contacts with rows
+  NumberList list;        // numbers of the contacts with rows
   bool known = false;     // H is valid for these rows
   void keep(base::Bytes& bytes) { bytes(H, P, D, c, residual, list, known); }
 };
@@ -100,9 +101,9 @@ class VehicleDynamics {
   virtual void accelerations(MovingVehicle& vehicle, double* pdd) = 0;
   /// Computes the quantities for the powers from p'' of a stage, under Q.
   virtual void recover(MovingVehicle& vehicle, const double* pdd) = 0;
-  /// After accelerations or recover.
+  /// The powers of the vehicle. Call after accelerations or recover.
   virtual multibody::MechanismPowers powers(const MovingVehicle& vehicle) const = 0;
-  /// For the state last observed, J.
+  /// The energies in the state that was observed last, J.
   virtual multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const = 0;
   /// Computes the observed state of all bodies, springs and joints at the state last set, with a given p'', under Q.
   virtual bool observe(MovingVehicle& vehicle, const double* pdd) = 0;
@@ -110,7 +111,7 @@ class VehicleDynamics {
   virtual double linearisation_residual() const { return 0.0; }
 
   /// Whether the independent coordinates may be badly conditioned.
-  virtual bool worn(const MovingVehicle& vehicle) const = 0;
+  virtual bool badly_conditioned(const MovingVehicle& vehicle) const = 0;
   /// Accepts the state, which was just evaluated. True if independent coordinates were replaced.
   virtual bool accept(MovingVehicle& vehicle) = 0;
 

@@ -35,10 +35,10 @@ class VehicleNewton {
  private:
   void add_contacts(const RowMatrix& left, const RowTangent& D, Eigen::MatrixXd& J);
 
-  NewtonInverse inverse_;  // of J
+  NewtonInverse inverse_;  // inverse of J
   RowMatrix G_;
   Eigen::MatrixXd Y_;   // J^-1 left^T, f x r
-  ColumnRanges range_;  // of every row of G
+  ColumnRanges range_;  // column ranges of every row of G
   RowMatrix DG_;        // the law's tangent times G
   Eigen::VectorXd dx_, s_;
 };

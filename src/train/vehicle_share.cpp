@@ -29,8 +29,8 @@ constexpr int observed_numbers = 14 + 2 * most_element_unknowns + 3 + 2;
 }  // namespace
 
 void VehicleShare::distribute(MPI_Comm comm, Fleet& fleet) {
-  const auto sharp = [](const WheelContact& c) { return c.sharp; };
-  const bool separable = fleet.pairs.empty() && std::none_of(fleet.wheels.begin(), fleet.wheels.end(), sharp);
+  const auto several_points = [](const WheelContact& c) { return c.may_touch_several_points; };
+  const bool separable = fleet.pairs.empty() && std::none_of(fleet.wheels.begin(), fleet.wheels.end(), several_points);
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   first_.clear();

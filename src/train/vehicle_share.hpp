@@ -14,7 +14,7 @@ namespace traverse::train {
 class VehicleShare {
  public:
   /// Flags that ranks exchange together with numbers; a flag of one rank is set for all.
-  enum Flag : unsigned { failed = 1, renewed = 2, misplaced = 4, worn = 8, moved = 16 };
+  enum Flag : unsigned { failed = 1, renewed = 2, misplaced = 4, badly_conditioned = 8, moved = 16 };
 
   /// Collective. Distributes the vehicles in order by their sizes; a rank may have none. Every rank has all vehicles if
   /// there is only one vehicle or rank, if bodies of a vehicle touch each other, or if a wheel may touch at several
@@ -25,8 +25,8 @@ class VehicleShare {
   /// The rank of each vehicle; the first rank if they are not shared.
   std::vector<int> owners(std::size_t vehicles) const;
 
-  /// Collective if shared. Every rank writes numbers of its vehicles, size(k) for vehicle k, and reads those of the
-  /// others: write(k, double*), read(k, const double*). Returns the flags of all ranks.
+  /// Collective if shared. Every rank writes numbers of its vehicles, size(k) for vehicle k, and reads the numbers
+  /// of the other vehicles: write(k, double*), read(k, const double*). Returns the flags of all ranks.
   template <class Size, class Write, class Read>
   unsigned exchange(unsigned flags, Size size, Write write, Read read) {
     if (!distributed()) return flags;
@@ -43,20 +43,20 @@ class VehicleShare {
     }
     return flags;
   }
-  /// Collective if shared. Flags only.
+  /// Collective if shared. Exchanges flags only.
   unsigned exchange(unsigned flags) {
     return exchange(
         flags, [](int) { return 0; }, [](int, double*) {}, [](int, const double*) {});
   }
 
-  /// Collective if shared. x and x' of the wheels' bodies.
+  /// Collective if shared. Exchanges x and x' of the wheels' bodies.
   unsigned wheel_positions(Fleet& fleet, unsigned flags);
-  /// Collective if shared. The observed state of vehicles and contacts.
+  /// Collective if shared. Exchanges the observed state of vehicles and contacts.
   void states(Fleet& fleet);
-  /// Collective if shared. The new independent coordinates that a vehicle's rank has selected, from states known to all
-  /// ranks.
+  /// Collective if shared. Exchanges the new independent coordinates that a vehicle's rank has selected. All ranks know
+  /// the states from which they were selected.
   void partitions(Fleet& fleet);
-  /// Collective if shared. `values`, one for each coordinate of p, of all vehicles.
+  /// Collective if shared. Exchanges `values`, one for each coordinate of p of all vehicles.
   void coordinates(const Fleet& fleet, std::vector<double>& values);
 
  private:
@@ -75,7 +75,7 @@ class VehicleShare {
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0;
   std::vector<int> first_;          // first vehicle of every rank, and the number of vehicles
-  std::vector<int> begin_, count_;  // of every rank's numbers in the buffer
+  std::vector<int> begin_, count_;  // begin and count of every rank's numbers in the buffer
   std::vector<double> buffer_;
 };
 

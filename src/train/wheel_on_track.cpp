@@ -26,7 +26,7 @@ struct Surface {
   int block;
   const double* v;
   double per_length = 0.0, strain = 0.0;  // strain: v' - theta
-  std::array<double, 4> deflection{};     // of the element: coefficients of the powers of xi
+  std::array<double, 4> deflection{};     // deflection of the element: coefficients of the powers of xi
 
   Surface(const Patch& patch_, const track::Profile& profile_, int block_, const double* v_)
       : patch(patch_), profile(profile_), block(block_), v(v_) {
@@ -133,7 +133,7 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
   const Eigen::Vector2d n = from_surface / distance;
   const Eigen::Vector2d tau(n.y(), -n.x());
 
-  Eigen::Vector2d relative = qd.head<2>();  // of the centre relative to the surface's material
+  Eigen::Vector2d relative = qd.head<2>();  // velocity of the centre relative to the surface's material
   out.xi = out.local_compliance = out.local_compliance_by_x = 0.0;
   out.station = x;
   out.ahead = x - c.x();

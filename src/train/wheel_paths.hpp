@@ -21,7 +21,7 @@ class WheelPaths {
   double time(std::size_t instant) const { return time_[instant]; }
   /// x of a contact of the fleet's wheels, m.
   double x(std::size_t instant, std::size_t wheel) const { return x_[instant * wheels_ + wheel]; }
-  /// The largest change of the distance between a wheel and the first one, m.
+  /// The largest change of the distance between a wheel and the first wheel, m.
   double drift() const { return drift_; }
   void keep(base::Bytes& bytes) { bytes(wheels_, time_, x_, stride_, count_, drift_); }
 

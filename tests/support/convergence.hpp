@@ -1,4 +1,4 @@
-// Frequencies on three meshes against exact ones, with the order of convergence.
+// Compares frequencies on three meshes with exact frequencies, and computes the order of convergence.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ inline std::vector<double> frequencies(const beam::BeamModel& model, int count) 
   return modes::natural_modes(beam::Beam(PETSC_COMM_SELF, model), count, false).omega;
 }
 
-/// Only those along x.
+/// The frequencies of motion along x only.
 inline std::vector<double> axial_frequencies(const beam::BeamModel& model, int count) {
   const auto found = modes::natural_modes(beam::Beam(PETSC_COMM_SELF, model), 1 << 20, false);
   std::vector<double> omega;
@@ -27,14 +27,15 @@ inline std::vector<double> axial_frequencies(const beam::BeamModel& model, int c
   return omega;
 }
 
-/// The order from the first to the second mesh; both extrapolated to h = 0 tell the limit itself; `error` on the third.
+/// Bounds of the order of convergence from the first to the second mesh, of the error of the limit (both meshes
+/// extrapolated to h = 0), and of the error on the third mesh (`error`).
 struct Bounds {
   double order = 4.0, scatter = 0.1, error = 1e-6, limit = 5e-7;
 };
 
-/// The elastic frequencies on n, 2 n and 4 n elements a span against the exact ones; rigid ones must be exactly zero.
-/// (Rounding, 0.02 eps n^4 and 16 times as much where beta L is pi/2 instead of pi, hides the order on many elements,
-/// so that it is taken from the two coarser meshes.)
+/// Compares the elastic frequencies on n, 2 n and 4 n elements per span with the exact frequencies. The frequencies of
+/// rigid modes must be exactly zero. Rounding errors, 0.02 eps n^4 and 16 times as much if beta L is pi/2 instead of
+/// pi, hide the order on many elements, so that it is computed from the two coarser meshes.
 template <class Model>
 void expect_convergence(const std::vector<double>& exact, const Model& model, int n, int rigid,
                         const Bounds& bounds = {}, exact::Motion motion = exact::Motion::bending) {
@@ -66,7 +67,7 @@ void expect_convergence(const std::vector<double>& exact, const Model& model, in
   testing::Test::RecordProperty("order", std::to_string(lowest_order));
 }
 
-/// The same with the reference from the exact dynamic stiffness.
+/// Like the check above, with the reference from the exact dynamic stiffness.
 template <class Model>
 void expect_exact(const Model& model, int rigid, int elastic, const Bounds& bounds = {},
                   exact::Motion motion = exact::Motion::bending, int n = 16) {

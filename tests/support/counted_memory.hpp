@@ -1,4 +1,4 @@
-// Counts what a test program takes from the heap. In one source file of a program.
+// Counts the heap allocations of a test program. Only one source file of a program may include this file.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ std::atomic<long> allocations = 0;  // NOLINT(misc-definitions-in-headers): in o
 }
 
 extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's own name
-extern "C" void* malloc(std::size_t size) {        // NOLINT: counts for this test program
+extern "C" void* malloc(std::size_t size) {        // NOLINT: counts the allocations of this test program
   ++allocations;
   return __libc_malloc(size);
 }

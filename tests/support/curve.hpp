@@ -1,4 +1,4 @@
-// Peaks of sampled curves, and a run's options put together.
+// Peaks of sampled curves, and the combination of a run's options.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A beam's matrices and answers without any of the solvers: dense, for small beams on one rank.
+// Dense matrices and solutions of a beam without the program's solvers, for small beams on one rank.
 #pragma once
 
 #include <Eigen/Dense>
@@ -23,7 +23,7 @@ inline Eigen::MatrixXd dense_operator(const beam::Beam& beam, double shift, doub
   return shift2 * dense(beam.mass()) + shift * dense(beam.damping()) + dense(beam.stiffness());
 }
 
-/// Its inverse between the unknowns that are free, 0 elsewhere.
+/// The inverse of A for the free unknowns; 0 for other unknowns.
 inline Eigen::MatrixXd dense_inverse(const beam::Beam& beam, Eigen::MatrixXd A) {
   const Eigen::VectorXd scale = A.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
   for (Eigen::Index i = 0; i < A.rows(); ++i)
@@ -39,7 +39,7 @@ inline Eigen::MatrixXd dense_inverse(const beam::Beam& beam, Eigen::MatrixXd A) 
   return inverse;
 }
 
-/// The displacement at a point of the foundation is this times the unknowns.
+/// The vector whose product with the unknowns is the displacement at a point of the foundation.
 inline Eigen::VectorXd dense_shape(const beam::Beam& beam, const beam::NonlinearPoint& point) {
   Eigen::VectorXd N = Eigen::VectorXd::Zero(beam.local_unknowns());
   const beam::NonlinearShape shape = beam::shape_of(beam.bridge(), point);

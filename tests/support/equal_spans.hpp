@@ -1,4 +1,4 @@
-// Matrices of bridges whose spans are equal but for a few, and their solutions in long double.
+// Matrices of bridges whose spans are equal except for a few, and their solutions in long double.
 #pragma once
 
 #include <Eigen/Dense>
@@ -9,16 +9,16 @@
 
 namespace traverse::test {
 
-/// Spans of elements of 3 m, A = shift^2 M + K. A node's unknowns: deflection, rotation and, where there are hinges,
-/// the rotation to the right of one.
+/// Spans of elements of 3 m, A = shift^2 M + K. The unknowns of a node are deflection, rotation and, if there are
+/// hinges, the rotation on the right of a hinge.
 struct EqualSpans {
   int spans = 1000;
-  int elements = 10;       // a span
+  int elements = 10;       // elements per span
   double shift = 0.0;      // 1/s
-  int odd_span = -1;       // of four elements
+  int odd_span = -1;       // index of a span with four elements; -1: none
   bool elastic = false;    // every other pier is a spring
-  int spans_to_hinge = 0;  // a hinge in every so many spans, near a pier; 0: none
-  double jitter = 0.0;     // every entry is changed by up to this part of it
+  int spans_to_hinge = 0;  // number of spans from hinge to hinge, near a pier; 0: no hinges
+  double jitter = 0.0;     // largest relative change of every entry
 
   struct Matrix {
     solve::BlockTridiagonal A;
@@ -62,7 +62,7 @@ struct EqualSpans {
   }
 
  private:
-  // From `node`, whose rotation is its unknown number `rotation`, to the next.
+  // Adds the element from `node`, whose rotation is its unknown number `rotation`, to the next node.
   void add_element(solve::BlockTridiagonal& A, int node, int rotation) const {
     constexpr double length = 3.0, EI = 2.5e10, mass = 1e4;
     Eigen::Matrix4d K, M;
@@ -84,7 +84,7 @@ struct EqualSpans {
   }
 };
 
-/// By elimination from left to right in long double.
+/// The solution by elimination from left to right in long double.
 inline std::vector<double> solution_in_long_double(const EqualSpans::Matrix& m, const std::vector<double>& load) {
   using Block = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
   using Node = Eigen::Matrix<long double, Eigen::Dynamic, 1, 0, 3, 1>;

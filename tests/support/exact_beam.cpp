@@ -1,5 +1,5 @@
-// Assembles dynamic stiffness matrices, counts natural frequencies by the Wittrick-Williams algorithm and bisects for
-// them, and finds damped eigenvalues by the secant method on the determinant.
+// Assembles dynamic stiffness matrices, counts natural frequencies by the Wittrick-Williams algorithm, computes them by
+// bisection, and computes damped eigenvalues by the secant method on the determinant.
 #include "support/exact_beam.hpp"
 
 #include <Eigen/Dense>
@@ -10,11 +10,11 @@
 namespace traverse::test::exact {
 namespace {
 
-constexpr Real longest = 1.0L;  // of a piece, as a multiple of its solution's length 1/beta
+constexpr Real longest = 1.0L;  // largest length of a piece, as a multiple of its solution's length 1/beta
 
 int unknowns_of_a_joint(const Chain& chain) { return chain.motion == Motion::bending ? 2 : 1; }
 
-/// The chain with its pieces cut at |s|; `place` tells where its joints went.
+/// The chain with its pieces divided for |s|; `place` has the new index of each joint.
 struct Cut {
   Chain chain;
   std::vector<int> place;
@@ -107,7 +107,8 @@ EndForces<S> stretching(const Piece& p, S s) {
   EndForces<S> e{Eigen::Matrix<S, 2, 2>::Zero(), Eigen::Matrix<S, 2, 1>::Zero()};
   const S scale = S(EA / h) / sine;
   e.K << scale * cosine, -scale, -scale, scale * cosine;
-  const S f = static_cast<Real>(p.load) * h * series(2, 2, z) / sine;  // of a uniform force, half each at rest
+  const S f = static_cast<Real>(p.load) * h * series(2, 2, z) /
+              sine;  // end force due to a uniform force; half of it in statics
   e.f << f, f;
   return e;
 }
@@ -166,8 +167,9 @@ std::vector<std::complex<Real>> pivots(Eigen::Matrix<std::complex<Real>, Eigen::
   return d;
 }
 
-/// Negative eigenvalues of a symmetric matrix, by Bunch and Parlett's pivots. (Pivots taken in order fail: a beam that
-/// is free at its last joint has the frequencies of one that is clamped there, which the last but one pivot sees.)
+/// The number of negative eigenvalues of a symmetric matrix, by Bunch and Parlett's pivots. Pivots in their given order
+/// would fail: the last but one pivot vanishes at the frequencies of a beam that is clamped at its last joint, and a
+/// beam that is free there may have the same frequencies.
 int negative(Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> K) {
   using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
   int count = 0;
@@ -188,14 +190,14 @@ int negative(Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> K) {
     if (single) {
       exchange(diagonal, n - 1);
       if (K(n - 1, n - 1) < 0.0L) ++count;
-      if (K(n - 1, n - 1) == 0.0L) return count;  // the rest is zero
+      if (K(n - 1, n - 1) == 0.0L) return count;  // the remaining matrix is zero
     } else {
       exchange(row, n - 1);
       exchange(column, n - 2);
       ++count;  // an indefinite pair
     }
     const Matrix inverse = K.block(left, left, size, size).inverse();
-    for (Eigen::Index i = 0; i < left; ++i) {  // most rows of a band are not touched
+    for (Eigen::Index i = 0; i < left; ++i) {  // most rows of a band remain unchanged
       if (K.row(i).segment(left, size).isZero(0.0L)) continue;
       const Eigen::Matrix<Real, 1, Eigen::Dynamic> factor = K.row(i).segment(left, size) * inverse;
       for (Eigen::Index j = 0; j <= i; ++j) {
@@ -211,7 +213,7 @@ int negative(Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> K) {
 }
 
 int modes_below(const Chain& chain, Real omega) {
-  // s^2 = -omega^2 is real: the equations stay real with the mass turned negative.
+  // s^2 = -omega^2 is real: the equations remain real with a negative mass.
   Cut c = cut(chain, omega);
   for (Piece& p : c.chain.pieces) {
     p.mass = -p.mass;
@@ -250,7 +252,7 @@ std::vector<Section> statics(const Chain& chain) {
     const int joint = c.place[i];
     (per == 2 ? section.v : section.u) = static_cast<double>(d(per * joint));
     if (per == 2) section.rotation = static_cast<double>(d(2 * joint + 1));
-    for (int side : {-1, 0}) {  // the piece on the left and that on the right
+    for (int side : {-1, 0}) {  // the piece on the left and the piece on the right
       const int piece = joint + side;
       if (piece < 0 || piece >= static_cast<int>(c.chain.pieces.size())) continue;
       const EndForces<Real> e = end_forces<Real>(c.chain, static_cast<std::size_t>(piece), 0.0L);
@@ -276,7 +278,7 @@ std::complex<double> damped_root(const Chain& chain, std::complex<double> start)
     return product;
   };
   const auto sizes = pivots(assembled<Complex>(c.chain, Complex(start.real(), start.imag())).K);
-  Real logarithm = 0.0L;  // of the geometric mean, so that the product neither overflows nor vanishes
+  Real logarithm = 0.0L;  // logarithm of the geometric mean, so that the product neither overflows nor vanishes
   for (const Complex& d : sizes) logarithm += std::log(std::abs(d)) / static_cast<Real>(sizes.size());
   scale = std::exp(logarithm);
   Complex a(start.real(), start.imag()), b = a * (1.0L + 1e-6L), at_a = determinant(a), at_b = determinant(b);

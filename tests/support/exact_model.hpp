@@ -18,7 +18,7 @@ struct Load {
 
 struct ModelChain {
   Chain chain;
-  std::vector<double> x;  // of its joints
+  std::vector<double> x;  // stations of its joints
   std::size_t joint(double station) const {
     const auto at = std::lower_bound(x.begin(), x.end(), station - 1e-9);
     if (at == x.end() || *at > station + 1e-9) throw std::logic_error("no joint at this station");
@@ -26,7 +26,8 @@ struct ModelChain {
   }
 };
 
-/// Joints at span ends, springs, loads, steps of the data, and `stations` besides. Not for isolated spans.
+/// The chain of a model, with joints at span ends, springs, loads, jumps of the data, and `stations`. Not for separate
+/// spans.
 inline ModelChain chain_of(const beam::BeamModel& model, Motion motion = Motion::bending,
                            const std::vector<Load>& loads = {}, double gravity = 0.0,
                            const std::vector<double>& stations = {}) {

@@ -1,6 +1,6 @@
-// Exact frequencies of a uniform Timoshenko beam by the transfer of (v, theta, M, V) along it, no shape function:
+// Exact frequencies of a uniform Timoshenko beam by the transfer of (v, theta, M, V) along it, without shape functions:
 //   v' = theta - V/GA,  theta' = M/EI,  M' = V - rho I omega^2 theta,  V' = m omega^2 v
-// A crack in it lets theta jump by M/k. In long double.
+// At a crack theta jumps by M/k. All numbers are long double.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 namespace traverse::test::exact {
 
 struct UniformBeam {
-  long double length, EI, GA, mass, rotary;  // GA 0: it does not shear
+  long double length, EI, GA, mass, rotary;  // GA 0: no shear deformation
   long double crack_at = 0.0L, crack_k = 0.0L;
 };
 
@@ -40,12 +40,13 @@ inline Transfer transfer(const UniformBeam& b, long double omega, long double x)
   return whole;
 }
 
-/// Which of v, theta, M, V vanish at a support.
+/// The two of v, theta, M, V that are zero at a support.
 inline std::pair<int, int> vanishing(beam::Support s) {
   return {beam::fixes_vertical(s) ? 0 : 3, beam::fixes_rotation(s) ? 1 : 2};
 }
 
-/// The frequency determinant: of what vanishes on the right by what does not on the left.
+/// The frequency determinant. Its 2 x 2 matrix transfers the non-zero quantities at the left end to the quantities that
+/// are zero at the right end.
 inline long double determinant(const UniformBeam& b, beam::Support left, beam::Support right, long double omega) {
   Transfer whole = transfer(b, omega, b.length);
   if (b.crack_k > 0.0L) {
@@ -59,7 +60,7 @@ inline long double determinant(const UniformBeam& b, beam::Support left, beam::S
   return whole(b0, c0) * whole(b1, c1) - whole(b0, c1) * whole(b1, c0);
 }
 
-/// The lowest non-zero ones, rad/s, looked for in steps that are small against their distances.
+/// The lowest non-zero frequencies, rad/s, searched in intervals that are small compared with their distances.
 inline std::vector<double> frequencies(const UniformBeam& b, beam::Support left, beam::Support right, int count) {
   const long double step = 0.02L * std::sqrt(b.EI / b.mass) / (b.length * b.length);
   std::vector<double> found;

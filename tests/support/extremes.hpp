@@ -1,4 +1,4 @@
-// For runs at the edge of what makes sense: each gives the right answer, or is refused with what to change.
+// Functions for tests with extreme input: a run must have the correct result, or be refused with advice.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 
 namespace traverse::test {
 
-/// The words in which `run` is refused; "" where it runs to its end.
+/// The message with which `run` is refused; "" if it runs to its end.
 inline std::string refusal(const std::function<void()>& run) {
   try {
     run();
@@ -32,7 +32,7 @@ inline void expect_refused(const std::function<void()>& run, const std::vector<s
   for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << part << " in: " << message;
 }
 
-/// Largest difference of a dataset of two runs, at the instants that both have stored, over `scale`.
+/// Largest difference of a dataset of two runs over `scale`, at the instants that both runs have stored.
 inline double difference(Results& run, Results& reference, const std::string& name, double scale) {
   const std::vector<double> t = run.time(), t_reference = reference.time();
   const std::vector<double> a = run(name), b = reference(name);
@@ -51,7 +51,7 @@ inline double difference(Results& run, Results& reference, const std::string& na
   return largest / scale;
 }
 
-/// The same over the largest value of the reference.
+/// The largest difference over the largest value of the reference.
 inline double difference(Results& run, Results& reference, const std::string& name) {
   return difference(run, reference, name, std::abs(peak(reference(name)).first));
 }
@@ -72,11 +72,11 @@ struct MovingForce {
     double sum = 0.0;
     for (int n = 1; n <= modes; ++n) {
       const double wave = n * std::numbers::pi / L, W = wave * speed;
-      // Off resonance by a hair, so that one formula serves: q changes by as little.
+      // The frequency is changed by 5e-8 to avoid resonance, so that one formula suffices; q changes by as little.
       const double w2 = (std::pow(wave, 4) * EI + k) / m * (1.0 + 1e-7), s = 0.5 * (a + b * w2);
       const Complex root = std::sqrt(Complex(s * s - w2)), r1 = -s + root, r2 = -s - root;
       const Complex A = 2.0 * F / (m * L) / Complex(w2 - W * W, 2.0 * s * W);
-      // Im A e^{iWt} and what makes q = q' = 0 at the start.
+      // Im A e^{iWt} plus the free vibration for which q = q' = 0 at the start.
       const double q0 = A.imag(), rate0 = W * A.real();
       const Complex c1 = (r2 * q0 - rate0) / (r1 - r2), c2 = -q0 - c1;
       const double q =

@@ -1,12 +1,12 @@
-// N four-bar linkages side by side, a benchmark of singular positions: 2N + 1 rods of 1 m and 1 kg, N + 1 of them
-// cranks on the ground 1 m apart, N couplers from one crank's end to the next one's.
+// N four-bar linkages side by side, a benchmark of singular positions: 2N + 1 rods of 1 m and 1 kg. N + 1 rods are
+// cranks on the ground, 1 m apart; N rods are couplers between the ends of neighbouring cranks.
 #pragma once
 
 #include <string>
 
 namespace traverse::test {
 
-/// A vehicle's options: rods upright at the start, coupler points moving at 1 m/s along +x.
+/// The options of the vehicle: the cranks are upright at the start, and the couplers' points move at 1 m/s along +x.
 std::string four_bars(int n);
 
 }  // namespace traverse::test

@@ -1,5 +1,6 @@
-// Rail and bridge along the track, assembled without any of the program's code: bars and Hermite elements as energies
-// in sparse matrices, and sleepers that slide, whose states (held, sliding either way) are changed until they agree.
+// Rail and bridge along the track, assembled without code of the program: the energies of bars and Hermite elements are
+// added to sparse matrices. The states of sliding sleepers (held, sliding in one of both directions) are changed until
+// they are consistent.
 #pragma once
 
 #include <Eigen/Sparse>
@@ -12,20 +13,20 @@
 namespace traverse::test {
 
 struct HandRail {
-  double rail_EA = 0.0, rail_EI = 0.0, rail_strain = 0.0;  // N, N m2, of its temperature
+  double rail_EA = 0.0, rail_EI = 0.0, rail_strain = 0.0;  // N, N m2; strain of its temperature
   double start = 0.0, element = 0.0;                       // m
-  int elements = 0, each = 1;                              // of the rail; between two sleepers
+  int elements = 0, each = 1;                              // number of rail elements in all; between two sleepers
   int device = -1;                                         // a node of the rail where u may jump; below 0: none
-  double EA = 0.0, EI = 0.0, strain = 0.0, length = 0.0;   // of the deck, from x = 0
+  double EA = 0.0, EI = 0.0, strain = 0.0, length = 0.0;   // properties of the deck, which begins at x = 0
   int deck = 0;                                            // elements
-  double height = 0.0;                                     // m, of the running surface
+  double height = 0.0;                                     // height of the running surface, m
   double bearing_k = 0.0, bearing_depth = 0.0;             // N/m, m: at x = 0
   double pad_k = 0.0;                                      // N/m
   double k = 0.0, limit = 0.0, loaded_k = 0.0, loaded_limit = 0.0;
-  double rail_mass = 0.0, mass = 0.0, pad_c = 0.0, c = 0.0;  // kg/m, kg/m, N s/m: in motion
+  double rail_mass = 0.0, mass = 0.0, pad_c = 0.0, c = 0.0;  // kg/m, kg/m, N s/m, N s/m: only for the motion in time
 };
 
-/// Loads as rail::Loads has them.
+/// Loads with the same meaning as in rail::Loads.
 struct HandLoads {
   bool strains = false;
   double from = 0.0, to = 0.0, weight = 0.0, along_from = 0.0, along_to = 0.0, along = 0.0;
@@ -33,13 +34,13 @@ struct HandLoads {
 
 struct HandState {
   Eigen::VectorXd v;
-  std::vector<double> force, displacement;  // of sleepers along x
+  std::vector<double> force, displacement;  // forces and displacements of sleepers along x
   std::vector<double> stretch;              // EA u' of each rail element, N
-  double bearing = 0.0;                     // N, on the bridge
-  double opening = 0.0;                     // m, of the device
+  double bearing = 0.0;                     // force on the bridge, N
+  double opening = 0.0;                     // opening of the device, m
 };
 
-/// A motion at an instant, and what sleepers have settled at.
+/// A motion at an instant, with the slip history of the sleepers.
 struct HandMotion {
   Eigen::VectorXd v, w, a;
   HandState settled;
@@ -70,7 +71,8 @@ class HandRailModel {
     held_ = {0, 3 * t.elements, deck(0) + 1, deck(t.deck) + 1};
   }
 
-  /// At rest: rail ends held along x, the deck on two supports. before: null: free of forces.
+  /// The static state: the rail's ends are held along x, the deck is on two supports. before: the previous state; null:
+  /// the track is free of forces.
   HandState rest(const HandLoads& loads, const HandState* before = nullptr) const {
     const std::size_t count = sleepers_.size();
     std::vector<int> slides(count, 0);
@@ -89,7 +91,7 @@ class HandRailModel {
     return {};
   }
 
-  /// At rest under forces downward on the rail, before anything slides along x.
+  /// The static state under downward forces on the rail, before anything slides along x.
   HandMotion at_rest(const std::vector<std::pair<double, double>>& forces) const {
     HandMotion m;
     m.settled.force.assign(sleepers_.size(), 0.0);
@@ -102,7 +104,8 @@ class HandRailModel {
     return m;
   }
 
-  /// A step h of Newmark's average acceleration; `forces` at its end, loads.from and .to: where sleepers are loaded.
+  /// One step h of Newmark's average acceleration method. `forces`: forces at its end; loads.from and loads.to: ends of
+  /// the range in which sleepers are loaded.
   void step(HandMotion& m, const std::vector<std::pair<double, double>>& forces, const HandLoads& loads, double h) {
     const Eigen::SparseMatrix<double> M = matrix(masses_, false), C = matrix(dampers_, false);
     const Eigen::VectorXd rhs =
@@ -153,7 +156,7 @@ class HandRailModel {
   };
 
   int deck(int node) const { return 3 * (t_.elements + 1) + 3 * node; }
-  /// Along x, of the left end of a rail element: behind the device its own.
+  /// The unknown along x at the left end of a rail element; behind the device it is a separate unknown.
   int left_u(int element) const { return element == t_.device ? n_ - 1 : 3 * element; }
   using Entries = std::vector<Eigen::Triplet<double>>;
   static void add_energy(const Terms& d, double k, Entries& to) {
@@ -183,7 +186,7 @@ class HandRailModel {
     add_energy({{first + 2, -1.0}, {first + 5, 1.0}}, EI / h);
     add_energy({{first + 1, 2.0 / h}, {first + 4, -2.0 / h}, {first + 2, 1.0}, {first + 5, 1.0}}, 3.0 * EI / h);
   }
-  /// Less what the deck does below a sleeper: its deflection, and u - e theta.
+  /// Subtracts the deck's displacements below a sleeper: its deflection, and u - e theta.
   void add_deck(double x, Terms& down, Terms& along) const {
     const double h = t_.length / t_.deck;
     const int e = std::min(static_cast<int>(x / h + 1e-9), t_.deck - 1);

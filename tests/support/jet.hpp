@@ -1,4 +1,4 @@
-// Numbers that carry their first two derivatives with respect to one variable, for reference solutions: a mechanism's
+// Numbers with their first two derivatives with respect to one variable, for reference solutions such as a mechanism's
 // positions over its crank's angle.
 #pragma once
 
@@ -9,7 +9,7 @@ namespace traverse::test {
 struct Jet {
   double value = 0.0, first = 0.0, second = 0.0;
   Jet() = default;
-  Jet(double constant) : value(constant) {}  // NOLINT: constants mix with jets as numbers do
+  Jet(double constant) : value(constant) {}  // NOLINT: a constant can be used like a jet
   Jet(double v, double d, double dd) : value(v), first(d), second(dd) {}
 };
 

@@ -1,5 +1,5 @@
-// The main of every test program that uses PETSc: GoogleTest between SlepcInitialize and SlepcFinalize, on any
-// number of ranks. A test has passed only when it has passed on every rank.
+// The main function of every test program that uses PETSc: GoogleTest between SlepcInitialize and SlepcFinalize, on any
+// number of ranks. A test has passed only if it has passed on every rank.
 
 #include <gtest/gtest.h>
 #include <mpi.h>
@@ -13,8 +13,8 @@
 
 namespace {
 
-// MPI_Init in 50 ms instead of 300: without mpirun, Open MPI need not look for networks and displays nor start a
-// daemon. Nor does it get a session folder, for which single processes that run side by side compete.
+// Shortens MPI_Init from 300 ms to 50 ms: without mpirun, Open MPI does not need to search for networks and displays,
+// and no daemon. It also gets no session folder, for which single processes that run at the same time would compete.
 void start_mpi(int* argc, char*** argv) {
   const char* no_folder = "OMPI_MCA_orte_create_session_dirs";
   if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr) {
@@ -25,7 +25,7 @@ void start_mpi(int* argc, char*** argv) {
     setenv(no_folder, "0", 1);
   }
   MPI_Init(argc, argv);
-  unsetenv(no_folder);  // an mpirun that a test starts cannot do without
+  unsetenv(no_folder);  // an mpirun that a test starts needs its session folder
 }
 
 double seconds_of(int who) {
@@ -35,9 +35,9 @@ double seconds_of(int who) {
          1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
 }
 
-// A test that computes without end is stopped by the processor time it has used, and each says at its end how much that
-// was, with the programs that it has run: other than time by the clock, that does not depend on what else the machine
-// has to do.
+// Limits the processor time of a test, so that a test that does not end is stopped, and prints the processor time of
+// each test with the programs that it has run. Unlike time by the clock, it does not depend on other work of the
+// machine.
 class ProcessorTime : public testing::EmptyTestEventListener {
   void OnTestStart(const testing::TestInfo&) override {
     constexpr rlim_t longest = 900;  // s
@@ -59,7 +59,7 @@ class ProcessorTime : public testing::EmptyTestEventListener {
 
 int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--gtest_list_tests") == 0) {  // asked by the build: no need for PETSc
+    if (std::strcmp(argv[i], "--gtest_list_tests") == 0) {  // requested by the build, without PETSc
       testing::InitGoogleTest(&argc, argv);
       return RUN_ALL_TESTS();
     }
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (rank != 0) GTEST_FLAG_SET(brief, true);  // the other ranks print failures only
-  testing::InitGoogleTest(&argc, argv);        // takes its own arguments out, before PETSc sees them
+  testing::InitGoogleTest(&argc, argv);        // removes its own arguments before PETSc reads them
 
   testing::UnitTest::GetInstance()->listeners().Append(new ProcessorTime);
 

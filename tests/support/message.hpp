@@ -17,7 +17,7 @@ inline bool any_contains(const std::vector<std::string>& texts, const std::strin
   return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) { return contains(text, part); });
 }
 
-/// The message of the InputError that `action` has to throw: one line, exit status 2.
+/// The message of the InputError that `action` must throw: one line, exit status 2.
 inline std::string message_of(const std::function<void()>& action) {
   try {
     action();

@@ -26,7 +26,7 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 /// The forces and moments that add up on every body at one instant.
 class Balance {
  public:
-  /// driven: its first body's x is prescribed by the train's drive.
+  /// driven: whether the train's drive prescribes x of its first body.
   Balance(Results& run, const train::Vehicle& vehicle, std::string group, double gravity, bool driven, std::size_t row)
       : run_(run), vehicle_(vehicle), model_(vehicle.mechanism), group_(std::move(group)), row_(row) {
     const multibody::MechanismModel& model = model_;
@@ -69,7 +69,7 @@ class Balance {
   Vector3d triple(const std::string& name) { return Eigen::Map<const Vector3d>(&run_(name)[3 * row_]); }
   Vector2d centre(int body) const { return position_[static_cast<std::size_t>(body)].head<2>(); }
 
-  /// Where a point of a body, given at t = 0, is now.
+  /// The present position of a body's point that is given at t = 0.
   Vector2d now(int body, const Vector2d& point) const {
     if (body == ground) return point;
     const Vector3d& start = model_.bodies[static_cast<std::size_t>(body)].position;
@@ -91,8 +91,8 @@ class Balance {
     force(bodies[1], second, on_second);
   }
 
-  /// The track's force on a wheel is known by its parts along normal and tangent, not by its direction: whatever else
-  /// is missing must be as great. Friction acts at the surface.
+  /// The results have the normal and tangential parts of the track's force on a wheel, but not its direction. Therefore
+  /// the sum of all other forces must have the same magnitude. Friction acts at the surface.
   void add(const train::Wheel& wheel, Imbalance& worst) {
     const auto value = [&](const char* what) { return run_(group_ + wheel.name + what)[row_]; };
     const std::size_t b = static_cast<std::size_t>(wheel.body);
@@ -122,7 +122,8 @@ class Balance {
   std::string group_;
   std::size_t row_;
   std::vector<Vector3d> position_, sum_;
-  std::vector<Vector3d> free_;  // 0 for a coordinate that a driver holds, whose force the results do not tell; else 1
+  std::vector<Vector3d>
+      free_;  // 0 for a coordinate that a driver prescribes, because the results do not contain its force; otherwise 1
   Imbalance largest_;
 };
 
@@ -137,7 +138,7 @@ Imbalance newton_imbalance(Results& run, int vehicle) {
   Imbalance worst, scale;
   for (std::size_t row = 0; row < run("/time").size(); ++row)
     Balance(run, type, group, scene.gravity, driven, row).compare(worst, scale);
-  if (scale.force > 0.0) worst.force /= scale.force;  // without any force, an acceleration is wrong as it is
+  if (scale.force > 0.0) worst.force /= scale.force;  // without any force, every acceleration is an error
   if (scale.moment > 0.0) worst.moment /= scale.moment;
   return worst;
 }

@@ -1,4 +1,4 @@
-// The span of 20 m that several frequency tests are about.
+// The span of 20 m that several frequency tests use.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Starts the program in a process group of its own with a clean MPI environment and a limit of processor time, collects
+// Starts the program in a separate process group with a clean MPI environment and a limit of processor time, collects
 // its output, and checks exit status and messages.
 #include "support/program.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Our variables but those by which Open MPI tells a process that it is part of a run.
+/// The variables of this process without the variables by which Open MPI marks a process as part of a run.
 std::vector<std::string> clean_environment() {
   std::vector<std::string> variables;
   for (char** v = environ; *v != nullptr; ++v) {
@@ -31,7 +31,7 @@ std::vector<std::string> clean_environment() {
     if (!starts("OMPI_") && !starts("PMIX_") && !starts("ORTE_") && !starts("PETSC_OPTIONS"))
       variables.push_back(variable);
   }
-  // A rank that waits leaves the processor to others, on a busy machine perhaps to the rank that it waits for.
+  // A waiting rank yields the processor to other processes, on a busy machine possibly to the rank for which it waits.
   variables.insert(variables.end(),
                    {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_pml=ob1",
                     "OMPI_MCA_btl=self,vader", "OMPI_MCA_mpi_yield_when_idle=1", "HWLOC_COMPONENTS=-gl,-opencl"});
@@ -69,7 +69,7 @@ Child::Child(std::vector<std::string> command, const std::string& folder) {
   posix_spawn_file_actions_addopen(&files, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
-  // What a shell lets its background ignore is not ignored here.
+  // Signals that a shell sets to be ignored in background processes have their default action here.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
   sigset_t all;
   sigfillset(&all);
@@ -151,8 +151,9 @@ std::vector<std::string> complaints(const Outcome& outcome) {
   std::erase_if(lines, [](const std::string& l) { return l.find("ORTE_ERROR_LOG") != std::string::npos; });
   const auto rule =
       std::find_if(lines.begin(), lines.end(), [](const std::string& l) { return l.starts_with("----"); });
-  std::vector<std::string> ours(lines.begin(),
-                                rule);  // then mpirun speaks, between rules; ours may stand behind them, too
+  std::vector<std::string> ours(
+      lines.begin(),
+      rule);  // here the text of mpirun begins, between rules; lines of the program may also follow it
   for (auto line = rule; line != lines.end(); ++line) {
     if (line->starts_with("traverse: ")) ours.push_back(*line);
   }

@@ -1,4 +1,4 @@
-// Runs the real program, TRAVERSE_BINARY, as a child process: what a user types and sees.
+// Runs the program TRAVERSE_BINARY as a child process, with the command line and the output of a user.
 #pragma once
 
 #include <sys/types.h>
@@ -11,20 +11,20 @@
 
 namespace traverse::test {
 
-/// How a process ended and what it wrote.
+/// The end of a process and its output.
 struct Outcome {
-  int status = -1;         ///< exit status; -1 when it did not exit by itself
+  int status = -1;         ///< exit status; -1 if it did not exit by itself
   int signal = 0;          ///< the signal that ended it, or 0
   bool timed_out = false;  ///< it did not end by itself in time
   std::string out, err;
 };
 
-/// Longest wait by the clock, s. It is long because a machine that is busy with other things may be a hundred times
-/// slower; a program that computes without end is stopped earlier, by the processor time that it has used.
+/// Longest wait by the clock, s. It is long because a busy machine may be a hundred times slower. A program that does
+/// not end is stopped earlier by its limit of processor time.
 constexpr double patience = 3600.0;
 
-/// A process in a group of its own, without the variables that Open MPI sets in this one. Killed with the object, or by
-/// the system once it has used five minutes of processor time.
+/// A process in a separate process group, without the variables that Open MPI sets in this process. It is killed when
+/// the object is destroyed, or by the system after five minutes of processor time.
 class Child {
  public:
   Child(std::vector<std::string> command, const std::string& folder);
@@ -32,9 +32,9 @@ class Child {
   Child& operator=(const Child&) = delete;
   ~Child();
   void kill(int signal) const;
-  /// Waits until the process has brought about a state; false when it ends or `seconds` pass before.
+  /// Waits until `state` is true; returns false if the process ends before, or after `seconds`.
   bool wait_until(const std::function<bool()>& state, double seconds = patience);
-  /// What the process has written so far: "out" or "err".
+  /// The output of the process so far, "out" or "err".
   std::string written(const std::string& ending) const;
   /// Waits until the process has written `text`.
   bool wait_for(const std::string& text, double seconds = patience);
@@ -70,13 +70,13 @@ class Workplace {
 
 /// Lines of a text.
 std::vector<std::string> lines_of(const std::string& text);
-/// The lines on stderr that the program wrote: mpirun adds its own.
+/// The lines on stderr that the program wrote, without the lines of mpirun.
 std::vector<std::string> complaints(const Outcome& outcome);
 
-/// The run has ended with status 0 and without a word on stderr.
+/// Expects that the run has ended with status 0 and without text on stderr.
 void expect_success(const Outcome& outcome);
-/// Refused before anything was computed: one line that begins `traverse: ` and holds every one of `parts`, a status
-/// other than 0, no summary, no results file.
+/// Expects that the run was refused before any computation: one line that begins with `traverse: ` and contains all
+/// `parts`, a status other than 0, no summary, no results file.
 void expect_refusal(const Workplace& workplace, const Outcome& outcome, const std::vector<std::string>& parts);
 
 /// Two spans of 20 m (4 elements each) and a body on a sprung axle: 6,000 kg, at 40 m/s.

@@ -1,4 +1,4 @@
-// Peaks of a run and what it promises of them.
+// Peaks of a run and their error estimates.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ inline double peak_of(const Results& run, const std::string& quantity) {
   return std::abs(run.attribute("/summary", quantity == "wheel_force" ? "greatest_wheel_force" : quantity));
 }
 
-/// What the run says it expects; none where it does not promise the quantity.
+/// The run's error estimate of a quantity; none if the run has no estimate.
 inline std::optional<double> expected(const Results& run, const std::string& quantity) {
   const double error = run.attribute("/summary", "expected_error_" + quantity);
   return std::isnan(error) ? std::nullopt : std::optional(error);

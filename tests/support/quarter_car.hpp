@@ -1,4 +1,4 @@
-// A quarter car as most papers have it: a body on a spring and a damper above an axle with one wheel.
+// The quarter car of most papers: a body on a spring and a damper above an axle with one wheel.
 #pragma once
 
 #include <fmt/format.h>
@@ -7,8 +7,8 @@
 
 namespace traverse::test {
 
-/// The YAML of vehicle `car`; masses in kg, stiffness in N/m, damping in N s/m. `wheel`: what its wheel has besides
-/// body and radius.
+/// The YAML of vehicle `car`; masses in kg, stiffness in N/m, damping in N s/m. `wheel`: options of its wheel in
+/// addition to body and radius.
 inline std::string quarter_car_with(double body, double axle, double stiffness, double damping,
                                     const std::string& wheel) {
   return fmt::format(R"(

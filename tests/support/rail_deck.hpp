@@ -1,4 +1,5 @@
-// Decks under a track whose sleepers slide: as the program has them and by hand, at rest and as two forces cross.
+// Decks under a track whose sleepers slide, as models of the program and for the computation by hand, in statics and
+// while two forces cross.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +17,7 @@ using rail::Loads;
 
 inline constexpr double area = 0.0153389, rail_EA = 3.2212e9, expansion = 1e-5;
 
-/// A deck under a track on ballast: 20 kN/m at 2 mm, 60 kN/m under a train.
+/// A deck under a track on ballast. The longitudinal resistance is 20 kN/m at 2 mm, 60 kN/m under a train.
 inline beam::BeamModel deck_of(double span, double spacing, double approach) {
   beam::BeamModel model;
   model.spans = {span};
@@ -49,7 +50,7 @@ inline beam::BeamModel deck_of(double span, double spacing, double approach) {
   return model;
 }
 
-/// The same by hand.
+/// The data of the model above for the computation by hand.
 inline HandRail by_hand(const beam::BeamModel& model) {
   const beam::LayeredTrack& t = *model.track;
   const beam::RailMesh mesh = beam::rail_mesh(model);
@@ -83,7 +84,8 @@ inline HandLoads by_hand(const Loads& loads) {
   return {loads.strains, loads.from, loads.to, loads.weight, loads.along_from, loads.along_to, loads.along};
 }
 
-/// Largest difference over the largest value: rail stress, displacement and force of sleepers, the bearing, the device.
+/// Largest difference over the largest value of rail stress, displacement and force of sleepers, bearing force and
+/// opening of the device.
 inline double difference(const rail::State& state, const HandState& hand) {
   double worst = 0.0;
   const auto compare = [&](const std::vector<double>& a, const std::vector<double>& b, double factor) {
@@ -129,7 +131,7 @@ ts: {dt: 5.0e-5, max_time: 0.8}
 output: {interval: 0.01, probes: [3.0, 6.0, 9.0]}
 )";
 
-/// The same by hand, with so many rail elements from sleeper to sleeper.
+/// The data of the scene above for the computation by hand, with `each` rail elements between two sleepers.
 inline HandRail small_deck_by_hand(int each) {
   HandRail hand;
   hand.rail_EA = rail_EA;
@@ -160,11 +162,11 @@ inline HandRail small_deck_by_hand(int each) {
 /// Its motion every 0.01 s.
 struct HandHistory {
   std::vector<double> rail_u, deck_u, deck_v;  // at 3, 6 and 9 m, sample by sample
-  std::vector<double> opening;                 // of the device
-  bool slid = false;                           // a loaded sleeper has
+  std::vector<double> opening;                 // opening of the device
+  bool slid = false;                           // whether a loaded sleeper has slid
 };
 
-/// By Newmark's method, with so many steps a sample.
+/// The motion by Newmark's method, with this number of steps for each sample.
 inline HandHistory cross(const HandRail& hand, int steps, int samples) {
   HandRailModel model(hand);
   const auto forces_at = [](double t) {

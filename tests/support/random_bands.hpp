@@ -1,5 +1,5 @@
-// Long random symmetric positive definite block tridiagonal matrices in slices, each node's numbers from its own seed,
-// and what tests of the solver's windows share.
+// Long random symmetric positive definite block tridiagonal matrices in slices, with a seed for the numbers of each
+// node, and common functions of the tests of the solver's windows.
 #pragma once
 
 #include <Eigen/Dense>
@@ -15,8 +15,8 @@
 
 namespace traverse::test {
 
-/// Nodes [begin, begin + nodes) of `whole` nodes of G G^T + shift*I, G lower block bidiagonal: the larger the shift,
-/// the faster the inverse dies out; 10 leaves less than 1e-15 behind 20 nodes.
+/// Nodes [begin, begin + nodes) of `whole` nodes of G G^T + shift*I with a lower block bidiagonal matrix G. The entries
+/// of the inverse decay faster for a larger shift; with 10 they are below 1e-15 after 20 nodes.
 inline solve::BlockTridiagonal random_band(int block, int begin, int nodes, int whole, double shift) {
   const auto random = [&](int node, bool below) -> Eigen::MatrixXd {
     if (node < 0 || node >= whole || (below && node == 0)) return Eigen::MatrixXd::Zero(block, block);
@@ -52,7 +52,7 @@ inline Eigen::VectorXd product(const solve::BlockTridiagonal& A, const Eigen::Ve
   return result;
 }
 
-/// Copies a right-hand side into x when told to, and counts what was asked.
+/// Copies a right-hand side into x in its calls, and counts the requests for each node.
 class CopyingFiller final : public solve::RhsCallback {
  public:
   CopyingFiller(Eigen::VectorXd from, int block) : from_(std::move(from)), block_(block) {
@@ -65,8 +65,8 @@ class CopyingFiller final : public solve::RhsCallback {
     x.segment(first * block_, (past - first) * block_) = from_.segment(first * block_, (past - first) * block_);
   }
 
-  Eigen::VectorXd x;       // not a number where nothing was written
-  std::vector<int> times;  // each node was asked for
+  Eigen::VectorXd x;       // NaN where nothing was written
+  std::vector<int> times;  // number of requests for each node
   std::ptrdiff_t longest = 0;
 
  private:

@@ -16,8 +16,8 @@ inline Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, un
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return number(generator); });
 }
 
-/// G G^T + shift*I with G a random lower block bidiagonal matrix: the larger the shift, the faster the inverse dies
-/// out.
+/// G G^T + shift*I with a random lower block bidiagonal matrix G. The entries of the inverse decay faster for a larger
+/// shift.
 inline Eigen::MatrixXd random_spd(int block, int nodes, double shift, unsigned seed) {
   Eigen::MatrixXd G = random_matrix(block * nodes, block * nodes, seed);
   for (int row = 0; row < nodes; ++row) {
@@ -49,7 +49,8 @@ inline solve::BlockTridiagonal slice(const Eigen::MatrixXd& A, int block, int be
   return result;
 }
 
-/// The solution of the whole system with the fixed unknowns' rows and columns those of the identity.
+/// The solution of the whole system, in which rows and columns of fixed unknowns are replaced by those of the identity
+/// matrix.
 inline Eigen::MatrixXd dense_solution(Eigen::MatrixXd A, const std::vector<char>& fixed, const Eigen::MatrixXd& b) {
   for (std::size_t i = 0; i < fixed.size(); ++i) {
     if (fixed[i] == 0) continue;

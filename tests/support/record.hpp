@@ -1,4 +1,4 @@
-// Figures of a test, in its report and on the screen.
+// Records numbers of a test in its report and prints them.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Natural frequencies of a beam whose EI and mass vary smoothly along x, by Ritz' method with Legendre polynomials:
-// no mesh, and errors that fall exponentially with the number of terms.
+// Natural frequencies of a beam whose EI and mass vary smoothly along x, by Ritz' method with Legendre polynomials.
+// There is no mesh, and the errors decrease exponentially with the number of terms.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,11 +12,12 @@ namespace traverse::test {
 
 struct RitzBeam {
   double length;
-  std::function<double(double)> EI, mass;  // of x, polynomials of low degree
+  std::function<double(double)> EI, mass;  // functions of x, polynomials of low degree
   int left, right;                         // held derivatives: 0 free, 1 deflection, 2 deflection and slope
 };
 
-/// The `count` lowest, rad/s; terms (1 + xi)^left (1 - xi)^right P_j(xi), j < terms, xi from -1 to 1.
+/// The `count` lowest frequencies, rad/s, with the terms (1 + xi)^left (1 - xi)^right P_j(xi), j < terms, -1 <= xi
+/// <= 1.
 inline std::vector<double> ritz_frequencies(const RitzBeam& beam, int count, int terms = 24) {
   using Real = long double;
   using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
@@ -60,7 +61,7 @@ inline std::vector<double> ritz_frequencies(const RitzBeam& beam, int count, int
     M += weight * half * static_cast<Real>(beam.mass(x)) * v * v.transpose();
     K += weight * half * static_cast<Real>(beam.EI(x)) * curvature * curvature.transpose();
   }
-  // Turned round, M x = mu (K + shift M) x: the lowest frequencies are the accurate ones.
+  // In the inverted problem M x = mu (K + shift M) x the lowest frequencies are the most accurate.
   const Real shift = beam.EI(0.0) / (beam.mass(0.0) * std::pow(beam.length, 4));
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(M, K + shift * M, Eigen::EigenvaluesOnly);
   std::vector<double> omega;

@@ -7,7 +7,7 @@
 
 namespace traverse::test {
 
-/// Dense rows, all columns; a null matrix has none.
+/// Dense rows with all columns; empty for a null matrix.
 inline std::vector<std::vector<double>> local_rows(Mat matrix) {
   if (matrix == nullptr) return {};
   PetscInt first = 0, past = 0, columns = 0;
@@ -26,7 +26,7 @@ inline std::vector<std::vector<double>> local_rows(Mat matrix) {
   return rows;
 }
 
-/// How many entries a local row stores, explicit zeros included.
+/// The number of stored entries of a local row, including explicit zeros.
 inline int stored(Mat matrix, PetscInt row) {
   PetscInt count = 0;
   base::check(MatGetRow(matrix, row, &count, nullptr, nullptr));

@@ -16,7 +16,7 @@ std::vector<std::string> datasets(const std::string& path) {
   std::vector<std::string> names;
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   auto visit = [](hid_t root, const char* name, const auto* info,
-                  void* into) -> herr_t {  // H5O_info_t changes with HDF5
+                  void* into) -> herr_t {  // H5O_info_t depends on the version of HDF5
     if (info->type != H5O_TYPE_DATASET) return 0;
     const hid_t set = H5Dopen2(root, name, H5P_DEFAULT);
     const hid_t type = H5Dget_type(set);
@@ -31,7 +31,7 @@ std::vector<std::string> datasets(const std::string& path) {
   return names;
 }
 
-// A mode's sign is free: the largest ordinate counts as positive.
+// The sign of a mode is arbitrary: the largest ordinate is made positive.
 std::vector<double> with_sign(std::vector<double> shapes, std::size_t modes) {
   const std::size_t nodes = shapes.size() / modes;
   for (std::size_t m = 0; m < modes; ++m) {
@@ -47,7 +47,8 @@ std::vector<double> with_sign(std::vector<double> shapes, std::size_t modes) {
   return shapes;
 }
 
-/// A dataset; where it is one of the end of the run, after the series that it continues, whose peak it is measured by.
+/// A dataset. A dataset of the end of the run follows the series that it continues, so that differences are relative to
+/// the peak of this series.
 std::vector<double> with_series(Results& run, const std::string& name) {
   if (!name.starts_with("/end/")) return run(name);
   std::vector<double> all = run(name.substr(4));

@@ -1,5 +1,5 @@
-// A scene gives the same results on one rank and on all: each rank also runs it on its own and compares with the
-// file of the common run.
+// Checks that a scene has the same results on one rank and on all ranks: each rank also runs it alone and compares the
+// results with the file of the common run.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace traverse::test {
 
-/// Every dataset of two runs, of which there are `least` at least, to `bound` of its peak; what is left of the energy
-/// balance is rounding. Accelerations below `at_rest` (m/s2) are rounding, too.
+/// Expects that every dataset of two runs is equal to `bound` of its peak, and that there are at least `least`
+/// datasets. The residual of the energy balance is rounding. Accelerations below `at_rest` (m/s2) are rounding, too.
 void expect_same(Results& one, Results& all, std::size_t least, double at_rest = 0.0, double bound = 1e-9);
-/// The same of a scene of options/scenes on all ranks and on this one.
+/// expect_same() for a scene of options/scenes that is run on all ranks and on this rank alone.
 void expect_same_on_all_ranks(const std::string& scene, const Values& options, std::size_t least, double bound = 1e-9);
 
 }  // namespace traverse::test

@@ -21,7 +21,7 @@
 namespace traverse::test {
 namespace {
 
-// Takes the temporary files away when the tests are done.
+// Removes the temporary files after the tests.
 struct Cleaner {
   ~Cleaner() {
     std::error_code ignored;
@@ -53,7 +53,7 @@ Results run_words(std::vector<std::string> words, MPI_Comm comm) {
   words.insert(words.end(), {"-output_file", file, "-output_quiet", "true", "-accuracy_cache", "false"});
   int ranks = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  if (ranks > 1) words.insert(words.begin() + 1, {"-step_ranks", "all"});  // what a test does not say otherwise
+  if (ranks > 1) words.insert(words.begin() + 1, {"-step_ranks", "all"});  // unless the test sets another value
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   base::check(PetscOptionsClear(nullptr));
@@ -131,12 +131,12 @@ double Results::attribute(const std::string& object, const std::string& name) co
 }
 
 std::size_t stored_instants(const std::string& file) {
-  const std::string copy = temporary(".copy.h5");  // the run has locked its own
+  const std::string copy = temporary(".copy.h5");  // the run has locked its own file
   std::error_code failed;
   std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing, failed);
   if (failed) return 0;
   hssize_t instants = 0;
-  H5E_BEGIN_TRY {  // HDF5 is silent about what is not there yet
+  H5E_BEGIN_TRY {  // HDF5 prints no message on objects that do not exist yet
     const hid_t opened = H5Fopen(copy.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     const hid_t time = H5Dopen2(opened, "/time", H5P_DEFAULT);
     const hid_t space = H5Dget_space(time);

@@ -6,7 +6,7 @@
 namespace traverse::test {
 namespace {
 
-/// The texts of a dataset, row by row; none where there is no such dataset.
+/// The texts of a dataset, row by row; empty if there is no such dataset.
 std::vector<std::string> texts(const std::string& file_name, const std::string& group, const std::string& name) {
   std::vector<std::string> out;
   const hid_t file = H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);

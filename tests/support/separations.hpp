@@ -1,4 +1,4 @@
-// The list of contacts lost and met again that a results file holds.
+// The list of contact losses with the following impacts in a results file.
 #pragma once
 
 #include "support/scene_run.hpp"
@@ -12,7 +12,7 @@ struct Separated {
   double end() const { return start + duration; }
 };
 
-/// All rows; none where the file has no such list.
+/// All rows; empty if the file has no such list.
 std::vector<Separated> separations(Results& run);
 
 }  // namespace traverse::test

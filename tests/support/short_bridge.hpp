@@ -1,4 +1,4 @@
-// A short bridge under a layered track, as a model, as a scene and by hand.
+// A short bridge under a layered track: as a model, as a scene and for the computation by hand.
 #pragma once
 
 #include <functional>
@@ -45,7 +45,7 @@ gravity: 9.81
 output: {probes: [1.8, 3.6, 5.4]}
 )");
 
-/// short_bridge by hand: `change` says what differs from sleeper to sleeper.
+/// The data of short_bridge for the computation by hand; `change` sets the differences from sleeper to sleeper.
 inline DenseTrack by_hand(const beam::BeamModel& model, const std::function<void(DenseSleeper&)>& change) {
   DenseTrack t;
   const int each = model.track->elements_per_bay;
@@ -57,7 +57,7 @@ inline DenseTrack by_hand(const beam::BeamModel& model, const std::function<void
   t.EI = 4e9;
   t.mass = 5000.0;
   t.length = 7.2;
-  t.elements = 12 * each - 1;  // a node for each of the rail's but the last
+  t.elements = 12 * each - 1;  // a node for each rail node except the last one
   for (int i = 0; i <= 32; ++i) {
     const TrackLayers& l = zhai_layers;
     DenseSleeper s{-6.0 + 0.6 * i, l.pad_k,        l.pad_c,        l.sleeper_mass, l.ballast_k,

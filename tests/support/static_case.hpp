@@ -1,4 +1,4 @@
-// A beam under loads at rest, for tests: displacements, section forces and reactions.
+// A beam under static loads, for tests: displacements, section forces and reactions.
 #pragma once
 
 #include <array>
@@ -8,10 +8,10 @@
 
 namespace traverse::test {
 
-/// A beam under loads at rest.
+/// A beam under static loads.
 struct Case {
   explicit Case(const beam::BeamModel& model) : beam(PETSC_COMM_WORLD, model), P(beam.local_unknowns(), 0.0) {
-    beam.set_rayleigh({0.3, 0.01});  // of no effect at rest
+    beam.set_rayleigh({0.3, 0.01});  // without effect in statics
   }
   Case& load(double x, double fy, double moment = 0.0, double fx = 0.0) {
     loads.push_back(add_load(beam, x, fy, moment, fx, P.data()));

@@ -1,4 +1,4 @@
-// Static answers of a beam for tests, on any number of ranks: K* v = P with its loads.
+// Static solutions K* v = P of a beam with its loads, for tests on any number of ranks.
 #pragma once
 
 #include <petscksp.h>
@@ -54,7 +54,7 @@ inline std::vector<double> solve_free(const beam::Beam& b, Mat A, const std::vec
   check(KSPSetType(ksp, KSPPREONLY));
   check(KSPSetOperators(ksp, K, K));
   check(KSPGetPC(ksp, &pc));
-  check(PCSetType(pc, PCREDUNDANT));  // LU of the whole on every rank
+  check(PCSetType(pc, PCREDUNDANT));  // LU of the whole matrix on every rank
   check(KSPSolve(ksp, y, x));
   std::vector<double> solution(f.size(), 0.0);
   check(VecGetArray(x, &values));
@@ -63,7 +63,7 @@ inline std::vector<double> solve_free(const beam::Beam& b, Mat A, const std::vec
   return solution;
 }
 
-/// Displacements at rest under the nodal forces P.
+/// Static displacements under the nodal forces P.
 inline std::vector<double> static_solution(const beam::Beam& b, const std::vector<double>& P) {
   return solve_free(b, b.stiffness(), P);
 }

@@ -1,4 +1,4 @@
-// A folder for the files of one test; it goes with the object.
+// A folder for the files of one test. It is removed together with the object.
 #pragma once
 
 #include <unistd.h>

@@ -1,5 +1,6 @@
-// A layered track over a simply supported bridge, assembled without any of the program's code: Hermite elements, one
-// energy after the other into dense matrices, and Newmark's average acceleration with sleepers over one-sided gaps.
+// A layered track over a simply supported bridge, assembled without code of the program: the energies of Hermite
+// elements are added to dense matrices, and Newmark's average acceleration method includes sleepers over one-sided
+// gaps.
 #pragma once
 
 #include <Eigen/Dense>
@@ -12,7 +13,7 @@
 
 namespace traverse::test {
 
-/// One station of the grid of sleepers, by hand.
+/// One station of the grid of sleepers, for the computation by hand.
 struct DenseSleeper {
   double x = 0.0;
   double pad_k = 0.0, pad_c = 0.0, mass = 0.0, k = 0.0, c = 0.0, ballast_mass = 0.0, sub_k = 0.0, sub_c = 0.0;
@@ -23,7 +24,7 @@ struct DenseSleeper {
 struct DenseTrack {
   double rail_EI = 0.0, rail_mass = 0.0, rail_start = 0.0, rail_element = 0.0;
   int rail_elements = 0;
-  double EI = 0.0, mass = 0.0, length = 0.0;  // of the bridge, from x = 0
+  double EI = 0.0, mass = 0.0, length = 0.0;  // properties of the bridge, which begins at x = 0
   int elements = 0;
   std::vector<DenseSleeper> sleepers;
   double shear_k = 0.0, shear_c = 0.0;
@@ -143,7 +144,7 @@ class DenseTrackModel {
   std::vector<char> free_;
 };
 
-/// Newmark's average acceleration for M a + C w + K v = P + gaps, from given v at rest.
+/// Newmark's average acceleration method for M a + C w + K v = P + gaps, from given v without velocity.
 class DenseNewmark {
  public:
   DenseNewmark(Eigen::MatrixXd M, Eigen::MatrixXd C, Eigen::MatrixXd K, std::vector<DenseGap> gaps, double h)
@@ -165,13 +166,13 @@ class DenseNewmark {
     Eigen::VectorXd next = solver_.solve(P + M_ * of_mass + C_ * of_damping);
     if (!gaps_.empty()) {
       const Eigen::VectorXd d0 = N_.transpose() * next, back = N_.transpose() * of_damping;
-      // Few gaps: each force by itself until all agree.
+      // With few gaps, each force is computed with the others held, until all are consistent.
       for (int i = 0; i < 10000; ++i) {
         double change = 0.0;
         for (Eigen::Index j = 0; j < force.size(); ++j) {
           const double old = force[j], own = W_(j, j), others = d0[j] + W_.row(j).dot(force) - own * old;
           const DenseGap& g = gaps_[static_cast<std::size_t>(j)];
-          // Pressed, d = others + own F and F = -(k (d + gap) + c d'), d' = 2/h d - back.
+          // In compression d = others + own F and F = -(k (d + gap) + c d'), d' = 2/h d - back.
           const double F =
               (-g.k * (others + g.gap) - g.c * (2.0 / h_ * others - back[j])) / (1.0 + (g.k + 2.0 / h_ * g.c) * own);
           force[j] = F > 0.0 && others + own * F < -g.gap ? F : 0.0;
@@ -187,7 +188,7 @@ class DenseNewmark {
     w = rate;
   }
 
-  Eigen::VectorXd v, w, a, force;  // force: of the gaps
+  Eigen::VectorXd v, w, a, force;  // force: forces of the gaps
 
  private:
   Eigen::MatrixXd M_, C_, K_, N_, W_;

@@ -53,7 +53,7 @@ TEST(BatchTrialRuns, LowPassedAccelerationsAreThoseOfTheRunItself) {
                                                        {"output_lowpass", "30"}});
   const double truth = std::abs(alone.attribute("/summary", "acceleration_lowpass"));
   const engine::BatchResult lane = trial(true, step, 64.0 * alone.attribute("/summary", "end_time"));
-  ASSERT_EQ(lane.trouble, engine::none);
+  ASSERT_EQ(lane.failure, engine::none);
   ASSERT_EQ(lane.peaks.size(), 2U);
   const double found = std::max(lane.peaks[0].low_passed.value, lane.peaks[1].low_passed.value);
   EXPECT_LT(alone.attribute("/summary", "acceleration_lowpass_time"), alone.attribute("/summary", "end_time") - 0.1);

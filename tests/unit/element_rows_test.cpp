@@ -100,7 +100,7 @@ void expect_same_products(const beam::BeamModel& model) {
       Tile damped, plain, rates, heavy, forces;  // x + b y, x, y, y with what M takes of it for damping
       for (int c = 0; c < b; ++c) {
         for (Tile* of : {&damped, &plain, &rates, &heavy})
-          (*of)[c].assign(static_cast<std::size_t>(past - first) + 2 + beam::nodes_per_step, 0.5);
+          (*of)[c].assign(static_cast<std::size_t>(past - first) + 2 + beam::nodes_per_chunk, 0.5);
         forces[c].assign(static_cast<std::size_t>(past - first), 0.0);
         for (int node = std::max(first - 1, 0); node < std::min(past + 1, nodes); ++node) {
           const int i = node - first + 1, k = b * node + c;

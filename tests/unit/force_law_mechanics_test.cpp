@@ -234,7 +234,7 @@ TEST(MechanismWithLaws, ReportsItsForces) {
   model.springs[0].preload = 40.0;
   Motion motion(model);
   motion.finish();
-  EXPECT_NEAR(motion.mechanism.spring_force(motion.state, 0), 40.0, 1e-12);
+  EXPECT_NEAR(motion.mechanism.spring_tension(motion.state, 0), 40.0, 1e-12);
   EXPECT_NEAR(motion.mechanism.torsion_spring_moment(motion.state, 0),
               -tension(*model.torsion_springs[0].law, -0.2 - 0.3 - 0.1, 0.0).tension, 1e-12);
 }

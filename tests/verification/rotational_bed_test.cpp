@@ -123,5 +123,41 @@ output: {probes: 10.0}
   EXPECT_GT(damped, 0.03 * free);
 }
 
+// A tension acts as a rotational bed: a force that moves over a tensioned pinned beam, by the series of its modes.
+TEST(Tension, MovingForce) {
+  constexpr double F = 1e5, v = 60.0;
+  Results run = run_yaml(
+      "beam: {spans: 20.0, elements_per_span: 24, EI: 1.96e9, mass: 1000.0, tension: 6.0e7}\n"
+      "support: {types: [pinned, roller]}\nload: {forces: 1.0e5, speed: 60.0}\nts: {dt: 2.0e-4, max_time: 0.33}\n"
+      "output: {probes: [10.0], interval: 0.005}\n");
+  const std::vector<double> time = run.time(), found = run.column("/probes/deflection");
+  double largest = 0.0, error = 0.0;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    double exact = 0.0;
+    for (int n = 1; n <= 60; ++n) {
+      const double w = exact_omega(n), W = n * pi * v / L;
+      exact -= std::sin(0.5 * n * pi) * 2.0 * F / (m * L * (w * w - W * W)) *
+               (std::sin(W * time[i]) - W / w * std::sin(w * time[i]));
+    }
+    largest = std::max(largest, std::abs(exact));
+    error = std::max(error, std::abs(found[i] - exact));
+  }
+  EXPECT_LT(error, 1e-4 * largest);
+  EXPECT_LT(energy_error(run), 1e-6);
+}
+
+// A contact wire: omega_n = n pi/L sqrt((T + EI (n pi/L)^2)/m).
+TEST(Tension, FrequenciesOfAWire) {
+  Results run = run_yaml(
+      "beam: {spans: 50.0, elements_per_span: 1000, EI: 150.0, mass: 1.35, tension: 2.0e4}\n"
+      "support: {types: pinned}\nscene: {analysis: modes}\nmodes: {count: 4}\n");
+  const std::vector<double> omega = run("/modes/omega");
+  for (int n = 1; n <= 4; ++n) {
+    const double b = n * pi / 50.0;
+    EXPECT_NEAR(omega[static_cast<std::size_t>(n - 1)] / (b * std::sqrt((2.0e4 + 150.0 * b * b) / 1.35)), 1.0, 1e-7)
+        << n;
+  }
+}
+
 }  // namespace
 }  // namespace traverse::test

@@ -27,7 +27,7 @@ class InputError : public Error {
   explicit InputError(const std::string& message) : Error(message, 2) {}
 };
 
-/// The equations could not be solved. The message describes the place of the failure and what to change.
+/// The equations could not be solved. The message describes the place of the failure and the necessary change.
 class SolverError : public Error {
  public:
   explicit SolverError(const std::string& message) : Error(message, 3) {}

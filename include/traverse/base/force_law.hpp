@@ -1,12 +1,12 @@
 // The nonlinear law of a spring and its damper: tables, a gap, one-sided action.
 //
-// With the elongation e relative to the free length (of a torsion spring: the twist) and the gap G:
+// With the elongation e relative to the free length (for a torsion spring: the twist) and the gap G:
 //   |e| <= G:  no force;     |e| > G:  x = e - G sign(e), tension T(x) + D(de/dt).
 // A one-sided spring acts only for e < -G (compression) or e > G (tension). The tension of a spring with a gap or with
 // one-sided action never changes its sign: if T + D and x differ in sign, the ends separate faster than the spring
 // follows, and the tension is zero. The damper force increases linearly over the first nanometre of x; otherwise a
-// stage of an implicit method that ends in this range could have no solution. The work of the tension in addition to
-// that of T is dissipated; it is never negative.
+// stage of an implicit method that ends in this range could have no solution. The work of the tension minus
+// the work of T is dissipated; it is never negative.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ class Polyline {
 
   double value(double x) const;     // linear between the points, with the end slopes outside
   double slope(double x) const;     // at a corner the slope on the right
-  double integral(double x) const;  // of the value from 0 to x
+  double integral(double x) const;  // integral of the value from 0 to x
   /// The argument at which the value is y; empty unless the function increases everywhere.
   std::optional<double> inverse(double y) const;
   /// The reason, in words, why x y < 0 somewhere; empty if x y >= 0 everywhere.
@@ -39,7 +39,7 @@ class Polyline {
   double from_start(double x) const;
 
   std::vector<double> x_, y_;
-  std::vector<double> slope_;  // of each segment
+  std::vector<double> slope_;  // slope of each segment
   std::vector<double> area_;   // integral from the first point to each point
   double origin_ = 0.0;        // integral from the first point to 0
 };

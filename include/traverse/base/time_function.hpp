@@ -27,12 +27,12 @@ class TimeFunction {
   double acceleration(double t) const;
   /// Whether the function is value + rate*t at all times.
   bool straight() const { return times_.empty(); }
-  /// Times at which the rate jumps; for an integral those at which the acceleration jumps.
+  /// Times at which the rate jumps; for an integral the times at which the acceleration jumps.
   std::vector<double> kinks() const { return curvatures_.empty() ? times_ : std::vector<double>(); }
   /// Whether the function is an integral, whose acceleration jumps.
   bool jumps() const { return !rates_.empty(); }
   /// For an integral: the piece that contains t applies at all times until the next call, so that the acceleration at
-  /// the end of a step is that of the step. Returns whether the piece has changed.
+  /// the end of a time step is the acceleration within this step. Returns whether the piece has changed.
   bool select_piece(double t);
   /// Changes the sign of value and rate at all times.
   void reverse();
@@ -45,13 +45,13 @@ class TimeFunction {
   std::vector<double> times_;
   std::vector<double> values_;
   std::vector<double> curvatures_;  // second derivatives at the table's times; empty: piecewise linear
-  std::vector<double> rates_;       // of an integral, whose values at the times are values_; otherwise empty
-  int piece_ = -1;  // of an integral: the piece that applies at all times; negative: the piece that contains the time
+  std::vector<double> rates_;       // only for an integral: its rates at the times, where its values are values_
+  int piece_ = -1;  // only for an integral: the piece that applies at all times; -1: the piece that contains the time
 
   struct Piece {
     double from, value, rate, acceleration;
   };
-  int piece_at(double t) const;  // its index
+  int piece_at(double t) const;  // index of the piece at t
   Piece piece(double t) const;   // the piece that applies at t
 };
 

@@ -6,26 +6,27 @@
 
 namespace traverse::beam {
 
-/// A quantity over x: a constant, or a piecewise linear table in which a repeated x makes a step. Outside the table the
-/// end value applies.
+/// A quantity over x: a constant, or a piecewise linear table. The quantity jumps at an x that occurs twice. Outside
+/// the table the end value applies.
 class Distribution {
  public:
   Distribution(double value = 0.0) : values_{value} {}  // NOLINT: a number is a distribution
-  /// x must not decrease, with at most two equal values in a row; otherwise an InputError that names `name` is thrown.
+  /// x must not decrease, and at most two successive values may be equal; otherwise an InputError that names `name` is
+  /// thrown.
   Distribution(std::vector<double> x, std::vector<double> values, const std::string& name);
 
-  /// The value at x; at a step the value on the side of `inside`.
+  /// The value at x; at a jump the value on the side of `inside`.
   double at(double x, double inside) const;
   bool uniform() const { return x_.empty(); }
   double minimum() const;
   double maximum() const;
-  /// The same quantity increased by `value` everywhere.
+  /// This distribution increased by `value` everywhere.
   Distribution plus(double value) const;
-  /// The same quantity multiplied by `factor` between `from` and `to`, with a step at both ends.
+  /// This distribution multiplied by `factor` between `from` and `to`, with a jump at both ends.
   Distribution with_factor(double from, double to, double factor) const;
   /// Stations of the table strictly inside (a, b), each once, at which an integration must be divided.
   std::vector<double> breaks(double a, double b) const;
-  /// Stations strictly inside (a, b) at which the value steps.
+  /// Stations strictly inside (a, b) at which the value jumps.
   std::vector<double> steps(double a, double b) const;
 
  private:

@@ -23,9 +23,9 @@ struct PointFoundation {
   double x = 0.0;
   double k = 0.0;
   double c = 0.0;
-  bool from_left = false;  // at the end of two separate spans or at a hinge: it holds the left side
+  bool from_left = false;  // between two separate spans or at a hinge: it holds the left side
   FoundationLaw law = {};
-  double depth = 0.0;  // m below the beam's axis, of a longitudinal point; only at span ends
+  double depth = 0.0;  // depth of a longitudinal point below the beam's axis, m; only at span ends
 };
 
 /// A bed along the whole beam: k and c of a point per length, both >= 0.

@@ -5,8 +5,8 @@
 // A one-sided foundation acts only if the beam is pressed down, d < -g. A foundation that is one-sided or has a gap
 // never pulls: if k s + cubic s^3 + c ds/dt is negative, the beam moves away faster than the foundation follows, and
 // the force is zero. The damper force increases linearly over the first nanometre of s; otherwise a stage of an
-// implicit method that ends in this range could have no solution. The work of the force in addition to that of the
-// spring is dissipated.
+// implicit method that ends in this range could have no solution. The work of the force minus the work
+// of the spring is dissipated.
 #pragma once
 
 namespace traverse::beam {
@@ -15,7 +15,7 @@ namespace traverse::beam {
 struct FoundationLaw {
   bool one_sided = false;
   double gap = 0.0;    // in both directions, m or rad, >= 0
-  double cubic = 0.0;  // N/m3, N m/rad3; of a bed N/m4; >= 0
+  double cubic = 0.0;  // N/m3, N m/rad3; for a bed N/m4; >= 0
   /// The force at which a longitudinal point slides, as a bearing does by friction, N; 0: it never slides. A sliding
   /// point has none of the other properties.
   double slides_at = 0.0;
@@ -29,7 +29,7 @@ struct FoundationForce {
   double force = 0.0;            // on the beam, N or N m
   double by_displacement = 0.0;  // -d force/dd, N/m
   double by_rate = 0.0;          // -d force/dw, N s/m, >= 0
-  double energy = 0.0;           // of the spring, J
+  double energy = 0.0;           // strain energy of the spring, J
   double dissipation = 0.0;      // W, >= 0
 };
 FoundationForce foundation_force(const FoundationLaw& law, double k, double c, double d, double w);
@@ -38,7 +38,7 @@ FoundationForce foundation_force(const FoundationLaw& law, double k, double c, d
 /// friction of a bearing. A sleeper under a train has a larger stiffness and limit.
 struct Sliding {
   double k = 0.0, limit = 0.0;                // N/m, N; limit 0: it never slides
-  double loaded_k = 0.0, loaded_limit = 0.0;  // the same under a train
+  double loaded_k = 0.0, loaded_limit = 0.0;  // stiffness and limit under a train, N/m, N
 
   /// Stiffness (N/m) and limit (N), under a train or outside it.
   double k_of(bool loaded) const { return loaded ? loaded_k : k; }

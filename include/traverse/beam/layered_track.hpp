@@ -31,8 +31,8 @@ struct TrackValues {
   Spring pad, ballast, subballast, longitudinal;
   double sleeper_mass = 0.0, ballast_mass = 0.0;  // kg
   double gap = 0.0;                               // m, below the unloaded sleeper, which the rail carries
-  /// Limit of the longitudinal spring, N (0: it never slides), and its stiffness, N/m, and limit under a train (0: the
-  /// same as without a train).
+  /// Limit of the longitudinal spring, N (0: it never slides); its stiffness, N/m, and limit, N, under a train (0:
+  /// equal to the values without a train).
   double slides_at = 0.0, loaded_k = 0.0, loaded_slides_at = 0.0;
 
   /// The law of the longitudinal spring.
@@ -46,19 +46,19 @@ struct LayeredTrack;
 
 /// A row of the table of properties, each an option of the track and of every stretch.
 struct TrackProperty {
-  std::string_view name;  // of the options track_<name> and track_<stretch>_<name>
+  std::string_view name;  // <name> in the options track_<name> and track_<stretch>_<name>
   std::string_view unit, text;
   double& (*of)(TrackValues& values);
   const Distribution* (*along)(const LayeredTrack& track);  // null if the model does not contain the layer
 };
 inline constexpr std::size_t track_property_count = 14;
 
-/// Sleepers from `from` to `to`, both included, with different properties.
+/// A part of the track with different properties: the sleepers from `from` to `to`, both included.
 struct TrackStretch {
   std::string name;
   double from = 0.0, to = 0.0;                                           // m
   std::array<std::optional<Distribution>, track_property_count> values;  // in the order of track_properties
-  bool sleepers = true;  // false: neither sleepers nor pads, but ballast
+  bool sleepers = true;  // false: there is ballast, but no sleepers and pads
   bool contains(double x, double rounding) const { return x >= from - rounding && x <= to + rounding; }
 };
 
@@ -80,20 +80,22 @@ struct LayeredTrack {
   Distribution ballast_mass;  // kg per sleeper
   bool own_mass = false;      // the ballast is a separate mass on the bridge too
   std::optional<Layer> subballast;
-  Layer longitudinal;                       // between rail and bridge, or rail and ground, along x
-  Distribution slides_at;                   // N per sleeper: limit of the longitudinal spring; 0: it never slides
-  Distribution loaded_k, loaded_slides_at;  // N/m and N: stiffness and limit under a train; 0: as without a train
-  bool sliding_disabled = false;            // the longitudinal spring never slides, for small motions
-  double rail_temperature = 0.0;            // K, change since the rail was laid
-  double rail_expansion = 0.0;              // 1/K
-  bool rail_ends_held = false;              // along x, as by a track that continues; false: free
-  Distribution gap;                         // m, below unloaded sleepers
-  bool gaps_stay_open = false;              // sleepers never close a gap, for small motions
-  Spring shear;                             // between neighbouring separate ballast masses, N/m, N s/m
-  std::vector<TrackStretch> stretches;      // of overlapping stretches the last one applies
+  Layer longitudinal;      // between rail and bridge, or rail and ground, along x
+  Distribution slides_at;  // N per sleeper: limit of the longitudinal spring; 0: it never slides
+  Distribution loaded_k,
+      loaded_slides_at;  // N/m and N: stiffness and limit under a train; 0: equal to the values without a train
+  bool sliding_disabled = false;  // the longitudinal spring never slides, for small motions
+  double rail_temperature = 0.0;  // K, change since the rail was laid
+  double rail_expansion = 0.0;    // 1/K
+  bool rail_ends_held = false;    // the rail's ends are held along x, as by a track that continues; false: free
+  Distribution gap;               // m, below unloaded sleepers
+  bool gaps_stay_open = false;    // sleepers never close a gap, for small motions
+  Spring shear;                   // between neighbouring separate ballast masses, N/m, N s/m
+  std::vector<TrackStretch>
+      stretches;          // parts of the track with other properties; where they overlap, the last one applies
   double approach = 0.0;  // length of the track on either side of the bridge, m; adjusted to whole bays
 
-  /// The properties at a sleeper; at a step of a table the values on its right.
+  /// The properties at a sleeper; at a jump of a table the values on its right.
   TrackValues at(double x) const;
   /// Whether this station of the grid has a sleeper.
   bool has_sleeper(double x) const;

@@ -13,7 +13,7 @@
 
 namespace traverse::beam {
 
-/// Kinematic conditions at a span end (section 3.1 of the paper). The functions below state what each one fixes.
+/// Kinematic conditions at a span end (section 3.1 of the paper), with the displacements that each condition fixes.
 enum class Support {
   free,     // nothing
   roller,   // v
@@ -64,10 +64,10 @@ struct BeamModel {
   std::vector<Joint> joints;              // at the inner span ends, one for all or one each; empty: continuous
   std::vector<double> hinges;             // further hinges within spans, m, ascending
   std::vector<Crack> cracks;              // ascending, none at a hinge
-  std::vector<double> expansion_devices;  // of a rail: stations at which u may jump, m, ascending, none at a hinge
+  std::vector<double> expansion_devices;  // stations of a rail at which u may jump, m, ascending, none at a hinge
   std::vector<double> cuts;               // stations of additional nodes, m, ascending
   std::vector<Support> supports;   // one at every span end: spans + 1; separate spans share the support between them
-  std::vector<double> settlement;  // m upward, of supports that fix v: one at every span end, or empty
+  std::vector<double> settlement;  // m upward, settlements of supports that fix v: one at every span end, or empty
   std::optional<Temperature> temperature;
   Foundation foundation;
   std::optional<LayeredTrack> track;
@@ -75,9 +75,9 @@ struct BeamModel {
       given;                    // the bridge consists of these modes, with one element between neighbouring stations
   bool axial = true;            // false: no axial unknowns
   double start = 0.0;           // x of the left end, m; 0 except for a rail that begins before the bridge
-  double surface_height = 0.0;  // of the running surface above the neutral axis, m: forces along x act at this height
-  double gradient = 0.0;        // of the x axis, tan of its angle: weight has the component -gradient along x
-  bool nodes_at_steps = true;   // at steps of EI and mass
+  double surface_height = 0.0;  // height of the running surface above the neutral axis, m; forces along x act there
+  double gradient = 0.0;        // tan of the angle of the x axis: weight has the component -gradient along x
+  bool nodes_at_steps = true;   // whether the mesh has nodes at jumps of EI and mass
   std::array<bool, 2> ground = {true, true};  // whether the rigid running surface continues before and behind the beam
 
   /// The length of all spans and the x of the right end, m.
@@ -94,7 +94,7 @@ struct BeamModel {
 };
 
 /// The beam model of a bridge by given modes, with elements between the stations of the shapes. The elements
-/// interpolate the shapes; they contribute neither flexibility nor weight.
+/// interpolate the shapes; they contribute no flexibility and no weight.
 BeamModel bridge_of(GivenModes modes);
 
 /// Whether a kind of foundation acts on the beam: the longitudinal kinds need axial unknowns.
@@ -102,12 +102,12 @@ inline bool acts(const FoundationKind& kind, const BeamModel& model) {
   return model.axial || kind.direction != Direction::longitudinal;
 }
 
-/// A range of elements of equal length: a span, or a part of it between hinges and steps of EI and mass.
+/// A range of elements of equal length: a span, or a part of it between hinges and jumps of EI and mass.
 struct Piece {
   int span = 0;
   double left = 0.0, right = 0.0;  // m
   int elements = 0;
-  Joint next = Joint::continuous;  // joint to the next piece; of the last one: separate
+  Joint next = Joint::continuous;  // joint to the next piece; separate for the last piece
   bool ends_span = true;
 };
 std::vector<Piece> pieces_of(const BeamModel& model);
@@ -128,7 +128,7 @@ RailMesh rail_mesh(const BeamModel& model);
 BeamModel bridge_alone(const BeamModel& model);
 
 /// The model with linear foundations, for small motions about the static equilibrium: a foundation without a gap acts
-/// by its k and c, one with a gap does not act, and sleepers over a gap hang on the rail.
+/// by its k and c, a foundation with a gap does not act, and sleepers over a gap hang on the rail.
 BeamModel linearised(const BeamModel& model);
 
 /// The rail as a beam, eqs. 1-12, free at both ends and without foundation; the layers connect it to the sleepers.
@@ -138,17 +138,17 @@ BeamModel rail_model(const BeamModel& model);
 /// foundation_vertical_x, ...), its value and the allowed values. A floating beam is not an error here.
 void check(const BeamModel& model);
 
-/// One entry per span, non-zero if the span is one of several separate beams and neither supports nor a longitudinal
-/// spring or bed hold it along x. The left end of such a span has a fixed bearing. Only with axial unknowns.
+/// One entry per span, non-zero if the span is one of several separate beams and no support, longitudinal spring or bed
+/// holds it along x. The left end of such a span has a fixed bearing. Only with axial unknowns.
 std::vector<char> axial_bearings(const BeamModel& model);
 
 /// A motion of one part of the beam without strain and without spring forces: along x, or a chain of straight segments
 /// between hinges. A part is the beam between its ends and separate joints.
 struct RigidMotion {
-  double left = 0.0, right = 0.0;  // of the part, m
+  double left = 0.0, right = 0.0;  // ends of the part, m
   bool axial = false;
   std::vector<double> x;           // stations of the part's ends and hinges
-  std::vector<double> deflection;  // at the stations; of an axial motion the displacement along x
+  std::vector<double> deflection;  // deflection at the stations; for an axial motion the displacement along x
 
   /// Deflection and slope at a station of the part; at a hinge the slope on its right, or on its left.
   double value(double station) const;

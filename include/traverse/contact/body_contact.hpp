@@ -21,13 +21,13 @@ struct BodyContact {
   std::string name;
   PairType type = PairType::arc_arc;
   std::array<int, 2> bodies = {-1, -1};      // -1: the ground
-  std::array<double, 2> radii = {0.0, 0.0};  // m, of arcs; negative: hollow, with the other arc inside
+  std::array<double, 2> radii = {0.0, 0.0};  // radii of arcs, m; negative: hollow, with the other arc inside
   std::array<Eigen::Vector2d, 2> centres = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   std::array<Eigen::Vector2d, 2> line = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};  // ends of the line
   Law law;
 };
 
-/// R_i R_j/(R_i + R_j) of eq. 48; on a line the arc's radius.
+/// R_i R_j/(R_i + R_j) of eq. 48; for an arc on a line the arc's radius.
 double effective_radius(const BodyContact& contact);
 
 /// A contact pair in body-fixed components.
@@ -38,7 +38,7 @@ struct PairGeometry {
   Eigen::Vector2d first_arm = Eigen::Vector2d::Zero();   // to the arc's centre
   Eigen::Vector2d second_arm = Eigen::Vector2d::Zero();  // to the other centre, or to the start of the line
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  // along the line
-  double length = 0.0;                                   // of the line
+  double length = 0.0;                                   // length of the line
   double side = 1.0;                                     // side of the line with the arc: 1 left, -1 right
 };
 

@@ -14,7 +14,7 @@ enum class LawKind { hertz, linear, two_sided, other };
 class ElasticLaw {
  public:
   virtual ~ElasticLaw() = default;
-  /// N, at a penetration above 0, m.
+  /// The force at a penetration above 0, N over m.
   virtual double force(double penetration) const = 0;
   /// The derivative of the force, N/m, above 0.
   virtual double stiffness(double penetration) const = 0;
@@ -35,7 +35,7 @@ constexpr double damper_ramp = 1e-9;
 /// penetration: penetration = alpha + s*k*alpha^n. Damper and hysteresis act on the whole penetration.
 struct Law {
   LawKind kind = LawKind::hertz;
-  std::shared_ptr<const ElasticLaw> elastic;  // of the kind `other`
+  std::shared_ptr<const ElasticLaw> elastic;  // law of the kind `other`
   double stiffness = 0.0;                     // N/m^1.5 or N/m
   double damping = 0.0;                       // N s/m
   std::optional<double> hysteresis;           // d
@@ -53,7 +53,7 @@ struct Kinematics {
 
 /// Forces and their derivatives with respect to the kinematics.
 struct Force {
-  double normal = 0.0;      // N, >= 0 but for two_sided
+  double normal = 0.0;      // N, >= 0 except for two_sided
   double tangential = 0.0;  // N, with the sign of the sliding speed, against which it acts
   double normal_by_penetration = 0.0, normal_by_rate = 0.0;
   double tangential_by_penetration = 0.0, tangential_by_rate = 0.0, tangential_by_sliding = 0.0;
@@ -70,7 +70,7 @@ double lankarani_nikravesh_hysteresis(double restitution);
 /// The force and all its derivatives with the opposite sign.
 Force operator-(const Force& f);
 
-/// approach_speed is that of the present impact, m/s; only a hysteresis uses it (0: no impact, no damping).
+/// approach_speed: approach speed of the present impact, m/s; only a hysteresis uses it (0: no impact, no damping).
 Force force(const Law& law, const Kinematics& kinematics, double approach_speed);
 
 /// The normal force without its lower limit of zero; it is negative if the surfaces separate.

@@ -36,7 +36,7 @@ struct JointNumber {
 
 /// One row of the table. Its functions combine the equations of the type; joint.hpp describes their results.
 struct JointRow {
-  std::string_view name;                    // in the options
+  std::string_view name;                    // name in the options
   std::string_view text;                    // the motion that it allows, or the quantity that it keeps constant
   std::span<const JointNumber> numbers;     // in the order of Joint::numbers
   int rows;                                 // number of equations

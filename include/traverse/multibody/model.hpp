@@ -17,19 +17,19 @@ namespace traverse::multibody {
 
 inline constexpr int ground = -1;  // a body index
 
-/// A rigid body; its three coordinates are those of its centre of mass.
+/// A rigid body. Its three coordinates are x and y of its centre of mass and its angle.
 struct Body {
   std::string name;
   double mass = 0.0;                                   // kg, > 0
   double inertia = 0.0;                                // kg m2 about the centre of mass, > 0
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // x, y, phi at t = 0
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // of x, y, phi at t = 0
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // rates of x, y, phi at t = 0
 };
 
 /// Friction along the axis of a sliding joint: (coefficient*|normal force| + force) tanh(sliding speed /
 /// transition_speed), against the sliding.
 struct SlidingFriction {
-  double coefficient = 0.0;        // 1, on the joint's normal force
+  double coefficient = 0.0;        // friction coefficient of the joint's normal force, 1
   double force = 0.0;              // N, independent of the normal force
   double transition_speed = 0.01;  // m/s
   bool acts() const { return coefficient > 0.0 || force > 0.0; }
@@ -56,7 +56,7 @@ struct Driver {
 };
 
 /// Spring-damper between two points: force = preload + stiffness*(length - free_length) + damping*rate, positive in
-/// tension. At most one of free_length and preload may be set. With neither, the spring has no force in the geometry at
+/// tension. At most one of free_length and preload may be set. Without both, the spring has no force in the geometry at
 /// t = 0. A preload is the force (positive in tension) in the geometry at t = 0. With a law: force = law(length -
 /// free_length, rate).
 struct Spring {
@@ -100,7 +100,7 @@ struct MechanismModel {
   std::vector<TorsionSpring> torsion_springs;
   std::vector<Actuator> actuators;
   double gravity = 9.81;  // m/s2, along -y
-  double gradient = 0.0;  // of the x axis, tan of its angle: gravity has the component -gradient*gravity along x
+  double gradient = 0.0;  // tan of the angle of the x axis: gravity has the component -gradient*gravity along x
 };
 
 }  // namespace traverse::multibody

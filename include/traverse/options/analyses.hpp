@@ -9,7 +9,7 @@ enum class Analysis { transient, modes, static_response, static_envelope, rail_f
 
 struct AnalysisRow {
   Analysis analysis;
-  std::string_view name;   // as the user writes it
+  std::string_view name;   // name that the user writes
   std::string_view words;  // for -help
 };
 

@@ -1,5 +1,5 @@
-// Reads the command line into the options in force. Some of them are copied into PETSc's own table: those of PETSc that
-// the table of options lists, none that starts a program, loads code or writes a file (table.hpp, passes_to_petsc).
+// Reads the command line into the options in force. PETSc's options in the option table are copied into PETSc's own
+// table; none of them starts a program, loads code or writes a file (table.hpp, passes_to_petsc).
 //
 //   Input input = read_input(argc, argv);              // before PETSc starts; reads the options files
 //   if (input.help) ...                                // print help_text(input.help_about) and exit
@@ -20,7 +20,7 @@
 namespace traverse::options {
 
 struct Input {
-  Entries entries;         // the last one of each name; always with scene_name (default: the name of the first file)
+  Entries entries;         // last entry of each name; always contains scene_name (default: the name of the first file)
   bool help = false;       // -help, -h
   std::string help_about;  // the value of -help; empty for the complete list
   bool version = false;    // -version
@@ -29,7 +29,8 @@ struct Input {
 };
 
 /// Reads the command line and each file that -options_file names, at its position. With `petscrc` also reads, with the
-/// lowest precedence, .petscrc and PETSC_OPTIONS, which is removed from the environment, so that PETSc reads neither.
+/// lowest precedence, .petscrc and PETSC_OPTIONS. PETSC_OPTIONS is removed from the environment, so that PETSc does not
+/// read them.
 /// `before`: options that the command line overrides. InputError for options of PETSc that are not permitted.
 Input read_input(int argc, char** argv, const std::vector<Entry>& before = {}, bool petscrc = true);
 
@@ -47,7 +48,7 @@ class Arguments {
   char** argv_ = nullptr;
 };
 
-/// Puts the options in force and copies those of TS into PETSc's table. To be called after PetscInitialize.
+/// Sets the options in force and copies the options of TS into PETSc's table. Call after PetscInitialize.
 void put_into_petsc(const Input& input);
 
 /// Hides from PETSc, as long as the object exists, the options that print the progress of its solvers or end a run
@@ -71,7 +72,7 @@ const std::vector<std::string>& notes_on_petscrc();
 /// Throws an InputError for a message of PETSc about a value of its solvers' options, with the name of the option.
 [[noreturn]] void refuse_by_petsc(const std::string& message);
 
-/// Notes on options of TS without effect in this scene. To be called after TSSetFromOptions.
+/// Notes on options of TS without effect in this scene. Call after TSSetFromOptions.
 std::vector<std::string> notes_on_unused(const Entries& entries);
 
 }  // namespace traverse::options

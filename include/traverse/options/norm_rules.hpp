@@ -12,8 +12,8 @@ namespace traverse::options {
 struct NormRules {
   std::vector<std::string> load_models;  // lm71, sw0, sw2
   double alpha = 1.0;                    // classification factor of LM71 and SW/0, 6.3.2 (3)
-  bool careful = false;                  // careful maintenance of the track: Phi2, else Phi3
-  std::optional<double> length;          // m, L_Phi of the whole bridge; default: from the spans
+  bool careful = false;                  // true: careful maintenance of the track, Phi2; false: Phi3
+  std::optional<double> length;          // L_Phi of the whole bridge, m; default: computed from the spans
   double spacing = 0.0;                  // m, distance of sections; 0: a twentieth of each span
 };
 
@@ -21,7 +21,7 @@ enum class BridgeMaterial { steel, composite, prestressed, reinforced, filler_be
 
 /// Table 6.6: the lower bound of damping in % for spans of at least 20 m, and the increase per metre below 20 m.
 struct DampingBound {
-  std::string_view name;  // in the option
+  std::string_view name;  // name in the option
   double long_spans, slope;
 };
 

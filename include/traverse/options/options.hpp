@@ -30,12 +30,12 @@ class Options {
   /// The first given option whose name begins with the prefix; null if there is none.
   const Entry* first_with_prefix(std::string_view prefix) const;
 
-  /// Adds options that are used unless they are given already, as those of a vehicle's file.
+  /// Adds default options, such as the options of a vehicle's file. An option that is given already is unchanged.
   void add_defaults(const std::vector<Entry>& entries);
-  /// Makes a name known in addition to the fixed ones, as an option of a vehicle or its parts. False if the name is
-  /// known already.
+  /// Makes a name known in addition to the fixed names, for an option of a vehicle or its parts. Returns false if the
+  /// name is known already.
   bool declare(const std::string& name, const Row& row);
-  /// Whether the name is that of an option.
+  /// Whether an option has this name.
   bool knows(std::string_view name) const { return find_known(name) != nullptr; }
   /// The row of a name; null for an unknown name.
   const Row* find_known(std::string_view name) const;
@@ -59,7 +59,7 @@ class Options {
 
   /// The given number; none if it is not given.
   std::optional<double> optional_number(std::string_view name) const;
-  /// A list of `count` entries, where a single one is used for all. `what` describes the entries for the message.
+  /// A list of `count` entries. A single given entry is used for all. `what` describes the entries for the message.
   std::vector<double> numbers(std::string_view name, std::size_t count, std::string_view what) const;
   std::vector<int> integers(std::string_view name, std::size_t count, std::string_view what) const;
   std::vector<std::string> texts(std::string_view name, std::size_t count, std::string_view what) const;

@@ -1,4 +1,4 @@
-// A study: a scene of which some options are varied, in one dimension or in several.
+// A study: a scene with some varied options, in one dimension or in several.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@ namespace traverse::options {
 
 /// One varied quantity with its values.
 struct StudyDimension {
-  std::vector<std::string> options;  // with these values; the first one is the name of the dimension
+  std::vector<std::string> options;  // options with these values; the first one is the name of the dimension
   std::string unit;
   bool whole = false;          // whole numbers only
   std::string law;             // "list", "uniform", "normal" or "lognormal"
-  std::vector<double> values;  // by the index along its axis
+  std::vector<double> values;  // values by the index along the axis
   std::size_t axis = 0;
 
   /// The name of the dimension: the first of its options.

@@ -17,7 +17,7 @@ enum class Kind {
   text,
   choice,   // one of Row::choices
   file,     // the name of an existing file
-  numbers,  // a list, as the next three: separated by commas, with entries that may be value*count
+  numbers,  // a list, like the next three types: separated by commas, an entry may be value*count
   integers,
   texts,
   choice_list,
@@ -36,7 +36,7 @@ inline constexpr Range positive = {0.0, std::numeric_limits<double>::infinity(),
 inline constexpr Range not_negative = {0.0};
 
 struct Row {
-  std::string_view name;  // for an option of a part: the last word only
+  std::string_view name;  // name; for an option of a part only its last word
   Kind kind = Kind::number;
   std::string_view unit;
   std::string_view fallback;  // the default value, or a remark on the default in brackets; empty: none
@@ -61,7 +61,7 @@ std::span<const Row> vehicle_rows();
 /// The options vehicle_<name>_<part>_<row>.
 std::span<const Row> part_rows(Part part);
 
-/// The options train_<coupler>_<row>, in addition to those of springs and joints.
+/// The options train_<coupler>_<row>, in addition to the options of springs and joints.
 std::span<const Row> coupler_rows();
 
 /// The options track_<stretch>_<row>.
@@ -74,10 +74,10 @@ const Row& vary_list_row();
 /// The row of a name; null for an unknown name.
 const Row* find_row(std::span<const Row> rows, std::string_view name);
 
-/// Whether a name begins as those of PETSc and SLEPc.
+/// Whether a name begins like the names of PETSc's and SLEPc's options.
 bool owned_by_petsc(std::string_view name);
-/// Whether an option is passed to PETSc: those of PETSc that are in this table, none that starts a program, loads code
-/// or writes a file. PETSc receives no other option.
+/// Whether an option is passed to PETSc. Only PETSc's options in this table are passed; none of them starts a program,
+/// loads code or writes a file.
 bool passes_to_petsc(std::string_view name);
 
 /// The text of the permitted values: "above 0 (m)", "one of none, bump", "2 numbers".
@@ -89,7 +89,7 @@ std::string allowed_in_short(const Row& row);
 /// The most similar candidate, by the letters changed, added, removed or swapped; empty if none is similar.
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates);
 
-/// The text of -help: of all options, of a group of options such as beam or wheel, or of one option. InputError with
+/// The text of -help for all options, for a group of options such as beam or wheel, or for one option. InputError with
 /// the list of groups for any other word.
 std::string help_text(const std::string& about = {});
 

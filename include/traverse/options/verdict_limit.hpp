@@ -18,7 +18,7 @@ struct VerdictLimit {
 enum class LimitFinder { run, norm, rail };
 
 struct LimitQuantity {
-  std::string_view name;  // as the user writes it
+  std::string_view name;  // name that the user writes
   std::string_view unit;  // "1" for a ratio
   std::string_view words;
   LimitFinder finder = LimitFinder::run;

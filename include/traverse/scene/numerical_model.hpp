@@ -13,10 +13,11 @@ enum class VehicleModel { full, linear, automatic };
 
 /// Representation of the bridge, mesh, method and step, and vehicle model.
 struct NumericalModel {
-  int modes = 0;               // number of modes of the bridge; 0: elements
-  int elements = 0;            // in the longest span, or of the rail in a sleeper bay; 0: those of the beam model
+  int modes = 0;  // number of modes of the bridge; 0: elements
+  int elements =
+      0;  // elements in the longest span, or rail elements in a sleeper bay; 0: the elements of the beam model
   std::optional<double> step;  // s; none: not yet selected, or exact in time
-  std::string method;          // time integrator, a name of -ts_type; empty: that of the options
+  std::string method;          // time integrator, a name of -ts_type; empty: the integrator in the options
   VehicleModel vehicles = VehicleModel::full;
   /// Largest permitted residual of linear vehicles over their weight, above which the run is repeated with mechanisms.
   double residual_limit = std::numeric_limits<double>::infinity();

@@ -42,16 +42,16 @@ struct Damping {
   std::optional<std::pair<double, double>> frequencies;  // Hz, at which the ratios apply, if given
 };
 
-/// What is stored and reported of a run.
+/// The stored and reported results of a run.
 struct Output {
   std::string file;                 // HDF5 file; empty: none
   std::optional<double> interval;   // s; none: selected with the step
   std::vector<double> probes;       // stations, m; default: midspan of the first 200 spans
   std::optional<double> low_pass;   // Hz, cut-off of deck accelerations; 0: no filter; none: by EN 1990
-  bool low_pass_requested = false;  // else deck accelerations are filtered only for limits
+  bool low_pass_requested = false;  // false: deck accelerations are filtered only for limits
   bool low_passed_series = false;   // filtered accelerations are stored over time
   double wheel_low_pass = 20.0;     // Hz, cut-off of wheel forces
-  bool wheels_filtered = false;     // filtered by request; else only for limits
+  bool wheels_filtered = false;     // true: wheel forces are filtered by request; false: only for limits
   double unloading_level = 0.6;     // lost fraction of its force from which on a wheel counts as unloaded
   std::vector<double> passages;     // m: places at which the force of each passing wheel is stored
   std::vector<double> sleepers;     // m: stations of the sleepers whose forces are stored
@@ -61,8 +61,8 @@ struct Output {
 struct Roughness {
   track::Spectrum spectrum;
   double shortest = 0.0, longest = 0.0;  // m, wavelengths
-  double start = 0.0;                    // m, before which the track is level
-  bool to_the_left = false;              // the roughness begins to the left of start, else to the right
+  double start = 0.0;                    // m, station before which the track is level
+  bool to_the_left = false;              // true: the roughness extends to the left of start; false: to the right
   std::vector<track::Dip> dips = {};     // added to the roughness
 
   /// The running surface with random phases from the seed, including the dips.
@@ -78,13 +78,13 @@ struct Roughness {
 struct Sweep {
   std::vector<double> speeds;        // m/s; empty: the speed of the scene
   std::vector<int> trains;           // HSLM-A, 1 to 10; empty: the loads of the scene
-  std::vector<MovingLoad> loads;     // the forces of each of these trains, at the scene's speed
+  std::vector<MovingLoad> loads;     // forces of each of these trains, at the scene's speed
   double refine = 0.0;               // relative accuracy of peaks over the speed, for which speeds are added; 0: no
                                      // speeds are added; below 0: only where a limit may be exceeded between two
   std::size_t lanes = 8;             // runs per SIMD batch; 0: each run separately
   double instants = 20.0;            // samples per period of the fastest mode, for modes that are exact in time
   std::size_t runs = 0;              // number of all runs of the study; 0: not part of a study
-  std::vector<std::uint64_t> seeds;  // of some tracks of the study that differ in them; empty: only that of the scene
+  std::vector<std::uint64_t> seeds;  // seeds of the study's random tracks; empty: only the seed of the scene
 };
 
 /// All data of one problem.
@@ -97,17 +97,17 @@ struct Scene {
   Train train;
   MovingLoad load;
   track::Profile profile;
-  std::optional<Roughness> roughness;  // of which the profile is a sample
+  std::optional<Roughness> roughness;  // roughness whose sample is the profile
   double gravity = 9.81;
   Analysis analysis = Analysis::transient;
   Start start = Start::equilibrium;
   std::optional<double> tail;      // s, free vibration after the last wheel has left
   std::optional<double> end_time;  // -ts_max_time
-  NumericalModel model;            // as far as it is given
+  NumericalModel model;            // values that the user has given
   int mode_count = 10;
   bool modes_open = false;  // a sweep may use modes if they are accurate enough
   std::vector<double>
-      damping_of_modes;  // ratio of each mode, the last one for all further modes; empty: Rayleigh damping
+      damping_of_modes;  // damping ratio of each mode, the last one for all further modes; empty: Rayleigh damping
   std::optional<Sweep> sweep;
   std::optional<Study> study;
   std::optional<double> contact_tolerance;  // s
@@ -123,15 +123,15 @@ struct Scene {
   bool accuracy_whole = false;           // trial runs are as long as the run
   bool accuracy_cache = true;            // choices for the same scene from earlier runs are used again
   Output output;
-  std::vector<options::VerdictLimit> limits;                 // of the results, checked for each run
+  std::vector<options::VerdictLimit> limits;                 // limits of results, checked for each run
   std::optional<options::NormRules> norm;                    // for static effects and the verdict of EN 1991-2
-  std::optional<options::RailLoads> rail_loads;              // of scene_analysis rail
+  std::optional<options::RailLoads> rail_loads;              // loads for scene_analysis rail
   bool quiet = false;                                        // -output_quiet: no progress display
   bool verbose = false;                                      // -verbose: details of the model are printed
   bool check = false;                                        // -check: the scene is reported, without a run
   std::vector<std::string> notes;                            // choices with their reasons, one line each
   std::vector<std::string> unusual;                          // the notes on possible but unusual input
-  std::vector<std::pair<std::string, std::string>> options;  // all given options, with those of vehicle files
+  std::vector<std::pair<std::string, std::string>> options;  // all given options, also the options in vehicle files
 
   /// Whether there are limits of transient runs, and not only of static effects.
   bool has_run_limits() const {
@@ -168,7 +168,7 @@ double shortest_wave(const Scene& scene);
 
 /// Reads and checks all options and the vehicle files they name. Throws InputError with one line.
 Scene read_scene(options::Options options);
-/// The scene of the options in force: those of the last call of put_into_petsc.
+/// The scene of the options in force, which the last call of put_into_petsc has set.
 Scene read_scene();
 /// The varied options of a study with their values in one run, as texts.
 std::vector<std::pair<std::string, std::string>> values_of_run(const Study& study, std::size_t run);

@@ -11,10 +11,9 @@
 
 namespace traverse::track {
 
-/// A local depression of the running surface, m. Without a corner it is a cosine, depth/2*(1 + cos(2 pi (x -
-/// middle)/length)) deep, as at a weld. With a corner it is two parabolas that intersect at the lowest point, depth*(1
-/// -
-/// x - middle|/(length/2))^2 deep, as at a dipped rail joint. A negative depth is a hump, which may not have a corner.
+/// A local depression of the running surface, m. With s = (x - middle)/(length/2), -1 <= s <= 1, its depth without a
+/// corner is a cosine, depth/2*(1 + cos(pi s)), as at a weld. With a corner it is two parabolas that intersect at the
+/// lowest point, depth*(1 - abs(s))^2, as at a dipped rail joint. A negative depth is a hump, which has no corner.
 struct Dip {
   double middle = 0.0, length = 0.0, depth = 0.0;
   bool corner = false;
@@ -47,7 +46,7 @@ class Profile {
   /// The mirrored profile h(-x). Roughness that grows to the right from `start` then grows to the left from -start.
   Profile reversed() const;
 
-  /// The same profile with an added dip. Throws InputError if the numbers of the dip are invalid.
+  /// This profile with an added dip. Throws InputError if the numbers of the dip are invalid.
   Profile with(const Dip& dip) const;
 
   /// Whether the surface is flat everywhere, and whether it is a sum of random waves.
@@ -70,13 +69,12 @@ class Profile {
   double resolution() const { return resolution_; }
   /// The station in [from, to] at which the curve of a table has its largest curvature, m; `from` without a table.
   double sharpest_place(double from, double to) const;
-  /// Of roughness: the distance over which it grows to its full height, m; otherwise 0.
+  /// The distance over which roughness grows to its full height, m; 0 for other profiles.
   double fade() const { return is_rough() ? length_ : 0.0; }
   /// The next station after x in a sequence that resolves every crest and valley with a curvature above `curvature`
   /// (1/m). In a table it is the next row if the curvature is smaller up to this row.
   double next_station(double x, double curvature) const;
-  /// Length of the bump, of the shortest dip or of the shortest wave of roughness, m; infinite for level tracks and
-  /// tables.
+  /// Length of the bump, the shortest dip or the shortest wave of roughness, m; infinite for level tracks and tables.
   double shortest_wave() const;
 
  private:
@@ -92,8 +90,9 @@ class Profile {
 
   Kind kind_ = Kind::level;
   bool reversed_ = false;
-  double start_ = 0.0, length_ = 0.0, height_ = 0.0;  // length of the bump, or over which roughness grows
-  std::vector<double> x_, h_, slope_;                 // table: between neighbouring stations the curve is a cubic
+  double start_ = 0.0, length_ = 0.0,
+         height_ = 0.0;                // length_: length of the bump, or length over which roughness grows
+  std::vector<double> x_, h_, slope_;  // table: between neighbouring stations the curve is a cubic
   Waves waves_;
   std::vector<Dip> dips_;  // by ascending middle
   double longest_dip_ = 0.0;

@@ -1,4 +1,4 @@
-// Displacement spectra of running surfaces, of one form for roads and rails,
+// Displacement spectra of running surfaces, with one formula for roads and rails,
 //
 //   S(Omega) = strength/((Omega^2 + Omega_r^2) (1 + Omega^2/Omega_c^2)),  m2/(rad/m),
 //

@@ -9,8 +9,8 @@
 //            rounded (worn) flat of W. M. Zhai and others, Dynamic effects of vehicles on tracks in the case of raising
 //            train speeds, Proc. Instn Mech. Engrs F 215 (2001) 125-135. A fresh flat, a chord, is twice as deep.
 //
-// The shape changes the radius at the point where the wheel's normal crosses the tread. The contact of a flat's edges,
-// off that normal, is neglected, as in these models.
+// The shape changes the radius at the point where the wheel's normal crosses the tread. Contact at a flat's edges
+// beside that normal is neglected, as in the cited models.
 #pragma once
 
 #include <vector>
@@ -24,7 +24,7 @@ struct WheelShape {
   double polygon_amplitude = 0.0;  // A, m
   double polygon_phase = 0.0;      // rad
 
-  /// Whether there is neither a flat nor a polygon.
+  /// Whether the wheel has no flat and no polygon.
   bool round() const { return flat_length == 0.0 && polygon_amplitude == 0.0; }
 };
 

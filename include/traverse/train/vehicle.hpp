@@ -48,10 +48,10 @@ struct Vehicle {
 enum class Drive { constant, free };
 
 /// The connection of neighbours in a train: a joint, otherwise a spring. `point` and `from` refer to the origin of the
-/// front vehicle, `to` to that of the rear one.
+/// front vehicle, `to` refers to the origin of the rear vehicle.
 struct Coupler {
   std::string name;
-  std::array<std::string, 2> bodies;  // of the front vehicle, of the rear one
+  std::array<std::string, 2> bodies;  // body of the front vehicle, body of the rear vehicle
   std::vector<int> gaps;              // the coupler is behind these vehicles of the train, from 0
   std::optional<multibody::Joint> joint;
   multibody::Spring spring;
@@ -59,12 +59,12 @@ struct Coupler {
 
 /// One of several trains or groups of forces, or one whose speed or forces change over time or that runs to the left.
 struct Course {
-  std::string name;       // of its block of options
+  std::string name;       // name of its block of options
   std::size_t first = 0;  // index of its first vehicle or force; the last is before the next course's first
   base::SpeedLaw speed;
   Drive drive = Drive::constant;
-  std::shared_ptr<const track::Profile> profile;  // under its wheels; null: the track's
-  ForceVariation variation;                       // of each force of the group
+  std::shared_ptr<const track::Profile> profile;  // profile under its wheels; null: the profile of the track
+  ForceVariation variation;                       // variation of each force of the group
 };
 
 /// The trains on the track. Without courses: one train that runs to the right at a constant speed.
@@ -72,7 +72,7 @@ struct Train {
   std::vector<int> vehicles;      // indices into a list of types, train by train, the front one first
   std::vector<double> positions;  // x of each origin at t = 0, m
   double speed = 0.0;             // m/s; with courses the greatest magnitude of all
-  Drive drive = Drive::constant;  // with courses: free if one of them is
+  Drive drive = Drive::constant;  // with courses: free if one of them is free
   std::vector<Coupler> couplers;  // with gaps in the order of all vehicles
   std::vector<Course> courses;    // ascending in `first`
 
@@ -82,15 +82,15 @@ struct Train {
 
 /// Moving forces and line loads. `lengths` and `moments` have one entry for each force or are empty: zeros.
 struct MovingLoad {
-  std::vector<double> forces;        // N, downward: the constant part, of a line load its sum
-  std::vector<double> positions;     // x at t = 0, m; of a line load its centre
+  std::vector<double> forces;        // constant part of each force, N, downward; for a line load its resultant
+  std::vector<double> positions;     // x of each force at t = 0, m; for a line load x of its centre
   double speed = 0.0;                // m/s; with courses the greatest magnitude of all
-  std::vector<Course> courses = {};  // as in Train
-  std::vector<double> lengths = {};  // m, over which the force is spread uniformly; 0: concentrated
+  std::vector<Course> courses = {};  // same meaning as in Train
+  std::vector<double> lengths = {};  // length over which the force is spread uniformly, m; 0: concentrated
   std::vector<double> moments = {};  // N m, counter-clockwise, concentrated
 };
 
-/// The course of vehicle or force `i`; null where there are no courses.
+/// The course of vehicle or force `i`; null without courses.
 template <class Moving>
 const Course* course_of(const Moving& moving, std::size_t i) {
   const Course* found = nullptr;
@@ -106,7 +106,7 @@ base::SpeedLaw law_of(const Moving& moving, std::size_t i) {
   return course == nullptr ? base::SpeedLaw(moving.speed) : course->speed;
 }
 
-/// Its speed at t, m/s.
+/// The speed of vehicle or force `i` at t, m/s.
 template <class Moving>
 double speed_of(const Moving& moving, std::size_t i, double t) {
   const Course* course = course_of(moving, i);
@@ -120,10 +120,10 @@ double place_of(const Moving& moving, std::size_t i, double t) {
   return moving.positions[i] + (course == nullptr ? moving.speed * t : course->speed.distance(t));
 }
 
-/// m, over which force `i` is spread; 0: concentrated.
+/// The length over which force `i` is spread, m; 0: concentrated.
 inline double length_of(const MovingLoad& load, std::size_t i) { return load.lengths.empty() ? 0.0 : load.lengths[i]; }
 
-/// N m, the moment beside force `i`.
+/// The moment that acts together with force `i`, N m.
 inline double moment_of(const MovingLoad& load, std::size_t i) { return load.moments.empty() ? 0.0 : load.moments[i]; }
 
 /// Whether the load consists of constant concentrated forces, as a list of axle loads does.
@@ -142,7 +142,7 @@ inline double highest_load_frequency(const MovingLoad& load) {
   return highest;
 }
 
-/// N, force `i` at t with its variation, which is a line load (N/m) if the force is one.
+/// Force `i` at t, N, with its variation. The variation of a line load is in N/m.
 inline double force_at(const MovingLoad& load, std::size_t i, double t) {
   const Course* course = course_of(load, i);
   if (course == nullptr || !course->variation.varies()) return load.forces[i];

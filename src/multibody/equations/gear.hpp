@@ -1,6 +1,6 @@
-// phi2 + ratio phi1 - angle = 0: two bodies rotate together, like meshing wheels in opposite directions if the ratio
-// (radius of the first over that of the second) is positive, like wheels with a belt in the same direction if it is
-// negative. 1 equation, rad; lambda is a moment. Their bearings carry the forces.
+// phi2 + ratio phi1 - angle = 0: two bodies rotate together. The ratio is the radius of the first over the radius of
+// the second body. If it is positive, they rotate in opposite directions like meshing wheels; if it is negative, in the
+// same direction like wheels with a belt. 1 equation, rad; lambda is a moment. Their bearings carry the forces.
 #pragma once
 
 #include "multibody/joint.hpp"

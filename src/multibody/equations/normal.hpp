@@ -8,7 +8,7 @@
 
 namespace traverse::multibody::equations {
 
-/// The quantities of the normal equation, or of this equation with another direction n of the first body.
+/// The quantities of the normal equation, also with another direction n of the first body.
 struct NormalPlacement {
   Eigen::Vector2d a2, n, e;  // second arm, direction, P2 - r1
   NormalPlacement(const JointGeometry& j, const Frame& first, const Frame& second)
