@@ -149,7 +149,7 @@ Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, c
               transverse(s.mass.moment(), inertial);
   r.shear += r.nodal_shear + transverse(s.stiffness.shear(), v) + transverse(s.damping.shear(), w) +
              transverse(s.mass.shear(), inertial);
-  r.axial_displacement = axial(s.phi, v);
+  r.axial_displacement += axial(s.phi, v);
   r.axial_force += r.nodal_axial_force + axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) +
                    axial(s.mass.axial_force(), inertial);
   return r;

@@ -138,10 +138,13 @@ void RecoverySection::add_weight(const BeamModel& model, double gravity) {
   const auto end = transverse_load(model.mass, element);
   weight.shear += gravity * end[0];
   weight.moment += gravity * (x * end[0] - end[1]);
-  if (model.gradient != 0.0 && EA > 0.0)
-    integrate(model.mass, element.x, element.x + h, [&](double s, double piece) {
-      add_axial_point_load((s - element.x) / h, -model.gradient * gravity * piece, weight);
-    });
+  const auto add_along = [&](double s, double piece) {
+    add_axial_point_load((s - element.x) / h, -model.gradient * gravity * piece, weight);
+  };
+  if (model.gradient != 0.0 && EA > 0.0) {
+    integrate(model.mass, element.x, element.x + x, add_along);
+    integrate(model.mass, element.x + x, element.x + h, add_along);
+  }
   const Bed* nonlinear_bed = nullptr;
   for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
     if (kind.direction == Direction::vertical && bed.law.nonlinear()) nonlinear_bed = &bed;
