@@ -206,7 +206,8 @@ TEST(ResultsPlace, OfARunThatIsRefusedIsLeftAsItWas) {
 }
 
 TEST(ResultsPlace, IsOneRunsAtATime) {
-  const Workplace workplace(small_scene() + "ts_max_time: 1.0e5\noutput: {file: r.h5, interval: 0.01}\n");
+  const Workplace workplace(small_scene() +
+                            "verbose: true\nts_max_time: 1.0e5\noutput: {file: r.h5, interval: 0.01}\n");
   std::vector<std::unique_ptr<Child>> runs;
   for (int i = 0; i < 3; ++i) runs.push_back(std::make_unique<Child>(workplace.command({}), workplace.folder()));
   int refused = 0;
@@ -256,7 +257,8 @@ TEST(ResultsPlace, OfAFileThatTheRunReads) {
 
 TEST(ResultsPlace, ThatVanishesDuringTheRunEndsIt) {
   for (const bool replaced : {false, true}) {
-    const Workplace workplace(small_scene() + "ts_max_time: 1.0e5\noutput: {file: r.h5, interval: 0.01}\n");
+    const Workplace workplace(small_scene() +
+                              "verbose: true\nts_max_time: 1.0e5\noutput: {file: r.h5, interval: 0.01}\n");
     Child child(workplace.command({}), workplace.folder());
     ASSERT_TRUE(child.wait_for("integrator"));
     ASSERT_TRUE(child.wait_until([&] { return std::filesystem::file_size(workplace.path("r.h5")) > 0; }));
@@ -321,7 +323,8 @@ TEST(CheckpointPlace, OfARunBeforeIsTakenAndRemoved) {
 }
 
 TEST(CheckpointPlace, ThatIsTakenDuringTheRunIsLeft) {
-  const Workplace workplace(small_scene() + "ts_max_time: 1.0e5\noutput: {file: r.h5, interval: 0.01}\n");
+  const Workplace workplace(small_scene() +
+                            "verbose: true\nts_max_time: 1.0e5\noutput: {file: r.h5, interval: 0.01}\n");
   Child child(workplace.command({"-checkpoint_file", "c"}), workplace.folder());
   ASSERT_TRUE(child.wait_for("integrator"));
   workplace.write("c", "mine");

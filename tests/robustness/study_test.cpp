@@ -132,7 +132,9 @@ TEST(StudyResumes, AfterAKill) {
     EXPECT_LT(before, 800u);
     const Outcome outcome = workplace.run({"-output_file", name, "-study_resume"}, ranks);
     expect_success(outcome);
-    EXPECT_NE(outcome.out.find(std::to_string(before) + " of them are read from the existing results file"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find(std::to_string(before) + " of them are read from the existing results file"),
+              std::string::npos)
+        << outcome.out;
     EXPECT_NE(outcome.out.find(std::to_string(800 - before) + " of " + std::to_string(800 - before) + " runs"),
               std::string::npos)
         << outcome.out;
