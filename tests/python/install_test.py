@@ -77,7 +77,7 @@ class Install(unittest.TestCase):
         touching = normal > 1.0
         law = 1.5e6 * penetration + 4.0e9 * penetration**3
         self.assertLess(abs(normal - law)[touching].max(), 1e-6 * normal.max())
-        refused = subprocess.run([build / "contact_law", *scene, "-study_vary", "train_speed", "-train_speed", "20,30"],
+        refused = subprocess.run([build / "contact_law", *scene, "-study_vary_train_speed", "20,30"],
                                  capture_output=True, text=True, cwd=self.folder)
         self.assertIn("without contact laws of the program", refused.stderr)
 

@@ -46,7 +46,7 @@ struct LayeredTrack;
 
 /// A row of the table of properties, each an option of the track and of every stretch.
 struct TrackProperty {
-  std::string_view name;  // <name> in the options track_<name> and track_<stretch>_<name>
+  std::string_view name;  // NAME in the options track_NAME and track_STRETCH_NAME
   std::string_view unit, text;
   double& (*of)(TrackValues& values);
   const Distribution* (*along)(const LayeredTrack& track);  // null if the model does not contain the layer
