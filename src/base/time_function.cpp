@@ -149,6 +149,10 @@ void TimeFunction::reverse() {
     for (double& number : *numbers) number = -number;
 }
 
+void TimeFunction::delay(double time) {
+  for (double& t : times_) t += time;
+}
+
 void TimeFunction::shift(double offset) {
   value_ += offset;
   for (double& value : values_) value += offset;

@@ -1,5 +1,7 @@
 // Newton's method for the condensed contact forces with a banded LU factorisation of P + A D, where D is the tangent of
-// the contact laws. The bandwidth follows from the couplings that are not negligible.
+// the contact laws. The bandwidth follows from the couplings that are not negligible. Along an inextensible chain all
+// contacts are coupled, but weakly: the factorised matrix then has the strong couplings only, and the iteration
+// corrects for the weak ones.
 #include "coupling/condensed_contacts.hpp"
 
 #include <algorithm>
@@ -13,6 +15,8 @@ constexpr double converged_deviation = 1e-12;  // remaining deviation from the l
 constexpr double renewal_deviation =
     1e-6;                            // deviation above which the tangent is computed again, relative to the weight
 constexpr double negligible = 1e-9;  // coupling of two rows over their own responses, which A neglects
+constexpr double weak = 1e-3;        // coupling that the factorised matrix may leave out
+constexpr int narrower = 4;          // ratio of the bandwidths with and without weak couplings from which it does
 
 // The force of the linearised law at the evaluated kinematics, minus the force at the kinematics stored in the contact.
 double force_correction(const train::Contact& c, bool normal) {
@@ -57,7 +61,7 @@ void CondensedContacts::list(train::Fleet& fleet) {
     if (!compliances_[k].list.end()) compliances_[k].known = false;
   }
   first_.push_back(size());
-  for (Eigen::VectorXd* v : {&reference_, &delta_, &change_, &deviation_, &right_, &beam_}) v->resize(size());
+  for (Eigen::VectorXd* v : {&reference_, &delta_, &change_, &deviation_, &right_, &step_, &beam_}) v->resize(size());
   D_.resize(size(), 2);
 }
 
@@ -110,30 +114,40 @@ void CondensedContacts::couple(const structure::ElementCompliance* compliance, i
   factored_ = false;
 }
 
-// Sets the bandwidth from the couplings that are not negligible, and removes the responses outside it.
+// Sets the bandwidth from the couplings that are not negligible, and removes the responses outside it; or from the
+// couplings that are not weak if that is much less.
 void CondensedContacts::find_band(bool whole) {
   band_ = std::max(0, size() - 1);
+  has_weak_ = false;
   if (whole) return;
-  band_ = 0;
   right_.setZero();
   for (std::size_t k = 0; k < compliances_.size(); ++k)
     right_.segment(first_[k], rows(static_cast<int>(k))) = compliances_[k].H.diagonal();
   for (const Response& r : responses_)
     if (r.a == r.b) right_[r.a] += r.value;
-  const auto relevant = [this](int a, int b, double value) {
-    return a == b || value * value > negligible * negligible * std::abs(right_[a] * right_[b]);
+  const bool friction =
+      std::any_of(rows_.begin(), rows_.end(), [](const train::ContactRow& row) { return !row.normal; });
+  const auto band_of = [&](double limit) {
+    int band = 0;
+    const auto widen = [&](int a, int b, double value) {
+      if (std::abs(a - b) > band && value * value > limit * limit * std::abs(right_[a] * right_[b]))
+        band = std::abs(a - b);
+    };
+    for (std::size_t k = 0; k < compliances_.size(); ++k)
+      for (int j = 0; j < rows(static_cast<int>(k)); ++j)
+        for (int i = 0; i < rows(static_cast<int>(k)); ++i)
+          widen(first_[k] + i, first_[k] + j, compliances_[k].H(i, j));
+    for (const Response& r : responses_) widen(r.a, r.b, r.value);
+    // The tangent of a tangential row adds its column of A to the column of the normal row before it.
+    return friction ? std::min(band + 1, size() - 1) : band;
   };
-  for (std::size_t k = 0; k < compliances_.size(); ++k)
-    for (int j = 0; j < rows(static_cast<int>(k)); ++j)
-      for (int i = 0; i < rows(static_cast<int>(k)); ++i)
-        if (std::abs(i - j) > band_ && relevant(first_[k] + i, first_[k] + j, compliances_[k].H(i, j)))
-          band_ = std::abs(i - j);
-  for (const Response& r : responses_)
-    if (std::abs(r.a - r.b) > band_ && relevant(r.a, r.b, r.value)) band_ = std::abs(r.a - r.b);
-  // The tangent of a tangential row adds its column of A to the column of the normal row before it.
-  if (std::any_of(rows_.begin(), rows_.end(), [](const train::ContactRow& row) { return !row.normal; }))
-    band_ = std::min(band_ + 1, size() - 1);
-  std::erase_if(responses_, [this](const Response& r) { return std::abs(r.a - r.b) > band_; });
+  const int strong = band_of(weak);
+  band_ = band_of(negligible);
+  has_weak_ = band_ > narrower * (strong + 1);
+  if (has_weak_)
+    band_ = strong;
+  else
+    std::erase_if(responses_, [this](const Response& r) { return std::abs(r.a - r.b) > band_; });
 }
 
 void CondensedContacts::fill_A() {
@@ -148,7 +162,7 @@ void CondensedContacts::fill_A() {
     const int k = rows_[r.a].vehicle;
     const Eigen::MatrixXd& P = compliances_[k].P;
     if (P.size() == 0) {
-      A(r.a, r.b) += r.value;
+      if (std::abs(r.a - r.b) <= band_) A(r.a, r.b) += r.value;
     } else {
       for (int i = 0; i < rows(k); ++i) A(first_[k] + i, r.b) += P(i, r.a - first_[k]) * r.value;
     }
@@ -176,10 +190,27 @@ void CondensedContacts::factor(double shift) {
 }
 
 void CondensedContacts::subtract_A_times(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  if (has_weak_)
+    subtract_all_times(x, y);
+  else
+    add_band_times(-1.0, x, y);
+}
+
+// y += factor A x, with the couplings inside the band.
+void CondensedContacts::add_band_times(double factor, const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   for (int j = 0; j < size(); ++j) {
     const int from = top(j), count = bottom(j) - from + 1;
-    y.segment(from, count) -= x[j] * A_.col(j).segment(band_ + from - j, count);
+    y.segment(from, count) += factor * x[j] * A_.col(j).segment(band_ + from - j, count);
   }
+}
+
+// y -= A x, with all couplings; P is 1.
+void CondensedContacts::subtract_all_times(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  for (std::size_t k = 0; k < compliances_.size(); ++k) {
+    const int count = rows(static_cast<int>(k));
+    y.segment(first_[k], count).noalias() -= compliances_[k].H * x.segment(first_[k], count);
+  }
+  for (const Response& r : responses_) y[r.a] -= r.value * x[r.b];
 }
 
 // Sets the contacts' kinematics and forces at delta. Returns the largest deviation from the forces of the tangent.
@@ -199,6 +230,13 @@ double CondensedContacts::update_contacts(double shift) {
     largest = std::max(largest, std::abs(deviation_[i]) / rows_[i].scale);
   }
   return largest;
+}
+
+// A bound of the forces that the weak couplings of the last step have caused, over the vehicles' weights.
+double CondensedContacts::largest_weak_change() const {
+  double largest = 0.0;
+  for (int i = 0; i < size(); ++i) largest = std::max(largest, std::abs(step_[i]) / rows_[i].scale);
+  return weak * largest;
 }
 
 void CondensedContacts::set_beam_displacement(const Eigen::VectorXd& forces) {
@@ -231,14 +269,20 @@ double CondensedContacts::solve(double shift, bool loaded, int most_iterations) 
     lu_.solve_in_place(right_.data());
     delta_ += right_;
     for (int j = 0; j < size(); ++j) {
-      change_[j] += D_(j, 1) * right_[j];
-      if (!rows_[j].normal) change_[j] += D_(j, 0) * right_[j - 1];
+      step_[j] = D_(j, 1) * right_[j];
+      if (!rows_[j].normal) step_[j] += D_(j, 0) * right_[j - 1];
     }
+    change_ += step_;
     remaining = update_contacts(shift);
+    if (has_weak_) remaining = std::max(remaining, largest_weak_change());
     if (i == most_iterations || remaining <= converged_deviation || !std::isfinite(remaining)) break;
     if (remaining > renewal_deviation) factor(shift);
     right_.setZero();
     subtract_A_times(deviation_, right_);
+    if (has_weak_) {  // what the factorised matrix has left out of the last step
+      subtract_all_times(step_, right_);
+      add_band_times(1.0, step_, right_);
+    }
     change_ += deviation_;
   }
   if (!loaded) reference_ += change_;

@@ -70,6 +70,9 @@ class CondensedContacts {
   void factor(double shift);
   void set_beam_displacement(const Eigen::VectorXd& forces);
   void subtract_A_times(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  void subtract_all_times(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  void add_band_times(double factor, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  double largest_weak_change() const;
   double update_contacts(double shift);
 
   std::vector<train::ContactRow> rows_;
@@ -78,11 +81,12 @@ class CondensedContacts {
   std::vector<train::ContactCompliance> compliances_;
   std::vector<Response> responses_;
   int band_ = 0;
-  Eigen::MatrixXd A_;    // entry (i, j) is at (band + i - j, j)
-  train::RowTangent D_;  // the tangent in lu_
+  bool has_weak_ = false;  // weak couplings are outside the band, not negligible
+  Eigen::MatrixXd A_;      // entry (i, j) is at (band + i - j, j)
+  train::RowTangent D_;    // the tangent in lu_
   solve::BandLu lu_;
   bool factored_ = false;
-  Eigen::VectorXd reference_, delta_, change_, deviation_, right_;
+  Eigen::VectorXd reference_, delta_, change_, step_, deviation_, right_;
   Eigen::VectorXd beam_;  // displacement of the beam along the rows
 };
 

@@ -104,7 +104,7 @@ unsigned ContactNewton::condense_own(train::Fleet& fleet, const StageData& s, in
     else if (!find_residual(vehicle, k))
       return train::VehicleShare::failed;
     const bool converges_slowly =
-        i >= reuse_iterations || (i > 1 && !vehicle.converged && contraction_ > poor_ratio) ||
+        i >= reuse_iterations || (i > 1 && !vehicle.converged && measured_ > poor_ratio) ||
         (i > 1 && compliance.residual > poor_ratio * before && compliance.residual > tolerance_);
     if (converges_slowly || !compliance.known || !vehicle.dynamics->matrix_is_valid(vehicle, s.shifts(), i > 0)) {
       renew(vehicle, k, s, s.shifts().statics() || i > 0);
@@ -121,7 +121,7 @@ unsigned ContactNewton::condense_own(train::Fleet& fleet, const StageData& s, in
 // matrices. For it the ratio measured in earlier stages is used too. Changes due to rounding do not decrease.
 bool ContactNewton::has_converged(bool statics, bool reused, double before, double deviation) {
   if (change_ == 0.0) return true;
-  const double measured = change_ / before;
+  const double measured = measured_ = change_ / before;
   contraction_ = std::clamp(measured, best_ratio, 1.0);
   if (reused && measured <= poor_ratio) {
     contraction_ = std::max(ratio_, first_share * measured);

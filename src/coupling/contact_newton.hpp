@@ -55,7 +55,7 @@ class ContactNewton {
   std::size_t worst_vehicle() const;
   /// Reads or writes the data that later stages reuse.
   void keep(base::Bytes& bytes) {
-    bytes(contacts_, loads_, tolerance_, change_, contraction_, second_, single_evaluation_, in_place_, ratio_);
+    bytes(contacts_, loads_, tolerance_, change_, measured_, contraction_, second_, single_evaluation_, in_place_, ratio_);
   }
 
  private:
@@ -86,6 +86,7 @@ class ContactNewton {
   std::vector<double> moved_;  // change of x since the vehicles were set
   double tolerance_ = 0.0;     // tolerance of forces, relative to the weight
   double change_ = 0.0;
+  double measured_ = 1.0;     // ratio of the last two changes
   double contraction_ = 1.0;  // expected ratio of the next change to the last one
   /// The ratio of a stage's second change to its first one, measured in the last stage with reused matrices. If the
   /// predicted second change is negligible, the stage ends after one evaluation.

@@ -36,7 +36,7 @@ double System::step_error(const double* y) {
     for (int j = 0; j < rule.known; ++j) x_[i] += rule.error_in_a[j] * m.pdd[j][i];
   }
   double worst = 0.0;
-  for (const train::MovingVehicle& vehicle : fleet_.own())
+  for (train::MovingVehicle& vehicle : fleet_.own())
     worst = std::max(worst, vehicle.step_error(&x_[vehicle.offset], &m.pdd[rule.known - 1][vehicle.offset]));
   if (structure_) worst = std::max(worst, structure_error(y));
   if (!std::isfinite(worst)) worst = std::numeric_limits<double>::max();

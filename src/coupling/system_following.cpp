@@ -30,6 +30,7 @@ void follow(const train::Fleet& fleet, train::MovingVehicle& vehicle) {
   const std::vector<int> coordinates = following_coordinates(vehicle);
   if (contacts.empty() || coordinates.empty()) return;
   multibody::MechanismState& state = vehicle.state;
+  vehicle.mechanism.compute_B(state);
   const Eigen::MatrixXd B = state.B(Eigen::all, coordinates);
   const auto r = static_cast<Eigen::Index>(contacts.size());
   Eigen::MatrixXd G(r, B.cols());

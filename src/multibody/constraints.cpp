@@ -88,7 +88,7 @@ void Mechanism::predict(MechanismState& s, double t, const double* p) const {
     const double dt = t - a.time;
     s.q = a.q + dt * (a.qd + 0.5 * dt * a.qdd);
     for (int k = 0; k < f; ++k) s.change[k] = p[k] - s.q[partition_.independent[k]];
-    a.sensitivity.add(s.change, partition_.independent, s.q);
+    add_sensitivity(s);
   } else if (s.velocities_set) {
     for (int k = 0; k < f; ++k) s.change[k] = p[k] - s.q[partition_.independent[k]];
     s.dependent_block.expand(s.change.data(), s.q);
@@ -109,14 +109,22 @@ void Mechanism::prepare_workspaces(MechanismState& s) const {
   s.change.setZero(f);
   place_frames(s);
   compute_Phi_q(s);
-  s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
-  s.reduced_mass.plan(s.dependent_block);
-  find_columns(s);
+  plan_elimination(s);
   s.partition_version = partition_version_;
   s.factored = false;
   s.velocities_set = false;
   s.mass_factored = false;
   s.factors_current = s.sensitivity_current = false;
+}
+
+/// Chooses the orders of elimination at the present Phi_q.
+void Mechanism::plan_elimination(MechanismState& s) const {
+  s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
+  if (!s.dependent_block.many_sensitivities())
+    s.reduced_mass.plan(s.dependent_block);
+  else if (s.partition_version != partition_version_)
+    s.augmented_mass.plan(augmented_pattern());
+  find_columns(s);
 }
 
 void Mechanism::find_columns(MechanismState& s) const {
@@ -140,9 +148,7 @@ void Mechanism::factor(MechanismState& s) const {
   s.sensitivity_current = false;
   if (!s.dependent_block.factor(s.Phi_q)) {
     s.velocities_set = false;
-    s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
-    s.reduced_mass.plan(s.dependent_block);
-    find_columns(s);
+    plan_elimination(s);
     s.B.setZero();
     for (int k = 0; k < freedom(); ++k) s.B(partition_.independent[k], k) = 1.0;
   }

@@ -20,12 +20,17 @@ void Mechanism::set_velocities(MechanismState& s, double t, const double* pd) co
   if (!s.dependent_block.nearly_singular() || !interpolate_velocities(s, t, pd)) velocities_at(s, t, pd);
 }
 
+void Mechanism::compute_B(MechanismState& s) const {
+  if (s.dependent_block.has_sensitivity()) return;
+  s.dependent_block.compute_sensitivity();
+  s.dependent_block.scatter(s.B);
+}
+
 /// Computes B, b, q' and d; Phi_q must be factorised.
 void Mechanism::velocities_at(MechanismState& s, double t, const double* pd) const {
   if (!s.sensitivity_current) {
     s.mass_factored = false;
-    s.dependent_block.compute_sensitivity();
-    s.dependent_block.scatter(s.B);
+    if (!s.dependent_block.many_sensitivities()) compute_B(s);
     s.sensitivity_current = true;
   }
   s.velocities_set = true;
@@ -60,11 +65,12 @@ bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double
     const double offset = place[i] * interpolation_distance * length_ / speed;
     s.q = s.centre + offset * s.accepted.qd;
     for (int k = 0; k < f; ++k) s.change[k] = offset * (pd[k] - s.accepted.qd[partition_.independent[k]]);
-    s.accepted.sensitivity.add(s.change, partition_.independent, s.q);
+    add_sensitivity(s);
     reached = solve_dependent(s, t + offset);
     if (!reached) break;
     factor(s);
     velocities_at(s, t + offset, pd);
+    compute_B(s);
     s.interpolated.leftCols(f) += weight[i] * s.B;
     s.interpolated.col(f) += weight[i] * s.b;
     s.interpolated.col(f + 1) += weight[i] * s.d;
@@ -100,11 +106,10 @@ void Mechanism::shift(MechanismState& s, const double* change, double rate) cons
 }
 
 double Mechanism::effective_mass(MechanismState& s, const Eigen::VectorXd& direction) const {
-  if (!s.mass_factored) s.reduced_mass.factor(s.dependent_block, mass_);
-  s.mass_factored = true;
+  factor_mass(s);
   s.dependent_block.project(direction, s.reduced);
   s.change = s.reduced;
-  s.reduced_mass.solve(s.reduced);
+  solve_mass(s);
   return 1.0 / s.change.dot(s.reduced);
 }
 
@@ -116,24 +121,73 @@ void Mechanism::accept(MechanismState& s) const {
   a.q = s.q;
   a.qd = s.qd;
   a.qdd = s.qdd;
-  s.dependent_block.copy_sensitivity(a.sensitivity);
+  if (!s.dependent_block.many_sensitivities()) s.dependent_block.copy_sensitivity(a.sensitivity);
 }
 
-double Mechanism::partition_quality(const MechanismState& s) const {
-  const double largest = s.dependent_block.largest_sensitivity(scaling_);
+/// Adds the change s.change of the independent coordinates from the accepted instant, and its effect, to s.q. Where
+/// there are many sensitivities, those of the last factorisation are good enough for this prediction.
+void Mechanism::add_sensitivity(MechanismState& s) const {
+  if (!s.dependent_block.many_sensitivities()) {
+    s.accepted.sensitivity.add(s.change, partition_.independent, s.q);
+    return;
+  }
+  s.work = s.q;
+  s.dependent_block.expand(s.change.data(), s.q);
+  for (const int i : partition_.independent) s.q[i] += s.work[i];
+}
+
+double Mechanism::partition_quality(MechanismState& s) const {
+  const double largest =
+      s.dependent_block.many_sensitivities() ? probed_sensitivity(s) : s.dependent_block.largest_sensitivity(scaling_);
   return largest > 1.0 ? 1.0 / largest : 1.0;
 }
 
-void Mechanism::accelerations(MechanismState& s, const Eigen::VectorXd& Q, double* pdd) const {
-  if (!s.mass_factored) s.reduced_mass.factor(s.dependent_block, mass_);
+/// The largest scaled change of a dependent coordinate under two changes of all independent coordinates that are random
+/// in sign, over the square root of their number: of the size of the sensitivities, without computing them.
+double Mechanism::probed_sensitivity(MechanismState& s) const {
+  double largest = 0.0;
+  for (const double probe : {1.0, 2.0}) {
+    for (int k = 0; k < freedom(); ++k)
+      s.change[k] = std::copysign(scaling_.column[partition_.independent[k]], std::cos(probe * k * k + 1.0));
+    s.projected.setZero(coordinates());
+    s.dependent_block.expand(s.change.data(), s.projected);
+    for (const int i : partition_.dependent) largest = std::max(largest, std::abs(s.projected[i]) / scaling_.column[i]);
+  }
+  return largest / std::sqrt(static_cast<double>(freedom()));
+}
+
+/// B^T N B is factorised itself, or by the augmented system with K = N.
+void Mechanism::factor_mass(MechanismState& s) const {
+  if (s.mass_factored) return;
+  if (!s.dependent_block.many_sensitivities())
+    s.reduced_mass.factor(s.dependent_block, mass_);
+  else if (!factor_augmented(s, 1.0, 0.0, 0.0, 0.0, s.augmented_mass))
+    throw SolverError("vehicle '" + model_.name + "': its constraints are singular at t = " + std::to_string(s.time) +
+                      " s");
   s.mass_factored = true;
+}
+
+/// s.reduced = (B^T N B)^-1 s.reduced.
+void Mechanism::solve_mass(MechanismState& s) const {
+  if (!s.dependent_block.many_sensitivities()) {
+    s.reduced_mass.solve(s.reduced);
+    return;
+  }
+  s.projected.setZero(coordinates());
+  for (int k = 0; k < freedom(); ++k) s.projected[partition_.independent[k]] = s.reduced[k];
+  s.augmented_mass.solve(s.projected);
+  for (int k = 0; k < freedom(); ++k) s.reduced[k] = s.projected[partition_.independent[k]];
+}
+
+void Mechanism::accelerations(MechanismState& s, const Eigen::VectorXd& Q, double* pdd) const {
+  factor_mass(s);
   s.work = s.g + Q - mass_.cwiseProduct(s.d);
   if (has_friction()) {
     friction_in_motion(s);
     if (s.friction.jammed) throw SolverError(describe_jam(s) + " (at t = " + std::to_string(s.time) + " s)");
   }
   s.dependent_block.project(s.work, s.reduced);
-  s.reduced_mass.solve(s.reduced);
+  solve_mass(s);
   for (int k = 0; k < freedom(); ++k) pdd[k] = s.reduced[k];
   expand_accelerations(s, pdd);
   s.work = s.g + Q - mass_.cwiseProduct(s.qdd);

@@ -53,14 +53,15 @@ void add_pair_times_B(int first, int second, const PairMatrix& K, const Mechanis
   }
 }
 
-void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda,
-                                 Eigen::MatrixXd& product) const {
-  product.setZero(coordinates(), freedom());
+/// Calls add(first, second, K) with the matrix K of each pair of bodies, in the order of augmented_pattern; without
+/// curvature (by_lambda 0) the joints are left out.
+template <class Add>
+void Mechanism::each_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda, Add add) const {
   PairMatrix K, g_qd;
   for (const SpringGeometry& spring : springs_) {
     spring_derivatives(spring, frame(s, spring.first), frame(s, spring.second), K, g_qd);
     K = by_q * K + by_qd * g_qd;
-    add_pair_times_B(spring.first, spring.second, K, s, product);
+    add(spring.first, spring.second, K);
   }
   for (const TorsionGeometry& spring : torsion_springs_) {
     const TorsionTangent tangent = torsion_tangent(spring, frame(s, spring.first), frame(s, spring.second));
@@ -68,15 +69,49 @@ void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by
     K.setZero();
     K(2, 2) = K(5, 5) = -k;
     K(2, 5) = K(5, 2) = k;
-    add_pair_times_B(spring.first, spring.second, K, s, product);
+    add(spring.first, spring.second, K);
   }
-  if (has_friction()) multiply_friction_tangent(s, by_q, by_qd, product);
   if (by_lambda == 0.0) return;
   for (const JointGeometry& joint : joints_) {
     joint_curvature(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row, K);
     K *= by_lambda;
-    add_pair_times_B(joint.first, joint.second, K, s, product);
+    add(joint.first, joint.second, K);
   }
+}
+
+void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda,
+                                 Eigen::MatrixXd& product) const {
+  product.setZero(coordinates(), freedom());
+  if (has_friction()) multiply_friction_tangent(s, by_q, by_qd, product);
+  each_tangent(s, by_q, by_qd, by_lambda,
+               [&](int first, int second, const PairMatrix& K) { add_pair_times_B(first, second, K, s, product); });
+}
+
+AugmentedPattern Mechanism::augmented_pattern() const {
+  AugmentedPattern pattern;
+  pattern.bodies = static_cast<int>(model_.bodies.size());
+  for (const SpringGeometry& spring : springs_) pattern.pairs.push_back({spring.first, spring.second});
+  for (const TorsionGeometry& spring : torsion_springs_) pattern.pairs.push_back({spring.first, spring.second});
+  for (const JointGeometry& joint : joints_) pattern.pairs.push_back({joint.first, joint.second});
+  const auto rows = static_cast<std::size_t>(constraints());
+  for (const int row : partition_.rows) {
+    std::vector<int>& columns = pattern.rows.emplace_back();
+    for (int j = 0; j < coordinates(); ++j)
+      if (pattern_[static_cast<std::size_t>(j) * rows + static_cast<std::size_t>(row)]) columns.push_back(j);
+  }
+  return pattern;
+}
+
+bool Mechanism::factor_augmented(const MechanismState& s, double by_mass, double by_q, double by_qd, double by_lambda,
+                                 AugmentedSystem& system) const {
+  system.set_zero();
+  system.add_mass(mass_, by_mass);
+  if (by_q != 0.0 || by_qd != 0.0 || by_lambda != 0.0) {
+    int pair = 0;
+    each_tangent(s, by_q, by_qd, by_lambda, [&](int, int, const PairMatrix& K) { system.add_pair(pair++, K); });
+  }
+  system.set_constraints(s.Phi_q, partition_.rows);
+  return system.factor();
 }
 
 double Mechanism::spring_tension(const MechanismState& s, int k) const {

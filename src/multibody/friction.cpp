@@ -119,7 +119,7 @@ void Mechanism::add_normal_friction(MechanismState& s) const {
 void Mechanism::compute_response(MechanismState& s, const Eigen::Ref<const Eigen::VectorXd>& force) const {
   FrictionState& r = s.friction;
   s.dependent_block.project(force, s.reduced);
-  s.reduced_mass.solve(s.reduced);
+  solve_mass(s);
   r.work.setZero();
   s.dependent_block.expand(s.reduced.data(), r.work);
   r.work = force - mass_.cwiseProduct(r.work);

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "multibody/augmented_system.hpp"
 #include "multibody/force_element.hpp"
 #include "multibody/joint.hpp"
 #include "multibody/reduction.hpp"
@@ -62,7 +63,7 @@ struct FrictionState {
 struct MechanismState {
   double time = 0.0;
   Eigen::VectorXd q, qd;              // n
-  Eigen::MatrixXd B;                  // n x f
+  Eigen::MatrixXd B;                  // n x f; with many sensitivities only after Mechanism::compute_B
   Eigen::VectorXd b;                  // n: q' = B p' + b
   Eigen::VectorXd d;                  // n: q'' = B p'' + d
   Eigen::VectorXd g;                  // n: gravity, springs, actuators
@@ -79,15 +80,16 @@ struct MechanismState {
   std::vector<ColumnRange> columns;  // non-zero columns of B in the rows of each body
   DependentBlock dependent_block;
   ReducedMass reduced_mass;
+  AugmentedSystem augmented_mass;    // instead of reduced_mass where many_sensitivities()
   Instant accepted;                  // the last accepted instant
   int partition_version = 0;         // partition of the workspaces
   bool factored = false;             // dependent_block has a factorisation of Phi_q near the current q
   bool factors_current = false;      // this factorisation belongs to the present Phi_q
-  bool sensitivity_current = false;  // the sensitivity and B belong to the present Phi_q
+  bool sensitivity_current = false;  // the sensitivity and B, where they are computed, belong to the present Phi_q
   bool velocities_set = false;       // dependent_block has the sensitivity at the last velocities
   bool mass_factored = false;        // reduced_mass belongs to B
   long corrections = 0;              // number of Newton steps on positions
-  Eigen::VectorXd work;              // n
+  Eigen::VectorXd work, projected;   // n
   Eigen::VectorXd reduced;           // f
   Eigen::VectorXd change;            // f
   Eigen::VectorXd centre;            // n: q of a nearly singular position
@@ -95,8 +97,8 @@ struct MechanismState {
 
   void keep(base::Bytes& bytes) {
     bytes(time, q, qd, B, b, d, g, dissipation, qdd, lambda, Phi_q, Phi, gamma, Phi_t, friction, frames, columns,
-          dependent_block, reduced_mass, accepted, partition_version, factored, factors_current, sensitivity_current,
-          velocities_set, mass_factored, corrections, centre, interpolated);
+          dependent_block, reduced_mass, augmented_mass, accepted, partition_version, factored, factors_current,
+          sensitivity_current, velocities_set, mass_factored, corrections, centre, interpolated);
   }
 };
 
@@ -144,7 +146,7 @@ class Mechanism {
   void accept(MechanismState& s) const;
 
   /// Whether dependent coordinates depend too strongly on the independent ones, or Phi_u is nearly singular.
-  bool badly_conditioned(const MechanismState& s) const;
+  bool badly_conditioned(MechanismState& s) const;
   /// Chooses another partition at the consistent state s if the present one is poor and another is better. If all
   /// choices are singular, the present one is kept to pass this position. Returns whether the partition has changed.
   bool renew_partition(MechanismState& s);
@@ -152,9 +154,9 @@ class Mechanism {
   void adopt_partition(MechanismState& s, const Partition& partition);
 
   /// The quality of the partition, in (0, 1]: the inverse of the largest change of a dependent coordinate per change of
-  /// an independent one (angles are scaled by a typical arm), at most 1. It tends to 0 as Phi_u becomes singular.
-  /// Velocities must be set.
-  double partition_quality(const MechanismState& s) const;
+  /// an independent one (angles are scaled by a typical arm), at most 1; where there are many sensitivities, an
+  /// estimate of it. It tends to 0 as Phi_u becomes singular. Velocities must be set.
+  double partition_quality(MechanismState& s) const;
 
   /// Sets the independent coordinates to p and solves Phi = 0 for the others by Newton's method, which starts from a
   /// prediction by the last accepted instant or the last velocities. Returns false if it does not converge (s.q is then
@@ -163,8 +165,11 @@ class Mechanism {
   /// After a failure of set_positions: the joint or driver with the largest residual, and this residual.
   std::string worst_row(const MechanismState& s) const;
 
-  /// Computes q' from p', and B, b, d. Positions must be set.
+  /// Computes q' from p', and b, d and B, the last only where DependentBlock has not many sensitivities. Positions must
+  /// be set.
   void set_velocities(MechanismState& s, double t, const double* pd) const;
+  /// Computes B if set_velocities has not.
+  void compute_B(MechanismState& s) const;
 
   /// Computes g and the power dissipated in dampers. Positions and velocities must be set.
   void compute_forces(MechanismState& s) const;
@@ -190,9 +195,15 @@ class Mechanism {
   std::string describe_jam(const MechanismState& s) const;
 
   /// product (n x f) = (by_q dg/dq + by_qd dg/dq' + by_lambda d(Phi_q^T lambda)/dq) B, at fixed lambda. Here g includes
-  /// friction.
+  /// friction. B must be computed.
   void multiply_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda,
                         Eigen::MatrixXd& product) const;
+  /// The sparse form of the projected equations for the present partition.
+  AugmentedPattern augmented_pattern() const;
+  /// Sets a system with this pattern to by_mass N + by_q dg/dq + by_qd dg/dq' + by_lambda d(Phi_q^T lambda)/dq, without
+  /// friction, and to Phi_q, and factorises it. False if AugmentedSystem::factor fails.
+  bool factor_augmented(const MechanismState& s, double by_mass, double by_q, double by_qd, double by_lambda,
+                        AugmentedSystem& system) const;
 
   /// Reaction of joint j on its second body, including friction: fx, fy, moment about the joint's point on that body
   /// (for `distance`: about `to`). The reactions of redundant rows are zero.
@@ -231,6 +242,7 @@ class Mechanism {
   void find_pattern();
 
   void prepare_workspaces(MechanismState& s) const;
+  void plan_elimination(MechanismState& s) const;
   void find_columns(MechanismState& s) const;
   void place_frames(MechanismState& s) const;
   void move_frames(MechanismState& s) const;
@@ -245,6 +257,12 @@ class Mechanism {
   void velocities_at(MechanismState& s, double t, const double* pd) const;
   bool interpolate_velocities(MechanismState& s, double t, const double* pd) const;
   void expand_accelerations(MechanismState& s, const double* pdd) const;
+  void factor_mass(MechanismState& s) const;
+  void solve_mass(MechanismState& s) const;
+  double probed_sensitivity(MechanismState& s) const;
+  void add_sensitivity(MechanismState& s) const;
+  template <class Add>
+  void each_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda, Add add) const;
   void compute_friction_kinematics(MechanismState& s) const;
   void friction_in_motion(MechanismState& s) const;
   void friction_in_given_motion(MechanismState& s) const;

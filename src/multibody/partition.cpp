@@ -113,7 +113,7 @@ std::vector<std::string> Mechanism::choose_partition(MechanismState& s, double t
   return names;
 }
 
-bool Mechanism::badly_conditioned(const MechanismState& s) const {
+bool Mechanism::badly_conditioned(MechanismState& s) const {
   if (partition_.rows.empty() || !s.velocities_set) return false;
   return s.dependent_block.nearly_singular() || partition_quality(s) < poor_quality * chosen_quality_;
 }
@@ -174,9 +174,9 @@ void Mechanism::fit_velocities(MechanismState& s) const {
   set_velocities(s, s.time, pd.data());
   const Eigen::VectorXd error = wanted - s.qd;
   if (error.cwiseAbs().maxCoeff() <= 1e-9 * wanted.cwiseAbs().maxCoeff()) return;
-  s.reduced_mass.factor(s.dependent_block, mass_);
+  factor_mass(s);
   s.dependent_block.project(mass_.cwiseProduct(error), s.reduced);
-  s.reduced_mass.solve(s.reduced);
+  solve_mass(s);
   pd += s.reduced;
   set_velocities(s, s.time, pd.data());
 }

@@ -16,6 +16,8 @@ constexpr double acceptable_pivot =
     0.1;  // least pivot relative to the largest entry in its row, for the choice of the order
 constexpr double degraded_pivot = 0.1;  // least pivot relative to its value when the order was chosen
 constexpr double zero_pivot = 1e-13;    // scaled: with a smaller pivot, the solution is zero in its direction
+constexpr long many = 2;                // non-zeros of the sensitivity, relative to those of the factors
+constexpr int small = 24;               // independent coordinates up to which the sensitivity is always computed
 
 /// The pivot with the least fill (Markowitz) among the pivots that are large enough in their row. If the fill is equal,
 /// the larger pivot is chosen.
@@ -55,6 +57,9 @@ void DependentBlock::plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>&
   find_fill(pattern, static_cast<int>(Phi_q.rows()));
   find_sensitive(pattern, static_cast<int>(Phi_q.rows()));
   const int m = size();
+  const auto factors = static_cast<long>(lower_.index.size() + upper_.index.size() + sensitivity_sources_.size()) + m;
+  many_sensitivities_ = freedom() > small && static_cast<long>(sensitive_.index.size()) > many * factors;
+  by_independent_.assign(sensitivity_sources_.size(), 0.0);
   block_.assign(static_cast<std::size_t>(m) * m, 0.0);
   sensitivity_.assign(static_cast<std::size_t>(m) * freedom(), 0.0);
   inverse_pivot_.assign(m, 0.0);
@@ -157,11 +162,11 @@ bool DependentBlock::factor(const Eigen::MatrixXd& Phi_q) {
     for (const int* j = lower_.begin(i); j != lower_.end(i); ++j) block(i, *j) = 0.0;
     for (const int* j = upper_.begin(i); j != upper_.end(i); ++j) block(i, *j) = 0.0;
     block(i, i) = 0.0;
-    for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j) sensitivity_[i * freedom() + *j] = 0.0;
   }
   const double* numbers = Phi_q.data();
   for (const Source& s : block_sources_) block_[s.to] = numbers[s.from];
-  for (const Source& s : sensitivity_sources_) sensitivity_[s.to] = -numbers[s.from];
+  for (std::size_t k = 0; k < by_independent_.size(); ++k) by_independent_[k] = numbers[sensitivity_sources_[k].from];
+  has_sensitivity_ = false;
   bool accurate = true;
   least_pivot_ = 1.0;
   for (int i = 0; i < m; ++i) {
@@ -181,6 +186,11 @@ bool DependentBlock::factor(const Eigen::MatrixXd& Phi_q) {
 void DependentBlock::compute_sensitivity() {
   const int m = size();
   const int f = freedom();
+  for (int i = 0; i < m; ++i)
+    for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j) sensitivity_[i * f + *j] = 0.0;
+  for (std::size_t k = 0; k < by_independent_.size(); ++k)
+    sensitivity_[sensitivity_sources_[k].to] = -by_independent_[k];
+  has_sensitivity_ = true;
   for (int i = 0; i < m; ++i) {
     double* target = sensitivity_.data() + i * f;
     for (const int* k = lower_.begin(i); k != lower_.end(i); ++k) {
@@ -200,10 +210,11 @@ void DependentBlock::compute_sensitivity() {
   }
 }
 
-void DependentBlock::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
+/// Solves with the factors: work_ has an entry for each pivot's row before, and for each pivot's column after.
+void DependentBlock::solve_work() {
   const int m = size();
   for (int i = 0; i < m; ++i) {
-    double sum = rhs[row_of_[i]];
+    double sum = work_[i];
     for (const int* k = lower_.begin(i); k != lower_.end(i); ++k) sum -= block(i, *k) * work_[*k];
     work_[i] = sum;
   }
@@ -211,26 +222,44 @@ void DependentBlock::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
     double sum = work_[i];
     for (const int* k = upper_.begin(i); k != upper_.end(i); ++k) sum -= block(i, *k) * work_[*k];
     work_[i] = sum * inverse_pivot_[i];
-    x[column_of_[i]] = work_[i];
   }
 }
 
-void DependentBlock::solve_transposed(const Eigen::VectorXd& r, Eigen::VectorXd& y) {
+void DependentBlock::solve_work_transposed() {
   const int m = size();
-  for (int i = 0; i < m; ++i) work_[i] = r[column_of_[i]];
   for (int i = 0; i < m; ++i) {
     work_[i] *= inverse_pivot_[i];
     for (const int* j = upper_.begin(i); j != upper_.end(i); ++j) work_[*j] -= block(i, *j) * work_[i];
   }
-  for (int i = m - 1; i >= 0; --i) {
+  for (int i = m - 1; i >= 0; --i)
     for (const int* k = lower_.begin(i); k != lower_.end(i); ++k) work_[*k] -= block(i, *k) * work_[i];
-    y[row_of_[i]] = work_[i];
-  }
 }
 
-void DependentBlock::expand(const double* p, Eigen::VectorXd& x) const {
+void DependentBlock::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x) {
+  for (int i = 0; i < size(); ++i) work_[i] = rhs[row_of_[i]];
+  solve_work();
+  for (int i = 0; i < size(); ++i) x[column_of_[i]] = work_[i];
+}
+
+void DependentBlock::solve_transposed(const Eigen::VectorXd& r, Eigen::VectorXd& y) {
+  for (int i = 0; i < size(); ++i) work_[i] = r[column_of_[i]];
+  solve_work_transposed();
+  for (int i = 0; i < size(); ++i) y[row_of_[i]] = work_[i];
+}
+
+void DependentBlock::expand(const double* p, Eigen::VectorXd& x) {
   const int f = freedom();
   for (int k = 0; k < f; ++k) x[independent_[k]] = p[k];
+  if (by_factors()) {
+    std::fill(work_.begin(), work_.end(), 0.0);
+    for (std::size_t k = 0; k < by_independent_.size(); ++k) {
+      const int to = sensitivity_sources_[k].to;
+      work_[to / f] -= by_independent_[k] * p[to % f];
+    }
+    solve_work();
+    for (int i = 0; i < size(); ++i) x[column_of_[i]] += work_[i];
+    return;
+  }
   for (int i = 0; i < size(); ++i) {
     double sum = x[column_of_[i]];
     for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j) sum += sensitivity_[i * f + *j] * p[*j];
@@ -238,9 +267,18 @@ void DependentBlock::expand(const double* p, Eigen::VectorXd& x) const {
   }
 }
 
-void DependentBlock::project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced) const {
+void DependentBlock::project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced) {
   const int f = freedom();
   for (int k = 0; k < f; ++k) reduced[k] = r[independent_[k]];
+  if (by_factors()) {
+    for (int i = 0; i < size(); ++i) work_[i] = r[column_of_[i]];
+    solve_work_transposed();
+    for (std::size_t k = 0; k < by_independent_.size(); ++k) {
+      const int to = sensitivity_sources_[k].to;
+      reduced[to % f] -= by_independent_[k] * work_[to / f];
+    }
+    return;
+  }
   for (int i = 0; i < size(); ++i) {
     const double value = r[column_of_[i]];
     for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j)
@@ -266,6 +304,7 @@ double DependentBlock::largest_sensitivity(const Scaling& scaling) const {
 }
 
 void DependentBlock::set_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& B) {
+  has_sensitivity_ = true;
   for (int i = 0; i < size(); ++i)
     for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j)
       sensitivity_[i * freedom() + *j] = B(column_of_[i], *j);

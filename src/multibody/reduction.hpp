@@ -55,20 +55,26 @@ class DependentBlock {
   /// non-zero.
   void plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>& pattern, const Partition& partition,
             const Scaling& scaling);
+  /// Whether the sensitivity has so many non-zeros, as along a chain, that `expand` and `project` cost less by a
+  /// solution with the factors than by the matrix. The matrix is then computed only where it is asked for.
+  bool many_sensitivities() const { return many_sensitivities_; }
   /// Factorises. Returns false if a pivot is so much smaller than in the plan that a new plan is needed, or if a pivot
   /// is small: at least in this order the block is then nearly singular.
   bool factor(const Eigen::MatrixXd& Phi_q);
-  /// Computes the sensitivity; factor must be called before.
+  /// Computes the sensitivity; factor must be called before. `expand` and `project` use it until the next
+  /// factorisation.
   void compute_sensitivity();
+  /// Whether the sensitivity of the last factorisation is computed.
+  bool has_sensitivity() const { return has_sensitivity_; }
 
   /// x_u = Phi_u^-1 rhs; only the dependent entries of x are written.
   void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x);
   /// y = Phi_u^-T r_u; only the kept entries of y are written.
   void solve_transposed(const Eigen::VectorXd& r, Eigen::VectorXd& y);
   /// x_p = p and x_u = x_u + sensitivity * p.
-  void expand(const double* p, Eigen::VectorXd& x) const;
+  void expand(const double* p, Eigen::VectorXd& x);
   /// The projection B^T r.
-  void project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced) const;
+  void project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced);
   /// Writes the sensitivity into the dependent rows of B (n x f); the other rows of B remain unchanged.
   void scatter(Eigen::MatrixXd& B) const;
   /// The largest scaled sensitivity.
@@ -92,7 +98,8 @@ class DependentBlock {
   void set_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& B);
   void keep(base::Bytes& bytes) {
     bytes(row_of_, column_of_, independent_, lower_, upper_, sensitive_, block_sources_, sensitivity_sources_, block_,
-          sensitivity_, inverse_pivot_, planned_pivot_, pivot_scale_, work_, least_pivot_);
+          by_independent_, sensitivity_, inverse_pivot_, planned_pivot_, pivot_scale_, work_, least_pivot_,
+          many_sensitivities_, has_sensitivity_);
   }
 
  private:
@@ -101,6 +108,9 @@ class DependentBlock {
     int from;  // index in Phi_q's storage
     int to;    // index in block_ or sensitivity_
   };
+  bool by_factors() const { return many_sensitivities_ && !has_sensitivity_; }
+  void solve_work();
+  void solve_work_transposed();
   void choose_order(const Eigen::MatrixXd& Phi_q, const Partition& partition, const Scaling& scaling);
   void find_fill(const std::vector<char>& pattern, int rows);
   void find_sensitive(const std::vector<char>& pattern, int rows);
@@ -110,8 +120,10 @@ class DependentBlock {
   IndexLists lower_, upper_, sensitive_;               // non-zero columns of every pivot's row
   std::vector<Source> block_sources_, sensitivity_sources_;
   std::vector<double> block_, sensitivity_;  // size x size, size x freedom, by rows
+  std::vector<double> by_independent_;       // Phi_p: an entry for each of sensitivity_sources_
   std::vector<double> inverse_pivot_, planned_pivot_, pivot_scale_, work_;
   double least_pivot_ = 1.0;
+  bool many_sensitivities_ = false, has_sensitivity_ = false;
   std::vector<char> filled_;  // workspace of plan
 };
 

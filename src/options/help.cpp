@@ -5,6 +5,7 @@
 
 #include "help_groups.hpp"
 #include "options/other_names.hpp"
+#include "options/vehicle_library.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::options {
@@ -125,9 +126,10 @@ std::vector<HelpGroup> help_groups() {
 std::string help_text(const std::string& about) {
   if (about.empty()) return everything();
   const std::string wanted = own_name(as_name(about.substr(std::min(about.find_first_not_of('-'), about.size()))));
+  if (wanted == "vehicles") return vehicle_library();
   const std::vector<HelpGroup> groups = help_groups();
   std::string names, out;
-  std::vector<std::string> candidates = {"integrators"};
+  std::vector<std::string> candidates = {"integrators", "vehicles"};
   for (const std::string_view name : {std::string_view(wanted), group_of(wanted)})
     for (const HelpGroup& group : groups)
       if (out.empty() && group.name == name) append(group, out);
@@ -145,7 +147,8 @@ std::string help_text(const std::string& about) {
   if (!out.empty()) return out.substr(1);  // without the leading newline
   const std::string near = nearest(wanted, candidates);
   throw InputError(
-      fmt::format("help = {}: not an option or a group of options{}; allowed: {}integrators, man, bash, or an option",
+      fmt::format("help = {}: not an option or a group of options{}; allowed: {}integrators, vehicles, man, bash, "
+                  "or an option",
                   about, near.empty() ? "" : fmt::format("; did you mean {}?", near), names));
 }
 

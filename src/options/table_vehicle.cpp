@@ -24,6 +24,10 @@ constexpr Row vehicle[] = {
   {"drivers", texts, "", "", any, "", 0, "names of the prescribed motions"},
   {"contacts", texts, "", "", any, "", 0, "names of the contacts between bodies"},
   {"sensors", texts, "", "", any, "", 0, "names of the points on bodies whose accelerations are stored"},
+  {"repeat_parts", texts, "", "", any, "", 0, "parts that stand for PART0, PART1, ...; of repeated bodies, BODY+1 is the next one, and a part without it is left out"},
+  {"repeat_count", integer, "", "", {1, 10000}, "", 0, "how often these parts are repeated"},
+  {"repeat_pitch", numbers, "m", "0, 0", any, "", 2, "x, y from each repetition to the next"},
+  {"repeat_delay", number, "s", "0", any, "", 0, "by how much later the table of a repeated actuator is from each repetition to the next"},
 };
 
 constexpr Row body[] = {
@@ -87,6 +91,7 @@ constexpr Row actuator[] = {
   {"force", numbers, "N", "0, 0", any, "", 2, "fx, fy at the centre of mass"},
   {"moment", number, "Nm", "0", any, "", 0, "moment, positive counter-clockwise"},
   {"table", file, "", "", any, "", 0, "a file t,moment or t,fx,fy or t,fx,fy,moment instead; linear between its rows"},
+  {"delay", number, "s", "0", any, "", 0, "time by which the table is later"},
 };
 
 constexpr Row driver[] = {

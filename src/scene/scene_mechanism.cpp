@@ -176,6 +176,7 @@ void VehicleReader::actuator_table(multibody::Actuator& a) const {
       action[first + i - 1] = base::TimeFunction::piecewise_linear(columns[0], columns[i]);
     return action;
   });
+  for (base::TimeFunction& action : a.action) action.delay(number("delay"));
 }
 
 void VehicleReader::actuator(const std::string& name) {
@@ -194,6 +195,7 @@ void VehicleReader::actuator(const std::string& name) {
     if (has("force") || has("moment")) o_.refuse(key("table"), "give either a table or force and moment");
     actuator_table(a);
   } else {
+    if (has("delay")) o_.refuse(key("delay"), "needs a table");
     if (!has("force") && !has("moment")) o_.refuse(key("force"), "missing: an actuator needs force, moment or table");
     const Vector2d force = vector("force");
     a.action = {base::TimeFunction(force.x(), 0.0), base::TimeFunction(force.y(), 0.0),

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "options/read_file.hpp"
+#include "repeated_parts.hpp"
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 
@@ -44,8 +45,7 @@ void declare_parts(Options& o, const std::string& prefix) {
   for (int kind = 0; kind < options::part_kinds; ++kind) {
     const Part part = static_cast<Part>(kind);
     const std::string list = prefix + std::string(options::part_list(part));
-    if (!o.has(list)) continue;
-    for (const std::string& name : o.texts(list)) {
+    for (const std::string& name : part_names(o, prefix, part)) {
       if (!is_word(name) || name == "ground" || options::find_row(options::vehicle_rows(), name) != nullptr) {
         o.refuse(list, fmt::format("'{}' cannot be a part's name; allowed: a word of letters, digits and _", name));
       }
@@ -66,6 +66,7 @@ void declare_vehicle(Options& o, const std::string& name) {
   const std::string prefix = "vehicle_" + name + "_";
   for (const options::Row& row : options::vehicle_rows()) o.declare(prefix + std::string(row.name), row);
   if (o.has(prefix + "file")) add_file(o, prefix);
+  add_repeated_parts(o, prefix);
   declare_parts(o, prefix);
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "repeated_parts.hpp"
 #include "scene_parts.hpp"
 
 namespace traverse::app {
@@ -29,7 +30,7 @@ class VehicleReader {
   Vehicle read() {
     vehicle_.mechanism.gravity = o_.number("gravity");
     if (!o_.has(prefix_ + "bodies")) o_.refuse(prefix_ + "bodies", "a vehicle needs at least one body");
-    bodies_ = o_.texts(prefix_ + "bodies");
+    bodies_ = part_names(o_, prefix_, options::Part::body);
     for (const std::string& name : bodies_) body(name);
     each(options::Part::joint, [this](const std::string& name) { joint(name); });
     each(options::Part::spring, [this](const std::string& name) { spring(name); });
@@ -45,9 +46,7 @@ class VehicleReader {
  private:
   template <class Read>
   void each(options::Part part, Read&& read) {
-    const std::string list = prefix_ + std::string(options::part_list(part));
-    if (!o_.has(list)) return;
-    for (const std::string& name : o_.texts(list)) {
+    for (const std::string& name : part_names(o_, prefix_, part)) {
       part_ = prefix_ + name + "_";
       read(name);
     }

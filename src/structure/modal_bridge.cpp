@@ -14,7 +14,7 @@ namespace traverse::structure {
 namespace {
 
 using base::check;
-constexpr double negligible = 1e-6;  // damping between two modes over the geometric mean of their own
+constexpr double negligible_damping = 1e-6;  // damping between two modes over the geometric mean of their own
 
 base::Handle<Vec> vector(MPI_Comm comm, const double* local, int size) {
   base::Handle<Vec> v;
@@ -97,7 +97,7 @@ void ModalBridge::set_damping(const std::vector<double>& ratios) {
     root[k] = std::sqrt(std::abs(2.0 * sigma_.back()));
   }
   damping.diagonal().setZero();
-  if ((damping.array().abs() > negligible * (root * root.transpose()).array()).any())
+  if ((damping.array().abs() > negligible_damping * (root * root.transpose()).array()).any())
     cross_damping_ = 0.5 * (damping + damping.transpose());
 }
 
@@ -111,7 +111,7 @@ void ModalBridge::set_forces_on_others(const Eigen::MatrixXd& forces, const Eige
   squares.row(0) = others.colwise().squaredNorm();
   squares.row(1) = forces.colwise().squaredNorm();
   MPI_Allreduce(MPI_IN_PLACE, squares.data(), static_cast<int>(squares.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
-  if ((squares.row(0) > negligible * negligible * squares.row(1)).any()) forces_on_others_ = std::move(others);
+  if ((squares.row(0) > negligible_damping * negligible_damping * squares.row(1)).any()) forces_on_others_ = std::move(others);
 }
 
 void ModalBridge::add_forces_on_others(const double* rates, double* nodal) const {

@@ -27,7 +27,7 @@ struct MovingVehicle {
   int freedom() const { return mechanism.freedom(); }
   /// From an error of p'' at the end of a step and p'' itself (freedom values each): the root mean square of the errors
   /// of its masses' accelerations, over gravity plus these accelerations.
-  double step_error(const double* error_of_pdd, const double* pdd) const;
+  double step_error(const double* error_of_pdd, const double* pdd);
   multibody::Mechanism mechanism;
   multibody::MechanismState state;
   AnyDynamics dynamics;
@@ -200,7 +200,7 @@ class Fleet {
   std::vector<std::string> partition(double t);
 
   /// Whether the independent coordinates of a vehicle of this rank may be badly conditioned.
-  bool badly_conditioned() const;
+  bool badly_conditioned();
   /// Accepts the states of this rank's vehicles, which were just evaluated. Replaces badly conditioned independent
   /// coordinates: then the result is true, and assign_coordinates() must follow.
   bool accept();

@@ -14,20 +14,16 @@ constexpr double most_displacement = 100.0;  // m: bodies with larger displaceme
 
 }  // namespace
 
-double MovingVehicle::step_error(const double* error_of_pdd, const double* pdd) const {
-  const Eigen::MatrixXd& B = state.B;
+double MovingVehicle::step_error(const double* error_of_pdd, const double* pdd) {
   const Eigen::VectorXd& mass = mechanism.mass_diagonal();
-  double error = 0.0, motion = 0.0, total = 0.0;  // sums of masses times squares of accelerations; kg
-  for (Eigen::Index i = 0; i < mass.size(); ++i) {
-    double a_error = 0.0, a = 0.0;
-    for (Eigen::Index k = 0; k < B.cols(); ++k) {
-      a_error += B(i, k) * error_of_pdd[k];
-      a += B(i, k) * pdd[k];
-    }
-    error += mass[i] * a_error * a_error;
-    motion += mass[i] * a * a;
-    if (i % 3 == 0) total += mass[i];
-  }
+  const auto sum = [&](const double* of_p) {  // masses times squares of the accelerations B of_p
+    state.work.setZero();
+    state.dependent_block.expand(of_p, state.work);
+    return mass.dot(state.work.cwiseAbs2());
+  };
+  const double error = sum(error_of_pdd), motion = sum(pdd);
+  double total = 0.0;  // kg
+  for (Eigen::Index i = 0; i < mass.size(); i += 3) total += mass[i];
   return std::sqrt(error * total) / (scale + std::sqrt(motion * total));
 }
 

@@ -64,6 +64,7 @@ LinearDynamics::LinearDynamics(MovingVehicle& vehicle, const double* cruise) {
   for (int i = 0; i < f; ++i) p0_[i] = state.q[mechanism.partition().independent[static_cast<std::size_t>(i)]];
   for (Eigen::VectorXd* x : {&x_, &xd_, &xdd_, &force_, &R_}) x->setZero(f);
   q0_ = state.q;
+  mechanism.compute_B(state);
   B_ = state.B;
   u_ = B_ * c_ + state.b;
   drives_ = !mechanism.model().drivers.empty();

@@ -44,7 +44,7 @@ class LinearDynamics : public VehicleDynamics {
   multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const override;
   bool observe(MovingVehicle& vehicle, const double* pdd) override;
   double linearisation_residual() const override { return linearisation_residual_; }
-  bool badly_conditioned(const MovingVehicle&) const override { return false; }
+  bool badly_conditioned(MovingVehicle&) const override { return false; }
   bool accept(MovingVehicle&) override { return false; }
 
   bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;

@@ -80,13 +80,16 @@ void MultibodyDynamics::compute_J(MovingVehicle& vehicle, const StageShifts& shi
 
 void MultibodyDynamics::renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
                               ContactCompliance& compliance) {
-  const multibody::MechanismState& state = vehicle.state;
+  multibody::MechanismState& state = vehicle.state;
   const bool has_friction = vehicle.mechanism.has_friction(), constrained = vehicle.mechanism.constraints() > 0;
-  compute_J(vehicle, shifts, (curved || has_friction) && constrained);
   curved_ = curved || has_friction || !constrained;
   shifts_ = shifts;
   partition_version_ = state.partition_version;
-
+  is_augmented_ = state.dependent_block.many_sensitivities() && !has_friction && !shifts.statics() &&
+                  augmented_.renew(vehicle, shifts, curved ? pdd_.data() : nullptr, rows, compliance);
+  if (is_augmented_) return;
+  vehicle.mechanism.compute_B(state);
+  compute_J(vehicle, shifts, (curved || has_friction) && constrained);
   if (has_friction) {
     all_columns_.assign(state.columns.size(), {0, vehicle.freedom()});
     VehicleNewton::multiply_directions(rows, all_columns_, projector_, projected_);

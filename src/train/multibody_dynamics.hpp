@@ -2,6 +2,7 @@
 // little: the matrices derived from it are reused in later stages and steps.
 #pragma once
 
+#include "augmented_newton.hpp"
 #include "train/fleet.hpp"
 #include "vehicle_newton.hpp"
 
@@ -22,7 +23,7 @@ class MultibodyDynamics : public VehicleDynamics {
     return vehicle.mechanism.energy(vehicle.state);
   }
   bool observe(MovingVehicle&, const double*) override { return false; }
-  bool badly_conditioned(const MovingVehicle& vehicle) const override {
+  bool badly_conditioned(MovingVehicle& vehicle) const override {
     return vehicle.mechanism.badly_conditioned(vehicle.state);
   }
   bool accept(MovingVehicle& vehicle) override;
@@ -32,22 +33,26 @@ class MultibodyDynamics : public VehicleDynamics {
   void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
              ContactCompliance& compliance) override;
   void compute_free_displacement(ContactCompliance& compliance) override {
-    newton_.compute_free_displacement(R_, compliance);
+    is_augmented_ ? augmented_.compute_free_displacement(R_, compliance)
+                  : newton_.compute_free_displacement(R_, compliance);
   }
   void clear_residual() override { R_.setZero(); }
   const Eigen::VectorXd& coordinate_change(const Eigen::VectorXd& forces) override {
-    return newton_.coordinate_change(forces);
+    return is_augmented_ ? augmented_.coordinate_change(forces) : newton_.coordinate_change(forces);
   }
-  void keep(base::Bytes& bytes) override { bytes(newton_, shifts_, partition_version_, curved_, R_, pdd_); }
+  void keep(base::Bytes& bytes) override {
+    bytes(newton_, augmented_, shifts_, partition_version_, curved_, is_augmented_, R_, pdd_);
+  }
 
  private:
   void compute_J(MovingVehicle& vehicle, const StageShifts& shifts, bool curved);
 
   // reused in later stages and steps
   VehicleNewton newton_;
-  StageShifts shifts_;  // shifts of the stage for which J was computed; 0: none
+  AugmentedNewton augmented_;  // in its place where B has many entries
+  StageShifts shifts_;         // shifts of the stage for which J was computed; 0: none
   int partition_version_ = 0;
-  bool curved_ = false;
+  bool curved_ = false, is_augmented_ = false;
 
   Eigen::VectorXd R_, r_;
   Eigen::VectorXd pdd_;  // p'' of the last residual

@@ -111,7 +111,7 @@ class VehicleDynamics {
   virtual double linearisation_residual() const { return 0.0; }
 
   /// Whether the independent coordinates may be badly conditioned.
-  virtual bool badly_conditioned(const MovingVehicle& vehicle) const = 0;
+  virtual bool badly_conditioned(MovingVehicle& vehicle) const = 0;
   /// Accepts the state, which was just evaluated. True if independent coordinates were replaced.
   virtual bool accept(MovingVehicle& vehicle) = 0;
 

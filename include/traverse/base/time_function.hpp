@@ -38,6 +38,8 @@ class TimeFunction {
   void reverse();
   /// Adds a constant to the value at all times.
   void shift(double offset);
+  /// Moves a table to later times by `time` (s).
+  void delay(double time);
 
  private:
   double value_ = 0.0;

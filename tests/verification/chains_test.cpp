@@ -1,0 +1,115 @@
+// Long chains of bodies, whose equations are solved in their sparse form: a hanging chain against an own integration,
+// the chain of an escalator against the closed form of a polygon drive, and the same motion by another formulation.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "support/curve.hpp"
+#include "support/scene_run.hpp"
+
+namespace traverse::test {
+namespace {
+
+constexpr int links = 40;
+constexpr double mass = 2.0, length = 0.3, gravity = 9.81;  // kg, m, m/s2 of a rod
+
+/// Rods hinged to one another and to the ground, whose angles from the vertical and rates are x.
+Eigen::VectorXd rates_of_rods(const Eigen::VectorXd& x) {
+  Eigen::MatrixXd M(links, links);
+  Eigen::VectorXd force(links);
+  for (int i = 0; i < links; ++i) {
+    double sum = 0.0;
+    for (int j = 0; j < links; ++j) {
+      const double below = links - 1 - std::max(i, j);  // rods that hang on both
+      const double inertia = i == j ? below + 1.0 / 3.0 : below + 0.5;
+      M(i, j) = mass * length * length * inertia * std::cos(x[i] - x[j]);
+      sum += mass * length * length * inertia * std::sin(x[i] - x[j]) * x[links + j] * x[links + j];
+    }
+    force[i] = -sum - mass * gravity * length * (links - 1 - i + 0.5) * std::sin(x[i]);
+  }
+  Eigen::VectorXd rate(2 * links);
+  rate << x.tail(links), M.ldlt().solve(force);
+  return rate;
+}
+
+/// The chain's end after `time`, from a straight line at 0.6 rad; by the classical method of Runge and Kutta.
+Eigen::Vector2d end_of_rods(double time, int steps) {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * links);
+  x.head(links).setConstant(0.6);
+  const double h = time / steps;
+  for (int i = 0; i < steps; ++i) {
+    const Eigen::VectorXd a = rates_of_rods(x), b = rates_of_rods(x + 0.5 * h * a), c = rates_of_rods(x + 0.5 * h * b),
+                          d = rates_of_rods(x + h * c);
+    x += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
+  }
+  Eigen::Vector2d end = Eigen::Vector2d::Zero();
+  for (int i = 0; i < links; ++i) end += length * Eigen::Vector2d(std::sin(x[i]), -std::cos(x[i]));
+  return end;
+}
+
+TEST(Chains, HangingChain) {
+  const double s = std::sin(0.6), c = std::cos(0.6);
+  const std::string pitch = text(length * s) + ", " + text(-length * c);
+  Results run = run_yaml(
+      "scene: {start: given}\nvehicle:\n  chain:\n    bodies: [rod]\n    joints: [top, pin]\n    sensors: [end]\n"
+      "    repeat: {parts: [rod, pin], count: 40, pitch: [" +
+      pitch + "]}\n    rod: {mass: 2.0, inertia: 0.015, angle: 0.6, position: [" + text(0.5 * length * s) + ", " +
+      text(-0.5 * length * c) + "]}\n    top: {type: revolute, bodies: [ground, rod0], point: [0, 0]}\n" +
+      "    pin: {type: revolute, bodies: [rod, rod+1], point: [" + pitch + "]}\n    end: {body: rod39}\n" +
+      "ts: {type: esdirk4, dt: 2.0e-3, max_time: 1.5}\noutput: {interval: 1.5}\n");
+  const std::vector<double> place = run("/vehicles/0/rod39/position");  // of the centre of mass of the last rod
+  const double angle = place[5];
+  const Eigen::Vector2d end(place[3] + 0.5 * length * std::sin(angle), place[4] - 0.5 * length * std::cos(angle));
+  const Eigen::Vector2d exact = end_of_rods(1.5, 3000);
+  EXPECT_LT((end_of_rods(1.5, 1500) - exact).norm(), 1e-7);  // the integration is exact enough
+  EXPECT_LT((end - exact).norm(), 2e-6);
+  EXPECT_LT(energy_error(run), 1e-8);
+}
+
+/// The chain of options/scenes/escalator_chain.yml, with the mass of the steps at the height of their axles, so that
+/// the jerks do not turn the steps.
+Results escalator_chain(const std::string& count) {
+  return run_scene("escalator_chain",
+                   {{"vehicle_stairs_step_position", "-0.15,0.05"}, {"vehicle_stairs_repeat_count", count}});
+}
+
+// Each link pulls the steps behind it: T = M (g sin(a) + dv/dt), with the slope of v between two rows of the table.
+TEST(Chains, PolygonDrive) {
+  Results run = escalator_chain("20");
+  constexpr double teeth = 16.0, pitch = 0.4 / 3.0, speed = 0.5, period = pitch / speed, piece = period / 8.0;
+  const double omega = 2.0 * std::numbers::pi / (teeth * period);
+  const double radius = 0.5 * pitch / std::sin(std::numbers::pi / teeth);
+  const auto v = [&](double t) { return omega * radius * std::cos(omega * t - std::numbers::pi / teeth); };
+  const double along = gravity * 0.57735 / std::hypot(1.0, 0.57735);
+  const std::vector<double> time = run.time();
+  int jerks = 0;
+  for (const int link : {0, 7, 18}) {
+    const std::vector<double> reaction = run("/vehicles/0/link" + std::to_string(link) + "/reaction");
+    const double behind = 24.0 * (19 - link);
+    for (std::size_t i = 1; i < time.size(); ++i) {
+      const double within = std::fmod(time[i], period);
+      const double start = piece * std::floor(within / piece);
+      if (within - start < 1e-6 || start + piece - within < 1e-6) continue;  // the acceleration jumps here
+      const double acceleration = (v(start + piece) - v(start)) / piece;
+      EXPECT_NEAR(reaction[3 * i], behind * (along + acceleration), 1e-5 * behind * along) << time[i];
+      if (acceleration < -0.1) ++jerks;
+    }
+  }
+  EXPECT_GT(jerks, 10);
+  EXPECT_LT(energy_error(run), 1e-6);
+}
+
+// Twenty steps are few enough for the projected matrices, thirty are not: the rear of both chains moves alike.
+TEST(Chains, SparseAndProjectedEquationsAgree) {
+  Results few = escalator_chain("8"), many = escalator_chain("40");
+  const std::vector<double> one = few("/vehicles/0/link2/reaction"), other = many("/vehicles/0/link34/reaction");
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); i += 3) EXPECT_NEAR(one[i], other[i], 1e-6 * std::abs(one[0]));
+}
+
+}  // namespace
+}  // namespace traverse::test
