@@ -22,8 +22,8 @@ ContactEventLocator::ContactEventLocator(const System& system, const train::Chan
   if (!change.gain && !change.hidden && to - change.time <= time_tolerance_) found_ = true;
 }
 
-const contact::Kinematics& ContactEventLocator::current_kinematics() const {
-  return system_.fleet().kinematics(change_.contact);
+contact::Kinematics ContactEventLocator::current_kinematics() const {
+  return system_.fleet().event_kinematics(change_.contact);
 }
 
 double ContactEventLocator::trial() {

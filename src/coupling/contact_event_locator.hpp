@@ -21,7 +21,7 @@ class ContactEventLocator {
   double end() const;
 
  private:
-  const contact::Kinematics& current_kinematics() const;
+  contact::Kinematics current_kinematics() const;
   double nearest() const;
   void end_at(double end);
 

@@ -57,6 +57,7 @@ void ContactEvents::record_impacts(double t) {
   bool any = false;
   for (int i = 0; i < fleet_.contacts(); ++i) {
     train::Contact& c = fleet_.contact(i);
+    if (c.law.kind == contact::LawKind::two_sided) continue;  // it has no impacts
     if (separations_.touching(i) && !separations_.just_closed(i)) continue;
     c.approach_speed = std::max(c.kinematics.penetration_rate, 0.0);
     impacts_[i] = {};

@@ -39,7 +39,7 @@ struct Line {
       return;
     }
     const bool zero_length_spring = s.preload == 0.0 && s.reference_length <= shortest;
-    const double elongation_rate = u.dot(rate);
+    const double elongation_rate = u.dot(rate) - s.reference_rate;
     dissipation = s.damping * elongation_rate * elongation_rate;
     if (length > shortest) {
       force_per_length = (elastic + s.damping * elongation_rate) / length;
@@ -49,7 +49,7 @@ struct Line {
   }
   /// Sets tension and tangents by the law of the spring.
   void apply_law(const SpringGeometry& s) {
-    const Tension t = tension(*s.law, length - s.reference_length, u.dot(rate));
+    const Tension t = tension(*s.law, length - s.reference_length, u.dot(rate) - s.reference_rate);
     stiffness = t.by_elongation;
     damping = t.by_rate;
     dissipation = t.dissipation;
@@ -91,6 +91,7 @@ SpringGeometry spring_geometry(const Spring& spring, const Frame& first, const F
   } else {
     s.preload = spring.preload.value_or(0.0);
   }
+  if (spring.winding) s.winding = std::make_shared<const base::TimeFunction>(*spring.winding);
   return s;
 }
 

@@ -24,8 +24,18 @@ struct SpringGeometry {
   double damping = 0.0;                                  // N s/m
   double reference_length = 0.0;                         // m
   double preload = 0.0;                                  // N, at the reference length
+  double reference_rate = 0.0;                           // m/s, of the reference length
   std::shared_ptr<const ForceLaw> law;                   // null: linear
+  std::shared_ptr<const base::TimeFunction> winding;     // null: the reference length is constant
 };
+
+/// The spring with its reference length and its rate at time t.
+inline SpringGeometry wound(const SpringGeometry& spring, double t) {
+  SpringGeometry at = spring;
+  at.reference_length += spring.winding->value(t);
+  at.reference_rate = spring.winding->rate(t);
+  return at;
+}
 
 struct TorsionGeometry {
   int first = ground;

@@ -4,6 +4,16 @@
 
 namespace traverse::multibody {
 
+namespace {
+
+/// Calls use(spring) with the free length at time t.
+template <class Use>
+auto at_time(const SpringGeometry& spring, double t, Use use) {
+  return spring.winding == nullptr ? use(spring) : use(wound(spring, t));
+}
+
+}  // namespace
+
 void Mechanism::compute_forces(MechanismState& s) const {
   s.g.setZero();
   s.dissipation = 0.0;
@@ -12,8 +22,9 @@ void Mechanism::compute_forces(MechanismState& s) const {
     s.g[i - 1] = model_.gradient * s.g[i];
   }
   for (const SpringGeometry& spring : springs_) {
-    const PairForce force =
-        multibody::spring_force(spring, frame(s, spring.first), frame(s, spring.second), s.dissipation);
+    const PairForce force = at_time(spring, s.time, [&](const SpringGeometry& now) {
+      return multibody::spring_force(now, frame(s, spring.first), frame(s, spring.second), s.dissipation);
+    });
     if (spring.first != ground) s.g.segment<3>(3 * spring.first) += force.head<3>();
     if (spring.second != ground) s.g.segment<3>(3 * spring.second) += force.tail<3>();
   }
@@ -59,7 +70,9 @@ template <class Add>
 void Mechanism::each_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda, Add add) const {
   PairMatrix K, g_qd;
   for (const SpringGeometry& spring : springs_) {
-    spring_derivatives(spring, frame(s, spring.first), frame(s, spring.second), K, g_qd);
+    at_time(spring, s.time, [&](const SpringGeometry& now) {
+      spring_derivatives(now, frame(s, spring.first), frame(s, spring.second), K, g_qd);
+    });
     K = by_q * K + by_qd * g_qd;
     add(spring.first, spring.second, K);
   }
@@ -116,7 +129,9 @@ bool Mechanism::factor_augmented(const MechanismState& s, double by_mass, double
 
 double Mechanism::spring_tension(const MechanismState& s, int k) const {
   const SpringGeometry& spring = springs_[k];
-  return multibody::spring_tension(spring, frame(s, spring.first), frame(s, spring.second));
+  return at_time(spring, s.time, [&](const SpringGeometry& now) {
+    return multibody::spring_tension(now, frame(s, spring.first), frame(s, spring.second));
+  });
 }
 
 double Mechanism::torsion_spring_moment(const MechanismState& s, int k) const {
@@ -130,7 +145,9 @@ MechanismEnergy Mechanism::energy(const MechanismState& s) const {
   for (int i = 1; i < s.q.size(); i += 3)
     e.potential += mass_[i] * model_.gravity * (s.q[i] + model_.gradient * s.q[i - 1]);
   for (const SpringGeometry& spring : springs_) {
-    e.strain += spring_strain_energy(spring, frame(s, spring.first), frame(s, spring.second));
+    e.strain += at_time(spring, s.time, [&](const SpringGeometry& now) {
+      return spring_strain_energy(now, frame(s, spring.first), frame(s, spring.second));
+    });
   }
   for (const TorsionGeometry& spring : torsion_springs_) {
     e.strain += torsion_strain_energy(spring, frame(s, spring.first), frame(s, spring.second));
@@ -148,6 +165,9 @@ MechanismPowers Mechanism::powers(const MechanismState& s) const {
       e.work += actuator.action[c].value(s.time) * rate;
     }
   }
+  for (std::size_t k = 0; k < springs_.size(); ++k)
+    if (springs_[k].winding != nullptr)
+      e.work -= spring_tension(s, static_cast<int>(k)) * springs_[k].winding->rate(s.time);
   if (applied_.size() > 0) e.work += applied_.dot(s.qd);
   for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
     e.work += driver_force(s, static_cast<int>(k)) * model_.drivers[k].value.rate(s.time);

@@ -50,6 +50,7 @@ constexpr Row spring[] = {
   {"damper_table", file, "", "", any, "", 0, "a file rate,force instead of damping: m/s of elongation, N in tension; linear between and beyond its rows"},
   {"gap", number, "m", "0", not_negative, "", 0, "play: no force up to this change of length in either direction; stiffness or table begin there"},
   {"side", choice, "", "both", any, "both compression tension", 0, "compression: no tensile force (a bump stop); tension: no compressive force (a rope)"},
+  {"winding_table", file, "", "", any, "", 0, "a file t,length: m that a winch adds to the free length, negative where it hoists; natural cubic spline through its rows"},
 };
 
 constexpr Row torsion_spring[] = {

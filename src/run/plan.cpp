@@ -18,7 +18,7 @@ constexpr double samples_per_first_period = 10.0;  // smallest number of samples
 constexpr double mechanism_step = 1e-3;            // s, without a beam
 constexpr double min_steps_per_span = 10.0;
 constexpr double max_steps = 1e10;
-constexpr double max_stored_samples = 2000.0;  // largest number, if the interval is open
+constexpr double samples_of_open_interval = 2000.0;  // largest number, if the interval is open
 constexpr double end_tolerance =
     1e-3;  // relative to the step: an end so close to a multiple of the interval is moved there
 
@@ -170,7 +170,8 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
-    const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / max_stored_samples)));
+    const long steps =
+        static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / samples_of_open_interval)));
     plan.stored = scene.model.step_probes ? steps : samples_among(steps, plan.time_step, sampling_interval);
     plan.interval = plan.time_step * static_cast<double>(steps) / static_cast<double>(plan.stored);
   }

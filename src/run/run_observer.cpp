@@ -54,6 +54,7 @@ RunObserver::RunObserver(const Scene& scene, coupling::System& system, const bea
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
   const double lag = beam != nullptr && scene.model.modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
+  exits_ = ExitStates(scene);
   peaks_ = peaks_for(scene, wheel_count_, lag);
   wheels_ = WheelExtremes(wheel_count_, system.surface_kinks());
 }
@@ -81,6 +82,7 @@ void RunObserver::sample(const integrate::Instant& instant) {
   record_largest_deflection();
   if (limit_check_) limit_check_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
+  exits_.add(instant.time, system_.fleet(), now_.probes);
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
   if (stored) store(instant.purpose == integrate::Purpose::end);
 }
@@ -246,7 +248,7 @@ void RunObserver::keep(base::Archive& archive) {
                now_.probes, largest_deflection_value_);
   if (lag_) archive.same(*lag_);
   if (limit_check_) archive.same(*limit_check_);
-  archive.same(axle_passages_);
+  archive.same(axle_passages_, exits_);
   // The first rank only stores the deck's accelerations.
   deck_ ? archive.same(*deck_) : archive.same();
   filtered_wheels_ ? archive.same(*filtered_wheels_) : archive.same();
@@ -283,6 +285,10 @@ results::Summary RunObserver::finish() {
   if (!axle_passages_.empty()) {
     recorder_.datasets(axle_passages_.datasets());
     recorder_.tables({{"/passages/wheel", axle_passages_.wheels(system_.fleet())}});
+  }
+  if (!exits_.empty()) {
+    recorder_.datasets(exits_.datasets());
+    recorder_.tables({{"/exit/body", exits_.bodies(system_.fleet())}});
   }
   if (deck_) {
     summary_.low_passed = deck_->peak();

@@ -14,6 +14,7 @@
 #include "run/axle_load_records.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/deflected_shape.hpp"
+#include "run/exit_states.hpp"
 #include "run/extrapolation_check.hpp"
 #include "run/limit_check.hpp"
 #include "run/outputs.hpp"
@@ -105,6 +106,7 @@ class RunObserver {
   WheelExtremes wheels_;
   std::optional<FilteredWheels> filtered_wheels_;
   AxleLoadRecords axle_passages_;
+  ExitStates exits_;
   train::WheelPaths paths_;  // if wheels may change their distances
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;

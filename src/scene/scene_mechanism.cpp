@@ -151,7 +151,19 @@ void VehicleReader::spring(const std::string& name) {
     o_.refuse(key("preload"),
               "allowed: a force that the spring has at exactly one elongation, or " + key("free_length"));
   }
+  if (has("winding_table")) winding(s);
   vehicle_.mechanism.springs.push_back(s);
+}
+
+/// Reads the length that a winch adds to a spring.
+void VehicleReader::winding(multibody::Spring& s) const {
+  if (s.preload) o_.refuse(key("preload"), "with a winding_table give " + key("free_length"));
+  s.winding = from_table("winding_table", 2, 2, [&](const auto& columns) {
+    const double length = s.free_length.value_or((s.to - s.from).norm());
+    for (const double change : columns[1])
+      if (!(length + change > 0.0)) throw InputError(fmt::format("the free length {:g} m would not be positive", length + change));
+    return base::TimeFunction(columns[0], columns[1]);
+  });
 }
 
 void VehicleReader::torsion_spring(const std::string& name) {

@@ -98,6 +98,7 @@ class VehicleReader {
   std::optional<multibody::ForceLaw> force_law() const;
   void check_spring_given(std::string_view kind) const;
   void spring(const std::string& name);
+  void winding(multibody::Spring& s) const;
   void torsion_spring(const std::string& name);
   void wheel(const std::string& name);
   contact::Law law(double radius, const std::string& other) const;

@@ -245,6 +245,9 @@ class Fleet {
   /// The further points of a wheel belong to its first entry.
   bool touches(int contact) const;
   const contact::Kinematics& kinematics(int contact) const;
+  /// What the opening and closing of a contact are located by: its kinematics. A guided wheel (law two_sided) keeps its
+  /// contact until it passes an end of the beam without a surface beyond: its penetration is the distance to that end.
+  contact::Kinematics event_kinematics(int contact) const;
   /// Whether the contact is one of several possible points of a wheel at its position.
   bool has_points(int contact) const;
   bool has_points(const WheelContact& c) const;
@@ -277,6 +280,7 @@ class Fleet {
   bool touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find);
   bool touch_points(WheelContact& c, int per_node, const double* v, const double* w);
   void clear_touch(WheelContact& c) const;
+  bool has_left_guide(const WheelContact& c) const;
   WheelContact& point(const WheelContact& first, int i) {
     return i == 0 ? wheels[index(first)] : further_entry(first, i - 1);
   }

@@ -190,6 +190,15 @@ const contact::Kinematics& Fleet::kinematics(int i) const {
   return *deepest;
 }
 
+contact::Kinematics Fleet::event_kinematics(int i) const {
+  const auto k = static_cast<std::size_t>(i);
+  if (k >= wheels.size() || contact(i).law.kind != contact::LawKind::two_sided) return kinematics(i);
+  const double x = coordinates(wheels[k]).x(), speed = velocities(wheels[k]).x();
+  if (mesh_ != nullptr && !mesh_->ground_behind() && speed >= 0.0) return {mesh_->end() - x, -speed, 0.0};
+  if (mesh_ != nullptr && !mesh_->ground_before() && speed <= 0.0) return {x - mesh_->start(), speed, 0.0};
+  return {1.0, 0.0, 0.0};
+}
+
 double Fleet::impact_duration(int i) {
   const Contact& c = contact(i);
   MovingVehicle& vehicle = vehicles[c.vehicle];

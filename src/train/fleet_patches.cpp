@@ -177,11 +177,23 @@ void Fleet::find_points(WheelContact& c) {
     unmodelled_contact_ = {static_cast<int>(index(c)), coordinates(c).x()};
 }
 
+// Whether a guided wheel is beyond an end of the beam without a surface there.
+bool Fleet::has_left_guide(const WheelContact& c) const {
+  const double x = coordinates(c).x();
+  return c.law.kind == contact::LawKind::two_sided &&
+         ((x > mesh_->end() && !mesh_->ground_behind()) || (x < mesh_->start() && !mesh_->ground_before()));
+}
+
 void Fleet::place_wheels() {
   elements_.clear();
   const bool ends = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
   for (WheelContact& c : wheels) {
     const double x = coordinates(c).x(), radius = wheel(c).radius, near = nearby * radius;
+    if (ends && has_left_guide(c)) {  // its last kinematics determine the elastic energy that is lost
+      c.candidates = c.active = 0;
+      c.slots = {-1, -1};
+      continue;
+    }
     if (ends && coordinates(c).y() < profile(c).at(x).value -
                                          radius)  // the wheel has fallen off the end: it is beside or below the beam
       c.candidates = 0;

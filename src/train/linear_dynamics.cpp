@@ -35,6 +35,7 @@ std::string LinearDynamics::obstacle(const MovingVehicle& vehicle) {
     if (!driver.value.straight()) return fmt::format("its driver '{}' changes its speed", driver.name);
   for (const multibody::Spring& spring : model.springs) {
     if (spring.law) return fmt::format("its spring '{}' follows a law that is not linear", spring.name);
+    if (spring.winding) return fmt::format("its spring '{}' is wound up or off", spring.name);
     if (spring.bodies[0] == multibody::ground || spring.bodies[1] == multibody::ground)
       return fmt::format("its spring '{}' is held by the ground", spring.name);
   }

@@ -71,9 +71,8 @@ std::optional<Change> Separations::change(const Fleet& fleet, double t,
   std::optional<Change> first;
   const double h = t - time_;
   for (int i = 0; i < fleet.contacts(); ++i) {
-    if (fleet.contact(i).law.kind == contact::LawKind::two_sided) continue;
     const ContactState& state = states_[i];
-    const contact::Kinematics& now = fleet.kinematics(i);
+    const contact::Kinematics now = fleet.event_kinematics(i);
     const bool gain = !state.touching && !(state.kinematics.penetration > 0.0);
     std::optional<Change> found;
     if (state.touching != fleet.touches(i)) {
@@ -101,7 +100,7 @@ void Separations::accept(const Fleet& fleet, double t) {
   for (int i = 0; i < fleet.contacts(); ++i) {
     ContactState& state = states_[i];
     const Contact& c = fleet.contact(i);
-    const contact::Kinematics& now = fleet.kinematics(i);
+    const contact::Kinematics now = fleet.event_kinematics(i);
     const bool touching = fleet.touches(i);
     state.just_closed = !first && touching && !state.touching;
     if (state.compressed_by >= 0) record_impact(fleet, i, t, state);

@@ -184,9 +184,12 @@ AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, d
       all.couplers.push_back({static_cast<int>(i), ends[0]->unit, part});
     }
   }
-  if (frozen)
-    for (Unit& unit : all.units)
-      for (multibody::Driver& d : unit.mechanism.drivers) d.value = frozen_function(d.value);
+  for (Unit& unit : all.units) {
+    if (!frozen) break;
+    for (multibody::Driver& d : unit.mechanism.drivers) d.value = frozen_function(d.value);
+    for (multibody::Spring& s : unit.mechanism.springs)
+      if (s.winding) s.winding = frozen_function(*s.winding);
+  }
   return all;
 }
 

@@ -69,6 +69,7 @@ struct Spring {
   std::optional<double> free_length;               // m
   std::optional<double> preload;                   // N
   std::optional<ForceLaw> law;                     // instead of stiffness and damping, over the elongation
+  std::optional<base::TimeFunction> winding;       // m, added to the free length over time: a rope on a winch
 };
 
 /// Moment on the second body = -stiffness*(phi_2 - phi_1 - free_angle) - damping*(rate), opposite on the first.

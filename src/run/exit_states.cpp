@@ -1,0 +1,132 @@
+// Finds the instant at which the last wheel of a vehicle passes an end, by the cubic through its positions and speeds.
+#include "run/exit_states.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace traverse::app {
+
+ExitStates::ExitStates(const Scene& scene) {
+  if (!scene.beam) return;
+  const beam::BeamModel& beam = *scene.beam;
+  double last = beam.start;
+  for (const double span : beam.spans) last += span;
+  const std::vector<double>& probes = scene.output.probes;
+  for (const bool right : {false, true}) {
+    if (beam.ground[right ? 1 : 0]) continue;
+    OpenEnd end{right ? last : beam.start, right ? 1.0 : -1.0, -1};
+    for (std::size_t i = 0; i < probes.size(); ++i)
+      if (std::abs(probes[i] - end.x) <= 1e-9 * (1.0 + std::abs(end.x))) end.probe = static_cast<int>(i);
+    ends_.push_back(end);
+  }
+}
+
+/// The cubic through both motions, h apart, at the share s of the time between them.
+ExitStates::Motion ExitStates::between(const Motion& a, const Motion& b, double h, double s) {
+  const double rise = b.value - a.value, c = 3.0 * rise - h * (2.0 * a.rate + b.rate),
+               d = h * (a.rate + b.rate) - 2.0 * rise;
+  if (h == 0.0) return b;
+  return {a.value + s * (h * a.rate + s * (c + s * d)), a.rate + s * (2.0 * c + s * 3.0 * d) / h};
+}
+
+/// The share of the time h since the last instant after which all wheels of a vehicle are beyond the end; above 1 if
+/// they are not.
+double ExitStates::share_before_exit(const OpenEnd& end, const train::Fleet& fleet, const train::Member& member,
+                                     double h) const {
+  constexpr double never = 2.0;
+  const train::MovingVehicle& vehicle = fleet.vehicles[member.unit];
+  std::size_t first = 0;  // of this vehicle's bodies in before_
+  for (int k = 0; k < member.unit; ++k) first += fleet.vehicles[k].mechanism.model().bodies.size();
+  double latest = member.type->wheels.empty() ? never : 0.0;
+  for (const train::Wheel& wheel : member.type->wheels) {
+    const int body = member.first_body + wheel.body;
+    const multibody::Frame& frame = vehicle.state.frames[static_cast<std::size_t>(body) + 1];
+    const Motion now{frame.origin.x(), frame.velocity.x()};
+    if (!(end.outward * (now.value - end.x) > 0.0)) return never;
+    const Motion& before = before_[first + static_cast<std::size_t>(body)][0];
+    if (end.outward * (before.value - end.x) > 0.0) continue;
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 60; ++i) {
+      const double s = 0.5 * (low + high);
+      (end.outward * (between(before, now, h, s).value - end.x) > 0.0 ? high : low) = s;
+    }
+    latest = std::max(latest, high);
+  }
+  return latest;
+}
+
+void ExitStates::add(double t, const train::Fleet& fleet, const std::vector<beam::Response>& probes) {
+  if (ends_.empty()) return;
+  std::vector<std::array<Motion, 3>> bodies;
+  for (const train::MovingVehicle& vehicle : fleet.vehicles)
+    for (std::size_t i = 1; i < vehicle.state.frames.size(); ++i) {
+      const multibody::Frame& f = vehicle.state.frames[i];
+      bodies.push_back({Motion{f.origin.x(), f.velocity.x()}, {f.origin.y(), f.velocity.y()}, {f.angle, f.omega}});
+    }
+  std::vector<Motion> tips;
+  for (const OpenEnd& end : ends_) {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    tips.push_back(end.probe < 0 ? Motion{unknown, unknown}
+                                 : Motion{probes[end.probe].deflection, probes[end.probe].velocity});
+  }
+  const bool first_instant = before_.empty();
+  if (first_instant) {
+    has_left_.assign(fleet.members.size(), 0);
+    before_ = bodies;
+    tips_before_ = tips;
+    time_before_ = t;
+  }
+  const double h = t - time_before_;
+  for (std::size_t m = 0; m < fleet.members.size(); ++m)
+    for (std::size_t e = 0; e < ends_.size() && !has_left_[m]; ++e) {
+      const train::Member& member = fleet.members[m];
+      const double s = share_before_exit(ends_[e], fleet, member, h);
+      if (s > 1.0) continue;
+      has_left_[m] = 1;
+      if (first_instant) continue;
+      std::size_t first = 0;
+      for (int k = 0; k < member.unit; ++k) first += fleet.vehicles[k].mechanism.model().bodies.size();
+      first += static_cast<std::size_t>(member.first_body);
+      for (std::size_t i = 0; i < member.type->mechanism.bodies.size(); ++i) {
+        Record record{time_before_ + s * h, static_cast<int>(m), static_cast<int>(i), {}, {}};
+        for (std::size_t c = 0; c < 3; ++c)
+          record.motion[c] = between(before_[first + i][c], bodies[first + i][c], h, s);
+        record.tip = between(tips_before_[e], tips[e], h, s);
+        records_.push_back(record);
+      }
+    }
+  before_.swap(bodies);
+  tips_before_.swap(tips);
+  time_before_ = t;
+}
+
+std::vector<results::Recorder::Dataset> ExitStates::datasets() const {
+  std::vector<double> time, position, velocity, tip, tip_velocity;
+  for (const Record& record : records_) {
+    time.push_back(record.time);
+    for (const Motion& m : record.motion) {
+      position.push_back(m.value);
+      velocity.push_back(m.rate);
+    }
+    tip.push_back(record.tip.value);
+    tip_velocity.push_back(record.tip.rate);
+  }
+  const std::size_t n = records_.size();
+  return {{"/exit/time", {n}, time, "s"},
+          {"/exit/position", {n, 3}, position, "m, m, rad"},
+          {"/exit/velocity", {n, 3}, velocity, "m/s, m/s, rad/s"},
+          {"/exit/tip_deflection", {n}, tip, "m"},
+          {"/exit/tip_velocity", {n}, tip_velocity, "m/s"}};
+}
+
+std::vector<std::pair<std::string, std::string>> ExitStates::bodies(const train::Fleet& fleet) const {
+  std::vector<std::pair<std::string, std::string>> rows;
+  for (const Record& record : records_)
+    rows.emplace_back(std::to_string(record.member), fleet.members[static_cast<std::size_t>(record.member)]
+                                                         .type->mechanism.bodies[static_cast<std::size_t>(record.body)]
+                                                         .name);
+  return rows;
+}
+
+}  // namespace traverse::app
