@@ -19,14 +19,14 @@ from matplotlib.transforms import blended_transform_factory  # noqa: E402
 import picture_hanging  # noqa: E402
 import picture_rail  # noqa: E402
 from picture_axes import (  # noqa: E402
-    COLOURS, GREY, LABEL_SIZE, PALE, STYLES, End, label_at_ends, time_panel)
+    COLOURS, GREY, LABEL_SIZE, PALE, STYLES, End, label_at_ends, legible, time_panel)
 from picture_data import (  # noqa: E402
     MOST_CURVES, MOST_TRAINS, Results, choose, choose_probes, ordinal, place_in_words)
 from picture_layout import fit, stack, wrapped  # noqa: E402
 from picture_model import Model, draw_forces, draw_foundation, draw_supports, symbols_in_words  # noqa: E402
 from picture_vehicles import (  # noqa: E402
-    SIGNALS, cars_of, draw_accelerations, draw_positions, draw_sensors, draw_static_wheels, draw_wheels, sensors_of,
-    wheels_of)
+    SIGNALS, cars_of, chains_of, draw_accelerations, draw_chains, draw_drives, draw_positions, draw_sensors,
+    draw_static_wheels, draw_wheels, drives_of, sensors_of, wheels_of)
 from picture_words import (  # noqa: E402
     method_in_words, modes_in_words, summary_in_words, sweep_in_words, worst_in_words)
 
@@ -116,6 +116,8 @@ def what_moves(results, forces):
 
 def draw_shape(ax, results):
     x, shape = results.values("shape/x"), 1e3 * results.values("shape/deflection")
+    unit, smaller = legible("mm", [shape])
+    shape, metres = smaller * shape, 1e-3 / smaller
     time = float(results.file["shape/deflection"].attrs["time"])
     low, high = x[0], x[-1]
     moved = x[np.abs(shape) > 0.03 * np.abs(shape).max()] if np.any(shape) else x
@@ -137,18 +139,18 @@ def draw_shape(ax, results):
     worst = int(np.argmax(np.abs(shape)))
     if np.any(shape):
         down = shape[worst] < 0.0
-        ax.annotate(worst_in_words(results, x[worst], 1e-3 * shape[worst]), xy=(x[worst], shape[worst]),
+        ax.annotate(worst_in_words(results, x[worst], metres * shape[worst]), xy=(x[worst], shape[worst]),
                     xytext=(0, -6 if down else 6), textcoords="offset points", ha="center",
                     va="top" if down else "bottom", color=COLOURS[0], fontsize=LABEL_SIZE)
     box = ax.get_position()
     width = box.width * ax.figure.get_figwidth()
-    scale = (np.ptp(ax.get_xlim()) / width) / (1e-3 * np.ptp(ax.get_ylim()) / (box.height * ax.figure.get_figheight()))
+    scale = (np.ptp(ax.get_xlim()) / width) / (metres * np.ptp(ax.get_ylim()) / (box.height * ax.figure.get_figheight()))
     ax.set_title(f"The bridge at its largest deflection, {time:.4g} s" if results.rows > 1 else "The bridge under its load")
     times = f"{float(f'{scale:.2g}'):,.0f}"
     listed = "".join(f"\n{symbol}" for symbol in symbols.split("    ") if symbol)
     said = f"Deflection is drawn\n{times} times too large.{listed}{note}"
     ax.text(1.035, 0.5, said, transform=ax.transAxes, va="center", fontsize=LABEL_SIZE, color=GREY, linespacing=1.4)
-    ax.set_ylabel("mm")
+    ax.set_ylabel(unit)
     ax.set_xlabel("place along the track (m)")
     return time
 
@@ -310,6 +312,9 @@ def panels(results, asked=()):
         found.append(lambda ax, worst: draw_shape(ax, results))
     wheels, cars, sensors = wheels_of(results), cars_of(results), sensors_of(results)
     hanging = picture_hanging.hanging_of(results) if results.rows > 1 else []
+    travelling = [one for one in hanging if one.travels]
+    if travelling and results.probes is not None:
+        found.append(lambda ax, worst: picture_hanging.draw_places(ax, results, travelling))
     if results.rows > 1 and "probes/deflection" in file and len(results.probes):
         found.append(lambda ax, worst: draw_deflection(ax, results, worst))
     found += asked_panels(results, asked)
@@ -318,6 +323,11 @@ def panels(results, asked=()):
         found.append(lambda ax, worst: drawing(ax, results, wheels))
     if hanging:
         found += [lambda ax, worst, what=what: picture_hanging.draw(ax, results, hanging, what) for what in ("swing", "force")]
+    chains, drives = chains_of(results), drives_of(results, [name for one in hanging for name in one.joint.split(" and ")])
+    if results.rows > 1 and chains:
+        found.append(lambda ax, worst: draw_chains(ax, results, chains))
+    if results.rows > 1 and drives:
+        found.append(lambda ax, worst: draw_drives(ax, results, drives))
     if results.rows > 1 and cars and not wheels and results.probes is None:
         found += [lambda ax, worst, direction=direction: draw_positions(ax, results, direction) for direction in (0, 1)]
     elif results.rows > 1 and cars:

@@ -53,8 +53,21 @@ def note_beside(ax, words, size=9):
     ax.text(1.035, 1.03, words, transform=ax.transAxes, va="bottom", fontsize=size, color=GREY, gid=NOTE)
 
 
+SMALL = {"mm": ("µm", 0.01), "m/s²": ("mm/s²", 0.01), "kN": ("N", 1.0), "kN m": ("N m", 1.0)}  # below: the smaller unit
+
+
+def legible(unit, values):
+    """The unit for these values and the factor to it: a thousandth of the given unit if all values are small."""
+    smaller, limit = SMALL.get(unit, (unit, 0.0))
+    greatest = max((np.nanmax(np.abs(each), initial=0.0) for each in values), default=0.0)
+    return (smaller, 1e3) if 0.0 < greatest < limit else (unit, 1.0)
+
+
 def time_panel(ax, results, title, unit, curves, band=None, worst=None):
     """Draws curves over time. curves: (name, values); band: (name, least, greatest)."""
+    unit, factor = legible(unit, [values for _, values in curves] + list(band[1:] if band else ()))
+    curves = [(name, factor * values) for name, values in curves]
+    band = band and (band[0], factor * band[1], factor * band[2])
     ax.set_title(title)
     ax.set_ylabel(unit)
     time, ends = results.time, []
@@ -76,4 +89,6 @@ def time_panel(ax, results, title, unit, curves, band=None, worst=None):
     low, high = ax.get_ylim()
     if low > 0.0 and low < 0.6 * high:
         ax.set_ylim(0.0, high)
+    elif high - low < 1e-3 * max(abs(low), abs(high)):  # constant but for the last digits
+        ax.set_ylim(low - 0.01 * abs(low), high + 0.01 * abs(high))
     label_at_ends(ax, ends)

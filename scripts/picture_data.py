@@ -152,6 +152,18 @@ def envelope(results, series):
 
 
 CAR = re.compile("car|body|coach|box")
+CALLED_CAR = re.compile(r"\b(car|coach|box)\b")  # but no carriage of a machine, and no body as such
+
+
+def spaced(name):
+    """The name of a part as text: 'front wheel', 'step 41'."""
+    return re.sub(r"(?<=[a-z])(\d+)$", r" \1", name.replace("_", " "))
+
+
+def spring_names(results, model, kind):
+    """The names of the springs of a vehicle type, in the order of its rows; empty if they are unknown."""
+    names = [name.strip() for name in results.options.get(f"vehicle_{model.type_name(kind)}_springs", "").split(",")]
+    return names if len(names) == len(model.rows(kind, "springs", 6)) else []
 
 
 def bodies_of(vehicle):

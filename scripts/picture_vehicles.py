@@ -2,7 +2,11 @@
 
 import numpy as np
 from picture_axes import COLOURS, time_panel
-from picture_data import CAR, MOST_CURVES, MOST_WHEELS, bodies_of, car_body, choose, envelope, natural, ordinal
+from picture_data import (
+    CALLED_CAR, MOST_CURVES, MOST_WHEELS, bodies_of, car_body, choose, envelope, natural, ordinal, spaced, spring_names)
+from picture_model import Model
+
+FEWEST_LINKS = 8  # joints of the type distance with numbered names that make a chain
 
 # Signals of sensors: the dataset, its title and unit. The first is drawn by default, the others on request.
 SIGNALS = {"acceleration_y": ("Vertical acceleration at the sensors", "m/s²"),
@@ -56,19 +60,25 @@ def draw_static_wheels(ax, results, wheels):
         ax.set_xticks([])
 
 
+def with_article(noun):
+    """'the trolley', but 'step 41'."""
+    return noun if noun[-1:].isdigit() else f"the {noun}"
+
+
 def draw_accelerations(ax, results, cars):
     """Draws vertical accelerations of car bodies; other bodies keep their own names."""
     count = len(cars)
     series = [results.over_time(car["acceleration"])[:, 1] for _, car in cars]
-    names = {name.replace("_", " ") for name, _ in cars}
-    if all(CAR.search(name) for name in names):
+    names = {spaced(name) for name, _ in cars}
+    if all(CALLED_CAR.search(name) for name in names):
         noun, what = "car", "car body" if count == 1 else "car bodies"
     else:
         noun, what = (names.pop() if len(names) == 1 else "body"), "highest bodies"
-        what = noun if noun != "body" and count == 1 else what
-    title = f"Vertical acceleration of the {what}"
+        what = noun if count == 1 else "bodies" if names == {"body"} else what
+    title = f"Vertical acceleration of {with_article(what)}"
     if count <= MOST_WHEELS:
-        time_panel(ax, results, title, "m/s²", [(ordinal(k, count, noun), a) for k, a in enumerate(series)])
+        time_panel(ax, results, title, "m/s²", [(with_article(noun) if count == 1 else ordinal(k, count, noun), a)
+                                                  for k, a in enumerate(series)])
         return
     band = (f"all {count}, least to greatest", *envelope(results, series))
     time_panel(ax, results, title, "m/s²", [(f"first {noun}", series[0]), (f"last {noun}", series[-1])], band)
@@ -82,6 +92,37 @@ def draw_positions(ax, results, direction):
     note = "" if len(chosen) == len(bodies) else f" ({len(chosen)} of {len(bodies)})"
     time_panel(ax, results, f"Centres of the bodies: {'xy'[direction]}{note}", "m",
                [(bodies[i][0].replace("_", " "), bodies[i][1]) for i in chosen])
+
+
+def chains_of(results):
+    """(number of the vehicle, name, reaction) of every link of a chain: joints such as link0, link1, ..."""
+    model, found = Model(results), []
+    for k, (kind, _) in enumerate(model.train[:len(results.vehicles)]):
+        links = [name for name, of in model.joint_names(kind) if of == "distance" and name[-1:].isdigit()]
+        found += [(k, name, results.vehicles[k][name]["reaction"]) for name in links if len(links) >= FEWEST_LINKS]
+    return found
+
+
+def draw_chains(ax, results, links):
+    forces = [1e-3 * np.hypot(*results.over_time(reaction)[:, :2].T) for _, _, reaction in links]
+    chosen = choose(len(links), MOST_CURVES, np.array([force.max() for force in forces]))
+    note = "" if len(chosen) == len(links) else f" ({len(chosen)} of {len(links)})"
+    names = [f"{'' if len(results.vehicles) == 1 else f'vehicle {k}, '}{spaced(name)}" for k, name, _ in links]
+    time_panel(ax, results, f"Force in the links of the chain{note}", "kN", [(names[i], forces[i]) for i in chosen])
+
+
+def drives_of(results, others):
+    """(name, force) of springs whose free length is prescribed over time, except for the others."""
+    model, found = Model(results), []
+    for k, (kind, _) in enumerate(model.train[:len(results.vehicles)]):
+        found += [(name, results.vehicles[k][name]["force"]) for name in spring_names(results, model, kind)
+                  if results.options.get(f"vehicle_{model.type_name(kind)}_{name}_winding_table") and name not in others]
+    return found[:MOST_CURVES]
+
+
+def draw_drives(ax, results, drives):
+    time_panel(ax, results, "Force of the spring with a prescribed free length, tension positive", "kN",
+               [(spaced(name), 1e-3 * results.over_time(force)) for name, force in drives])
 
 
 def draw_sensors(ax, results, sensors, signal):

@@ -1,10 +1,15 @@
 """Texts of picture.py about a run: its peaks, each with position, speed and train."""
 
-from picture_data import MOST_CURVES, place_in_words
+from picture_data import MOST_CURVES, place_in_words, speed_of
 
 
 def millimetres(metres):
-    return f"{1e3 * abs(metres):.3g} mm"
+    return f"{1e6 * abs(metres):.3g} µm" if 0.0 < abs(metres) < 1e-5 else f"{1e3 * abs(metres):.3g} mm"
+
+
+def from_rest(options):
+    """Whether forces drive the vehicles from rest; the static deflection of /summary is then that of the start."""
+    return options.get("train_drive") == "free" and speed_of(options.get("train_speed", "0")) == 0.0
 
 
 def run_in_words(summary, name):
@@ -22,12 +27,16 @@ def summary_in_words(results):
         said.append(f"greatest deflection{probed} {millimetres(summary['deflection'])}, "
                     f"{place_in_words(summary['deflection_place'], results.supports)}"
                     f"{run_in_words(summary, 'deflection')}")
-    if summary.get("amplification"):
+    if summary.get("amplification") and not from_rest(results.options):
         said.append(f"{summary['amplification']:.3g} times the static one")
     if summary.get("least_wheel_force") is not None:
         wheels = "least_wheel" in summary or "least_wheel_force_speed" in summary
         force = f"least wheel force {1e-3 * summary['least_wheel_force']:.3g} kN"
         said += [force + run_in_words(summary, "least_wheel_force")] if wheels else []
+    if "exit/time" in results.file and len(results.file["exit/time"]):
+        (time, *_), (velocity, *_) = results.values("exit/time"), results.values("exit/velocity")
+        said.append(f"the vehicle leaves the beam after {time:.4g} s at {abs(velocity[0]):.4g} m/s, turning at "
+                    f"{velocity[2]:.3g} rad/s".replace("-", "−"))
     return said
 
 

@@ -80,6 +80,21 @@ TimeFunction TimeFunction::integral(double value, std::vector<double> times, std
   return f;
 }
 
+// A cubic with the given second derivatives between two rows, from the value and the rate at the first of them.
+TimeFunction TimeFunction::second_integral(std::vector<double> times, std::vector<double> accelerations) {
+  check_table(times, accelerations);
+  std::vector<double> values(times.size(), 0.0);
+  double rate = 0.0;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    const double h = times[i] - times[i - 1];
+    values[i] = values[i - 1] + h * (rate + h * (2.0 * accelerations[i - 1] + accelerations[i]) / 6.0);
+    rate += 0.5 * h * (accelerations[i - 1] + accelerations[i]);
+  }
+  TimeFunction f(std::move(times), std::move(values));
+  f.curvatures_ = std::move(accelerations);
+  return f;
+}
+
 // Piece k of an integral ends at time k; the last piece begins at the last time.
 int TimeFunction::piece_at(double t) const {
   return static_cast<int>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin());

@@ -156,7 +156,7 @@ void Beam::assemble(const Slice& slice) {
   for (auto& [handle, rows] : own) *handle = rows.matrix(comm_, rows);
   const Rows springs = stiffness;
   stiffness.add(1.0, beams);
-  if (model().strained()) record_strains(slice, springs);
+  if (model().strained()) record_strains(slice, springs, mass);
   record_reactions(slice, beams, mass, beam_mass, beam_stiffness, stiffness, damping);
   const auto direction_of_weight = [&](int unknown) {
     const Kind kind = layout_.kind[index(unknown % block())];
@@ -193,7 +193,7 @@ double Beam::settlement_of(int unknown) const {
   return found != settlements_.end() && found->first == unknown ? found->second : 0.0;
 }
 
-void Beam::record_strains(const Slice& slice, const Rows& springs) {
+void Beam::record_strains(const Slice& slice, const Rows& springs, const Rows& mass) {
   strain_forces_.assign(index(local_unknowns()), 0.0);
   const std::vector<double>& settlement = model().settlement;
   for (std::size_t end = 0; end < settlement.size(); ++end) {
@@ -205,6 +205,7 @@ void Beam::record_strains(const Slice& slice, const Rows& springs) {
     const int unknown = first_ * block() + i;
     imposed_.push_back(settlement_of(unknown));
     strain_forces_[index(i)] -= springs.times(unknown, [&](int j) { return settlement_of(j); });
+    inertia_of_imposed_.push_back(mass.times(unknown, [&](int j) { return settlement_of(j); }));
   }
   record_temperature(slice, bridge_);
   if (rail_) record_temperature(slice, *rail_);

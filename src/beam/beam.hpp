@@ -96,6 +96,12 @@ class Beam {
   const std::vector<double>& imposed() const { return imposed_; }
   /// Nodal forces of the beam's temperature and of springs that a settlement deforms, for this rank; or empty.
   const std::vector<double>& strain_forces() const { return strain_forces_; }
+  /// The product of the mass matrix with the settlements, held unknowns included: inertia forces if these were
+  /// accelerations, for this rank; or empty.
+  const std::vector<double>& inertia_of_imposed() const { return inertia_of_imposed_; }
+  /// Collective. The reactions (as `reactions`) that accelerate the mass at the held unknowns if the settlements were
+  /// accelerations, m/s2.
+  void reactions_of_imposed_acceleration(std::vector<std::array<double, 3>>& out) const;
 
   /// Collective. Forces and moment of the supports on the beam at every span end, {fx, fy, moment} each, followed by
   /// {fx, 0, 0} of both ends of the rail if they are held along x; on all ranks. They are eq. 18 as corrected in
@@ -117,7 +123,7 @@ class Beam {
   /// The load on a held unknown, and the effect of settlements on the elements' forces there.
   struct HeldLoad {
     std::size_t slot, unknown;
-    double by_settlement = 0.0;
+    double by_settlement = 0.0, by_acceleration = 0.0;  // of the settlements: displacements, or accelerations
   };
 
   Slice slice() const;
@@ -126,7 +132,7 @@ class Beam {
   void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
                       std::vector<std::pair<base::Handle<Mat>*, Rows>>& own);
   double settlement_of(int unknown) const;
-  void record_strains(const Slice& slice, const Rows& springs);
+  void record_strains(const Slice& slice, const Rows& springs, const Rows& mass);
   void record_temperature(const Slice& slice, const Line& line);
   void record_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
                         const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping);
@@ -143,7 +149,7 @@ class Beam {
   base::Handle<Mat> foundation_damping_;             // sum of all kinds, with the pattern of the mass; or null
   std::vector<double> weight_;                       // nodal forces of self-weight for a gravity of 1 m/s2, this rank
   std::vector<std::pair<int, double>> settlements_;  // settlements of held unknowns of the whole beam, ascending
-  std::vector<double> imposed_, strain_forces_;
+  std::vector<double> imposed_, strain_forces_, inertia_of_imposed_;
   FoundationMats foundation_;
   std::vector<ReactionTerm> reaction_terms_;
   std::vector<HeldLoad> held_loads_;

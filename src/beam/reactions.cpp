@@ -27,8 +27,10 @@ void Beam::record_reactions(const Slice& slice, const Rows& beams, const Rows& m
     if (held < 0 || !slice.reaches(held) || !slice.held(held)) return;
     if (slice.owns(held)) {
       held_loads_.push_back({slot, index(local(held))});
-      if (!settlements_.empty())
+      if (!settlements_.empty()) {
         held_loads_.back().by_settlement = beams.times(held, [&](int j) { return settlement_of(j); });
+        held_loads_.back().by_acceleration = mass.times(held, [&](int j) { return settlement_of(j); });
+      }
     }
     for (int i = (held / b - 1) * b; i < (held / b + 2) * b; ++i) record_column(slot, i, held);
   };
@@ -60,6 +62,13 @@ void Beam::reactions(const double* v, const double* w, const double* a, const do
   }
   for (const HeldLoad& load : held_loads_) sums[load.slot] += load.by_settlement - P[load.unknown];
   MPI_Allreduce(MPI_IN_PLACE, sums, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, comm_);
+}
+
+void Beam::reactions_of_imposed_acceleration(std::vector<std::array<double, 3>>& out) const {
+  out.assign(mesh().span_ends().size() + (held_rail_ends().empty() ? 0 : 1), {});
+  double* sums = out.front().data();
+  for (const HeldLoad& load : held_loads_) sums[load.slot] += load.by_acceleration;
+  MPI_Allreduce(MPI_IN_PLACE, sums, static_cast<int>(3 * out.size()), MPI_DOUBLE, MPI_SUM, comm_);
 }
 
 }  // namespace traverse::beam

@@ -55,7 +55,8 @@ class ContactNewton {
   std::size_t worst_vehicle() const;
   /// Reads or writes the data that later stages reuse.
   void keep(base::Bytes& bytes) {
-    bytes(contacts_, loads_, tolerance_, change_, measured_, contraction_, second_, single_evaluation_, in_place_, ratio_);
+    bytes(contacts_, loads_, tolerance_, change_, measured_, contraction_, second_, single_evaluation_, in_place_,
+          ratio_);
   }
 
  private:

@@ -125,6 +125,7 @@ void System::rate(double t, const double* y, double* ydot, Terms terms) {
 // Vehicles and contacts at a state: positions, forces, accelerations, with contact forces from the state's kinematics.
 void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
+  move_supports(t);
   evaluated_time_ = t;
   const bool set = fleet_.set(t, p_.data(), p_.data() + fleet_.freedom());
   if ((share_.wheel_positions(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
@@ -175,9 +176,14 @@ void System::powers(const double* w, Terms terms, double& dissipation, double& w
 }
 
 // Powers of this rank's vehicles and contacts at their last state.
-System::Powers System::fleet_powers() const {
+System::Powers System::fleet_powers() {
   const multibody::MechanismPowers vehicles = fleet_.powers();
-  return {fleet_.contact_dissipation() + vehicles.dissipation, vehicles.work};
+  double work = vehicles.work;
+  if (structure_ && structure_->support_motion() != nullptr) {  // it works on the vehicles through their contacts
+    const double lost = structure_->power_with_supports(contact_loads());
+    if (rank_ == 0) work += fleet_.power_of_ground() - lost;
+  }
+  return {fleet_.contact_dissipation() + vehicles.dissipation, work};
 }
 
 // --- implicit stages -----------------------------------------------------------------------------------------------

@@ -309,7 +309,8 @@ class System {
   void record_touched();
   bool contacts_are_known(double t) const;
   void powers(const double* w, Terms terms, double& dissipation, double& work);
-  Powers fleet_powers() const;
+  Powers fleet_powers();
+  void move_supports(double t);
   Energy energy(const double* y);
 
   MPI_Comm comm_;

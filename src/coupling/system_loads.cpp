@@ -10,6 +10,7 @@ namespace traverse::coupling {
 // The moving forces at their positions at t.
 void System::load_structure(double t) {
   loads_.clear();
+  move_supports(t);
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
     if (train::length_of(input_.load, i) > 0.0) load_line(i, t);
     if (on_beam_[i] == 0) continue;
@@ -28,6 +29,14 @@ void System::load_structure(double t) {
     loads_.push_back({s.element, s.xi, 0.0, force, 0.0, 0.0});
   }
   structure_->load(loads_);
+}
+
+// The supports of the beam, and the ground beside it, which moves with the first and the last support.
+void System::move_supports(double t) {
+  if (!structure_ || structure_->support_motion() == nullptr) return;
+  structure_->set_time(t);
+  const std::vector<structure::Movement>& now = structure_->support_motion()->of_supports();
+  fleet_.move_ground({now.front().displacement, now.front().velocity}, {now.back().displacement, now.back().velocity});
 }
 
 // The part of line load i that is on the line at t, element by element.

@@ -29,6 +29,7 @@ void System::begin_motion(const structure::Method& method) {
 // If vehicles are linear with plain contacts, every rank computes all of them: messages would cost more time.
 void System::make_linear_train() {
   train_.reset();
+  if (structure_ && structure_->support_motion() != nullptr) return;
   const int own = static_cast<int>(engine::best_target());
   int bounds[2] = {own, -own};  // all ranks must compute the same to the last bit
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm_);
@@ -52,6 +53,7 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
     add(train::place_of(input_.load, i, t), train::place_of(input_.load, i, t + h),
         0.5 * train::length_of(input_.load, i));
   for (const auto& [x, force] : applied_) add(x, x, 0.0);
+  if (structure_ && structure_->support_motion() != nullptr) add(line_->mesh.start(), line_->mesh.end(), 0.0);
   return reaches_;
 }
 

@@ -30,6 +30,7 @@ void System::observe(double t, const double* y, const double* a, Observation& ou
     const structure::ElementLoads contacts =
         from_passes ? structure::ElementLoads{train_->elements(), structure_->pass_loads()} : contact_loads();
     structure_->observe(y, y + n_, a, contacts, all, out.beam);
+    structure_->add_support_motion(out.beam);
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
     out.bridge_loads.insert(out.bridge_loads.end(), out.beam.foundation_loads.begin(), out.beam.foundation_loads.end());
   }

@@ -78,6 +78,8 @@ constexpr Row beam_rows[] = {
   {"beam_surface_height", number, "m", "0", any, "", 0, "height of the running surface above the neutral axis"},
 
   {"support_settlement", numbers, "m", "0", any, "", 0, "upward displacement of each support from its built position, negative: settlement; one per span end"},
+  {"support_motion", file, "", "", any, "", 0, "a file t,value of the vertical motion of all supports, or t,value0,value1,... with one column for each span end; the ground moves with the first and the last one"},
+  {"support_motion_values", choice, "", "acceleration", any, "acceleration displacement", 0, "what the file of support_motion has; acceleration: m/s2, linear between its rows, from rest; displacement: m, natural cubic spline through its rows"},
   {"support_stiffness", numbers, "N/m", "0", not_negative, "", 0, "vertical stiffness of each support, one per span end; 0: rigid"},
   {"support_scour", numbers, "1", "0", {0.0, 1.0}, "", 0, "fraction of support_stiffness that scour removes, one per span end"},
   {"support_types", choice_list, "", "(pinned, then rollers; simply supported spans: all pinned)", any, "free roller pinned clamped guided", 0, "type of support at each span end, one word applies to all"},

@@ -31,8 +31,9 @@ struct EnergyTerms {
 
 /// The values at a stored instant.
 struct Observed {
-  std::vector<beam::Response> probes, rail;     // at the scene's probes; empty without a bridge or a rail
-  std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam, at the ends of spans
+  std::vector<beam::Response> probes, rail;         // at the scene's probes; empty without a bridge or a rail
+  std::vector<std::array<double, 3>> supports;      // fx, fy, moment on the beam, at the ends of spans
+  std::vector<structure::Movement> support_motion;  // of the supports there; empty: they do not move
   coupling::Observation motion;
   std::optional<beam::GroundForces> ground;     // with a bridge
   std::optional<beam::SleeperForces> sleepers;  // forces of the sleepers in output_sleepers

@@ -29,6 +29,12 @@ constexpr Row<Response> shear_rows[] = {{"shear", "N", of<&Response::shear>}};
 
 constexpr Row<Triple> support_rows[] = {{"reaction", "N, N, N m", [](const Triple& reaction) { return reaction; }}};
 
+constexpr Row<structure::Movement> movement_rows[] = {
+    {"displacement", "m", of<&structure::Movement::displacement>},
+    {"velocity", "m/s", of<&structure::Movement::velocity>},
+    {"acceleration", "m/s2", of<&structure::Movement::acceleration>},
+};
+
 /// Resultants {x, y} of all forces on the structure, and their sum. The resultants along x are zero if the structure
 /// has no axial unknowns.
 struct Balance {
@@ -78,6 +84,7 @@ Balance balance_of(const Observed& now, double gravity, bool axial, double gradi
 const Response& probe(const Observed& now, std::size_t i) { return now.probes[i]; }
 const Response& rail(const Observed& now, std::size_t i) { return now.rail[i]; }
 const Triple& support(const Observed& now, std::size_t i) { return now.supports[i]; }
+const structure::Movement& motion_of(const Observed& now, std::size_t i) { return now.support_motion[i]; }
 
 }  // namespace
 
@@ -96,6 +103,7 @@ void add_supports(const Source& source, Outputs& outputs) {
   const std::vector<double> x = source.beam->mesh().span_ends();
   outputs.add_constant("/supports/x", x, "m");
   outputs.add_each("/supports/", support_rows, x.size(), support);
+  if (!source.scene.support_motion.empty()) outputs.add_each("/supports/", movement_rows, x.size(), motion_of);
 }
 
 void add_balance(const Source& source, Outputs& outputs) {

@@ -52,7 +52,11 @@ coupling::SystemInput system_input(const Scene& scene, bool static_only) {
 
 std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
                                               const coupling::SystemInput& input) {
-  if (!shared.modal || scene.exact_in_time()) return coupling::by_elements(shared.bridge(), input, shared.statics);
+  if (!shared.modal || scene.exact_in_time()) {
+    std::unique_ptr<structure::Structure> elements = coupling::by_elements(shared.bridge(), input, shared.statics);
+    if (shared.moving_supports) elements->move_supports(shared.moving_supports);
+    return elements;
+  }
   return std::make_unique<structure::ModalStructure>(*shared.modal, input.self_weight ? input.gravity : 0.0,
                                                      shared.statics);
 }

@@ -91,8 +91,12 @@ void RunObserver::store(bool end) {
   if (beam_ != nullptr) {
     const structure::NodalMotion& beam = now_.motion.beam;
     if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.loads, now_.rail);
-    beam_->reactions(beam.v, beam.w, beam.a, beam.P.data(), now_.supports);
-    now_.ground->evaluate(beam.v, beam.w, beam.a);
+    beam_->reactions(beam.v, beam.damped_w, beam.a, beam.P.data(), now_.supports);
+    if (const structure::SupportMotion* moved = system_.structure()->support_motion()) {
+      moved->add_reactions(now_.supports);
+      now_.support_motion = moved->of_supports();
+    }
+    now_.ground->evaluate(beam.v, beam.damped_w, beam.a);
     if (now_.sleepers) now_.sleepers->evaluate(beam.v, beam.w);
     if (now_.devices && !now_.devices->x().empty()) now_.devices->evaluate(beam.v);
   }

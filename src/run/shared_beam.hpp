@@ -9,6 +9,7 @@
 
 #include "structure/beam_operator.hpp"
 #include "structure/modal_bridge.hpp"
+#include "structure/support_motion.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
@@ -32,8 +33,9 @@ struct SharedBeam {
   std::optional<beam::Beam> beam;
   std::optional<std::pair<double, double>> omega;  // rad/s, the first two distinct frequencies
   beam::Rayleigh rayleigh;
-  std::shared_ptr<structure::BeamOperator> statics;  // with its factorisations
-  std::optional<structure::ModalBridge> modal;       // with model_modes
+  std::shared_ptr<structure::BeamOperator> statics;           // with its factorisations
+  std::optional<structure::ModalBridge> modal;                // with model_modes
+  std::shared_ptr<structure::SupportMotion> moving_supports;  // null: the supports are at rest
 };
 
 }  // namespace traverse::app

@@ -195,6 +195,7 @@ Scene read_scene(Options o) {
   read_limits(o, scene);
   read_output(o, scene);
   read_modal(o, scene);
+  read_support_motion(o, scene);
   read_damping_bound(o, scene);
   read_norm(o, scene);
   read_rail_loads(o, scene);

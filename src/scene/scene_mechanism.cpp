@@ -161,7 +161,8 @@ void VehicleReader::winding(multibody::Spring& s) const {
   s.winding = from_table("winding_table", 2, 2, [&](const auto& columns) {
     const double length = s.free_length.value_or((s.to - s.from).norm());
     for (const double change : columns[1])
-      if (!(length + change > 0.0)) throw InputError(fmt::format("the free length {:g} m would not be positive", length + change));
+      if (!(length + change > 0.0))
+        throw InputError(fmt::format("the free length {:g} m would not be positive", length + change));
     return base::TimeFunction(columns[0], columns[1]);
   });
 }

@@ -80,6 +80,8 @@ double as_division(const beam::BeamModel& beam, double x);
 void read_cracks(const options::Options& options, beam::BeamModel& beam);
 /// Reads elastic and settled supports. Supports and foundation must have been read.
 void read_bearings(const options::Options& options, beam::BeamModel& beam);
+/// Reads the motion of the supports, after the modes and the layered track.
+void read_support_motion(const options::Options& options, Scene& scene);
 /// The temperature of the beam; none without temperature differences.
 std::optional<beam::Temperature> read_temperature(const options::Options& options);
 /// A number or the table of a file x,value, checked for the range of the option.

@@ -124,7 +124,7 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
     }
   }
   powers_[0].forces = 0.0;
-  for (const NodalLoad& force : nodal_forces_) powers_[0].forces += force.force * w[force.unknown];
+  for (const NodalLoad& force : driving_forces()) powers_[0].forces += force.force * w[force.unknown];
 }
 
 void ElementStructure::end_stage(std::size_t i, const double* v, const double* w) {
@@ -138,7 +138,7 @@ void ElementStructure::end_stage(std::size_t i, const double* v, const double* w
   } else if (!measured_between_steps() && statics_->damped()) {
     powers.beam = motion_->power(i, v, w);
   }
-  for (const NodalLoad& force : nodal_forces_)
+  for (const NodalLoad& force : driving_forces())
     powers.forces += force.force * motion_->state(i, v, w, force.unknown).second;
 }
 

@@ -38,8 +38,19 @@ void ElementStructure::load(const std::vector<beam::ElementLoad>& forces) {
       if (local >= 0 && parts[i] != 0.0) nodal_forces_.push_back({local, parts[i]});
     }
   }
-  std::sort(nodal_forces_.begin(), nodal_forces_.end(),
-            [](const NodalLoad& a, const NodalLoad& b) { return a.unknown < b.unknown; });
+  const auto sort = [](std::vector<NodalLoad>& loads) {
+    std::sort(loads.begin(), loads.end(), [](const NodalLoad& a, const NodalLoad& b) { return a.unknown < b.unknown; });
+  };
+  sort(nodal_forces_);
+  if (!support_motion_) return;
+  with_inertia_ = nodal_forces_;
+  for (int i = 0; i < n_; ++i)
+    if (const double force = support_motion_->load()[i]; force != 0.0) with_inertia_.push_back({i, force});
+  sort(with_inertia_);
+}
+
+void ElementStructure::add_support_inertia(double* nodal) const {
+  for (int i = 0; support_motion_ && i < n_; ++i) nodal[i] += support_motion_->load()[i];
 }
 
 // All loads but the contact forces: dead load and moving forces.
@@ -55,6 +66,7 @@ void ElementStructure::accelerations(const double* v, const double* w, bool own,
   if (own) {
     statics_->multiply(-1.0, nullptr, w, v, a);
     external_load(work_.data());
+    add_support_inertia(work_.data());
     for (int i = 0; i < n_; ++i) a[i] += work_[i];
     if (nonlinear_) {
       nonlinear_->evaluate(v, w);
@@ -70,7 +82,7 @@ void ElementStructure::accelerations(const double* v, const double* w, bool own,
 
 std::array<double, 2> ElementStructure::powers(const double* w) {
   double work = 0.0;
-  for (const NodalLoad& force : nodal_forces_) work += force.force * w[force.unknown];
+  for (const NodalLoad& force : driving_forces()) work += force.force * w[force.unknown];
   return {dissipation(w), work};
 }
 
@@ -152,13 +164,14 @@ void ElementStructure::load_at_zero_acceleration() {
   stage_.loaded = true;
   statics_->multiply(-1.0, nullptr, w_predicted_.data(), v_predicted_.data(), z_.data());
   external_load(work_.data());
+  if (stage_.kind != Kind::statics) add_support_inertia(work_.data());
   for (int i = 0; i < n_; ++i) z_[i] += work_[i];
   release_held(z_.data());
   if (nonlinear_) stage_load_ = z_;
 }
 
 void ElementStructure::solve_free() {
-  if (stage_.kind == Kind::fused) return motion_->solve(stage_.number, stage_.v, stage_.w, nodal_forces_);
+  if (stage_.kind == Kind::fused) return motion_->solve(stage_.number, stage_.v, stage_.w, driving_forces());
   if (nonlinear_) {
     stage_.added = &nonlinear_->linearise();
     z_ = stage_load_;
@@ -184,7 +197,7 @@ void ElementStructure::apply_contact_loads(const std::vector<double>& loads) {
 }
 
 const ContactField& ElementStructure::begin_passes(const std::vector<int>& elements) {
-  uses_response_ = response_.worthwhile(elements.size());
+  uses_response_ = !support_motion_ && response_.worthwhile(elements.size());
   if (!uses_response_) return Structure::begin_passes(elements);
   const bool fused = stage_.kind == Kind::fused;
   response_.place(elements, fused ? motion_->ranges() : all_);

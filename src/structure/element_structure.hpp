@@ -95,6 +95,9 @@ class ElementStructure final : public Structure {
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                   double* w_elements) const override;
   void external_load(double* nodal) const;
+  void add_support_inertia(double* nodal) const;
+  /// The moving forces, and the inertia forces of the motion of the supports.
+  const std::vector<NodalLoad>& driving_forces() const { return support_motion_ ? with_inertia_ : nodal_forces_; }
   void load_at_zero_acceleration();
   void update_loaded_range(const std::vector<Reach>& loaded);
   double dissipation(const double* w);
@@ -112,6 +115,7 @@ class ElementStructure final : public Structure {
   bool uses_response_ = false;                    // whether passes use response_ instead of the columns of compliance_
   std::optional<NonlinearFoundation> nonlinear_;  // only for a nonlinear foundation
   std::vector<NodalLoad> nodal_forces_;           // moving forces, unknowns ascending
+  std::vector<NodalLoad> with_inertia_;           // with those of the motion of the supports, if they move
   Stage stage_;
   // Vectors of this rank's unknowns: z, v~ and w~ of the present stage, and the load of the stage for a Newton
   // iteration.

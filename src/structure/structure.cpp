@@ -70,10 +70,45 @@ void Structure::gather(const std::vector<int>& elements, const double* v, const 
   const std::size_t least = 2 * static_cast<std::size_t>(per_node()), count = elements.size() * least;
   gathered_.assign(2 * std::max(count, least), 0.0);
   add_values(elements, v, w, gathered_.data(), gathered_.data() + count);
+  for (std::size_t a = 0; support_motion_ && a < elements.size(); ++a) {
+    const auto unknowns = line_.unknowns(elements[a]);
+    for (std::size_t i = 0; i < least; ++i) {
+      const int local = beam_.local(unknowns[i]);
+      if (local < 0) continue;
+      gathered_[a * least + i] += support_motion_->displacement()[local];
+      gathered_[count + a * least + i] += support_motion_->velocity()[local];
+    }
+  }
   if (count > 0 && ranks_ > 1)
     MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, beam_.comm());
   v_elements.assign(gathered_.begin(), gathered_.begin() + static_cast<std::ptrdiff_t>(std::max(count, least)));
   w_elements.assign(gathered_.begin() + static_cast<std::ptrdiff_t>(count), gathered_.end());
+}
+
+double Structure::power_with_supports(const ElementLoads& forces) const {
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node());
+  double power = 0.0;
+  for (std::size_t a = 0; a < forces.elements.size(); ++a) {
+    const auto unknowns = line_.unknowns(forces.elements[a]);
+    for (std::size_t i = 0; i < m; ++i)
+      if (const int local = beam_.local(unknowns[i]); local >= 0)
+        power += forces.values[a * m + i] * support_motion_->velocity()[local];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, beam_.comm());
+  return power;
+}
+
+void Structure::add_support_motion(NodalMotion& motion) {
+  motion.damped_w = motion.w;
+  if (!support_motion_) return;
+  const auto add = [this](const double*& x, const std::vector<double>& moved, std::vector<double>& sum) {
+    sum = moved;
+    for (int i = 0; i < n_; ++i) sum[i] += x[i];
+    x = sum.data();
+  };
+  add(motion.v, support_motion_->displacement(), absolute_[0]);
+  add(motion.w, support_motion_->velocity(), absolute_[1]);
+  add(motion.a, support_motion_->acceleration(), absolute_[2]);
 }
 
 void Structure::gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w) {

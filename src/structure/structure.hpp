@@ -23,6 +23,7 @@
 #include "structure/compliance.hpp"
 #include "structure/contact_field.hpp"
 #include "structure/nonlinear_foundation.hpp"
+#include "structure/support_motion.hpp"
 
 namespace traverse::structure {
 
@@ -50,6 +51,7 @@ struct StructureEnergy {
 /// An accepted instant of a structure, as this rank's nodal values of the beam.
 struct NodalMotion {
   const double *v = nullptr, *w = nullptr, *a = nullptr;
+  const double* damped_w = nullptr;  // the velocities that damping acts on: w, or relative to moving supports
   std::vector<double> P;            // loads, also on held unknowns, if requested
   std::vector<double> drag;         // acceleration whose inertia forces equal modal damping forces; empty: none
   std::vector<double> coordinates;  // by modes: q of each mode, m kg^(1/2), on every rank
@@ -94,6 +96,19 @@ class Structure {
   virtual void set_reference_loads(double /*sum*/, double /*greatest*/) {}
 
   // --- at a state --------------------------------------------------------------------------------------------------
+
+  /// The supports move; before the first load. Only for structures by elements.
+  void move_supports(std::shared_ptr<SupportMotion> motion) { support_motion_ = std::move(motion); }
+  const SupportMotion* support_motion() const { return support_motion_.get(); }
+  /// Sets the motion of the supports to its values at t, before load and gather.
+  void set_time(double t) {
+    if (support_motion_) support_motion_->set_time(t);
+  }
+  /// Collective. The power of forces on these elements, 2 per_node values each, with the velocities that the supports
+  /// alone would cause, W.
+  double power_with_supports(const ElementLoads& forces) const;
+  /// Adds the motion of the supports to an observed state, which so far is that relative to them.
+  void add_support_motion(NodalMotion& motion);
 
   /// Sets the moving forces with their present positions.
   virtual void load(const std::vector<beam::ElementLoad>& forces) = 0;
@@ -208,9 +223,11 @@ class Structure {
   std::vector<double> dead_load_;
   double gravity_;
   int n_, ranks_ = 1;
+  std::shared_ptr<SupportMotion> support_motion_;  // null: the supports are at rest
 
  private:
-  std::vector<double> gathered_;  // buffer of gather
+  std::array<std::vector<double>, 3> absolute_;  // v, w, a with the motion of the supports
+  std::vector<double> gathered_;                 // buffer of gather
   // Data of the contacts' passes
   ContactField field_;
   const ElementCompliance* own_ = nullptr;

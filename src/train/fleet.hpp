@@ -201,6 +201,10 @@ class Fleet {
 
   /// Whether the independent coordinates of a vehicle of this rank may be badly conditioned.
   bool badly_conditioned();
+  /// The vertical displacement (m) and velocity (m/s) of the rigid ground before and behind the beam.
+  void move_ground(std::array<double, 2> before, std::array<double, 2> behind) { ground_ = {before, behind}; }
+  /// The power of moving ground on the wheels, W.
+  double power_of_ground() const;
   /// Accepts the states of this rank's vehicles, which were just evaluated. Replaces badly conditioned independent
   /// coordinates: then the result is true, and assign_coordinates() must follow.
   bool accept();
@@ -300,7 +304,8 @@ class Fleet {
   int freedom_ = 0;
   int first_own_ = 0, past_own_ = 0;
   std::vector<double> speeds_;  // speed of each of `vehicles` at t = 0, m/s
-  std::vector<int> course_;     // index of the course (one of several trains) of each of `vehicles`; -1: none
+  std::array<std::array<double, 2>, 2> ground_{};
+  std::vector<int> course_;  // index of the course (one of several trains) of each of `vehicles`; -1: none
   std::vector<std::shared_ptr<const track::Profile>> profiles_;  // for each course; null: profile_
   bool accelerations_jump_ = false;                              // whether a prescribed acceleration jumps at some time
   bool frozen_ = false;

@@ -226,6 +226,15 @@ double Fleet::contact_dissipation() const {
   return power;
 }
 
+double Fleet::power_of_ground() const {
+  double power = 0.0;
+  for (const WheelContact& c : wheels)
+    if (c.candidates > 0 && c.slot() < 0)
+      power -= c.patches[c.active].rise_rate *
+               (c.force.normal * c.touch.normal_on_body.y() + c.force.tangential * c.touch.tangent_on_body.y());
+  return power;
+}
+
 double Fleet::contact_potential() const {
   double sum = 0.0;
   for (int i = 0; i < contacts(); ++i)

@@ -18,6 +18,7 @@ constexpr double nearby = 0.1;
 void Fleet::add_patch(WheelContact& c, int element, double start, double low, double high) {
   Patch& patch = c.patches[c.candidates++];
   patch.element = element;
+  patch.rise = patch.rise_rate = 0.0;
   patch.low = low;
   patch.high = high;
   patch.start = start;
@@ -33,6 +34,9 @@ void Fleet::add_patch(WheelContact& c, int element, double start, double low, do
 void Fleet::add_ground(WheelContact& c, bool before, double x, double low, double high) {
   if (before ? !mesh_->ground_before() : !mesh_->ground_behind()) return;
   add_patch(c, -1, x, before ? low : std::max(low, mesh_->end()), before ? std::min(high, mesh_->start()) : high);
+  const auto [rise, rate] = ground_[before ? 0 : 1];
+  c.patches[c.candidates - 1].rise = rise;
+  c.patches[c.candidates - 1].rise_rate = rate;
 }
 
 // Finds the patches within [low, high] under a contact at x: the patch at x, and its neighbour beyond a kink between

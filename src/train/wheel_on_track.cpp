@@ -46,7 +46,7 @@ struct Surface {
 
   SurfacePoint at(double x) const {
     const track::Height h = profile.at(x);
-    SurfacePoint s{{x, h.value}, {1.0, h.slope}, {0.0, h.curvature}, 0.0};
+    SurfacePoint s{{x, h.value + patch.rise}, {1.0, h.slope}, {0.0, h.curvature}, 0.0};
     if (patch.element < 0) return s;
     const double xi = (x - patch.x) * per_length;
     const auto [c0, c1, c2, c3] = deflection;
@@ -134,6 +134,7 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
   const Eigen::Vector2d tau(n.y(), -n.x());
 
   Eigen::Vector2d relative = qd.head<2>();  // velocity of the centre relative to the surface's material
+  relative.y() -= patch.rise_rate;
   out.xi = out.local_compliance = out.local_compliance_by_x = 0.0;
   out.station = x;
   out.ahead = x - c.x();

@@ -21,13 +21,14 @@ namespace traverse::train {
 
 /// A piece of running surface without a kink: rigid ground, or one element of the beam.
 struct Patch {
-  int element = -1;              // -1: rigid ground
-  double x = 0.0, length = 0.0;  // left end and length of the element, m
-  double shear = 0.0;            // 12 EI/(GA length^2)
-  double height = 0.0;           // height of the surface above the beam's neutral axis, m
-  double compliance = 0.0;       // length^3/(3 EI), m/N, if the local compliance is included
-  double low = 0.0, high = 0.0;  // ends of the piece, m; a wheel outside touches its corner
-  double start = 0.0;            // initial station of Find::closest_within and farthest_within
+  int element = -1;                    // -1: rigid ground
+  double x = 0.0, length = 0.0;        // left end and length of the element, m
+  double shear = 0.0;                  // 12 EI/(GA length^2)
+  double height = 0.0;                 // height of the surface above the beam's neutral axis, m
+  double compliance = 0.0;             // length^3/(3 EI), m/N, if the local compliance is included
+  double low = 0.0, high = 0.0;        // ends of the piece, m; a wheel outside touches its corner
+  double start = 0.0;                  // initial station of Find::closest_within and farthest_within
+  double rise = 0.0, rise_rate = 0.0;  // of moving ground, m and m/s
 };
 
 inline constexpr int most_element_unknowns = 6;

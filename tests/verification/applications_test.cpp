@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/paths.hpp"
 #include "support/scene_run.hpp"
 #include "traverse/base/time_function.hpp"
 
@@ -16,12 +17,13 @@ namespace traverse::test {
 namespace {
 
 constexpr double gravity = 9.81;
-using State = Eigen::VectorXd;
+using Coordinates = Eigen::VectorXd;
 
 /// One step of the classical method of Runge and Kutta.
-State stepped(const std::function<State(double, const State&)>& rate, double t, const State& x, double h) {
-  const State a = rate(t, x), b = rate(t + 0.5 * h, x + 0.5 * h * a), c = rate(t + 0.5 * h, x + 0.5 * h * b),
-              d = rate(t + h, x + h * c);
+Coordinates stepped(const std::function<Coordinates(double, const Coordinates&)>& rate, double t, const Coordinates& x,
+                    double h) {
+  const Coordinates a = rate(t, x), b = rate(t + 0.5 * h, x + 0.5 * h * a), c = rate(t + 0.5 * h, x + 0.5 * h * b),
+                    d = rate(t + h, x + h * c);
   return x + h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
 }
 
@@ -37,7 +39,7 @@ base::TimeFunction table(const std::string& name) {
 /// The missile of options/scenes/launcher.yml on the modes of a clamped-free beam.
 class Launcher {
  public:
-  static constexpr int modes = 9, x = 2 * (modes + 2);  // state: coordinates, their rates, x and its rate
+  static constexpr int modes = 18, x = 2 * (modes + 2);  // state: coordinates, their rates, x and its rate
   static constexpr double length = 4.0, EI = 2.0e5, mass = 15.0, missile = 100.0, arm = 0.6, stiffness = 5.0e6,
                           damping = 2.0e3, inertia = 60.0 + 2.0 * (1.0e-3 + arm * arm);
   const double across = gravity / std::sqrt(2.0);
@@ -63,8 +65,8 @@ class Launcher {
     return b / length * (std::sinh(s) + std::sin(s) - ratio * (std::cosh(s) - std::cos(s)));
   }
 
-  State rate(double t, const State& s) const {
-    State r = State::Zero(x + 2);
+  Coordinates rate(double t, const Coordinates& s) const {
+    Coordinates r = Coordinates::Zero(x + 2);
     r.head(modes + 2) = s.segment(modes + 2, modes + 2);
     Eigen::VectorXd force = Eigen::VectorXd::Zero(modes + 2);  // on modes, y and angle
     force[modes] = -missile * across;
@@ -94,17 +96,17 @@ class Launcher {
   }
 
   /// The static equilibrium at x = 1 m under a force that holds the missile.
-  State at_rest() const {
-    State s = State::Zero(x + 2);
+  Coordinates at_rest() const {
+    Coordinates s = Coordinates::Zero(x + 2);
     s[x] = 1.0;
     Eigen::MatrixXd K(modes + 2, modes + 2);
-    const auto forces = [&](const State& at) {
+    const auto forces = [&](const Coordinates& at) {
       Eigen::VectorXd f = rate(0.0, at).segment(modes + 2, modes + 2);
       return f;
     };
     const Eigen::VectorXd zero = forces(s);
     for (int i = 0; i < modes + 2; ++i) {
-      State moved = s;
+      Coordinates moved = s;
       moved[i] = 1.0e-3;
       K.col(i) = (forces(moved) - zero) / 1.0e-3;
     }
@@ -113,13 +115,13 @@ class Launcher {
   }
 
   /// The state when the rear shoe is at the tip, and the time.
-  std::pair<double, State> exit(double h) const {
-    State s = at_rest();
+  std::pair<double, Coordinates> exit(double h) const {
+    Coordinates s = at_rest();
     double t = 0.0;
-    const auto f = [this](double time, const State& y) { return rate(time, y); };
+    const auto f = [this](double time, const Coordinates& y) { return rate(time, y); };
     for (const double event : {length - arm, length + arm}) {  // a step ends where a shoe leaves the rail
       while (true) {
-        const State next = stepped(f, t, s, h);
+        const Coordinates next = stepped(f, t, s, h);
         if (next[x] < event) {
           s = next;
           t += h;
@@ -181,17 +183,17 @@ TEST(Applications, OverheadCrane) {
   };
   constexpr double load = 1.0e4, stiffness = 3.5e6, damping = 7.5e3, free_length = 7.972;  // both falls
   double tension = 0.0;
-  const auto rate = [&](double t, const State& s) {
+  const auto rate = [&](double t, const Coordinates& s) {
     const auto [x, v] = trolley(t);
     const Eigen::Vector2d d(s[0] - x, s[1]), relative(s[2] - v, s[3]);
     const double l = d.norm();
     tension =
         std::max(0.0, stiffness * (l - free_length - hoist.value(t)) + damping * (d.dot(relative) / l - hoist.rate(t)));
-    State r(4);
+    Coordinates r(4);
     r << s[2], s[3], -tension * d.x() / l / load, -tension * d.y() / l / load - gravity;
     return r;
   };
-  State s(4);
+  Coordinates s(4);
   s << 0.0, -(free_length + load * gravity / stiffness), 0.0, 0.0;
   const std::vector<double> time = run.time(), hook = run("/vehicles/0/load/position"),
                             carriage = run("/vehicles/0/trolley/position"), front = run("/vehicles/0/front_fall/force"),
@@ -217,12 +219,12 @@ TEST(Applications, OverheadCrane) {
 TEST(Applications, PrecisionStage) {
   Results run = run_scene("precision_stage");
   const base::TimeFunction motion = table("precision_stage_motion.csv");
-  const auto rate = [&](double t, const State& s) {
-    State r(2);
+  const auto rate = [&](double t, const Coordinates& s) {
+    Coordinates r(2);
     r << s[1], (-1.0e7 * (s[0] - motion.value(t)) - 8.0e3 * (s[1] - motion.rate(t))) / 30.0;
     return r;
   };
-  State s = State::Zero(2);
+  Coordinates s = Coordinates::Zero(2);
   const std::vector<double> time = run.time(), carriage = run("/vehicles/0/carriage/position");
   double greatest = 0.0, settled = 0.0;
   long steps = 0;

@@ -21,6 +21,10 @@ class TimeFunction {
   /// does.
   static TimeFunction integral(double value, std::vector<double> times, std::vector<double> rates);
 
+  /// The second integral of a table of accelerations that is linear between its rows, without value and rate at the
+  /// first time; before and after the table there is no acceleration. Throws as a table does.
+  static TimeFunction second_integral(std::vector<double> times, std::vector<double> accelerations);
+
   /// The value at a time t (s), and its first and second derivatives in time.
   double value(double t) const;
   double rate(double t) const;

@@ -93,6 +93,7 @@ struct Scene {
   std::optional<beam::BeamModel> beam;  // none: mechanisms without a bridge, or on rigid ground
   Damping damping;
   bool self_weight = false;
+  std::vector<base::TimeFunction> support_motion;  // upward displacement of each support, m; empty: at rest
   std::vector<Vehicle> vehicles;  // types of vehicles in the trains
   Train train;
   MovingLoad load;

@@ -1,0 +1,203 @@
+// Bridges whose supports move, against modal series, statics and the integration of an oscillator that crosses
+// meanwhile.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "support/message.hpp"
+#include "support/scene_run.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace traverse::test {
+namespace {
+
+constexpr double span = 20.0, EI = 8.0e9, mass = 9000.0, ratio = 0.02, pi = std::numbers::pi;
+constexpr int modes = 24;
+const std::string bridge =
+    "beam: {spans: 20, EI: 8.0e9, mass: 9000, elements_per_span: 16, damping_ratios: [0.02, 0.02]}\n"
+    "output: {interval: 0.01}\n";
+
+/// Two triangular pulses of acceleration, m/s2.
+double pulse(double t) {
+  const double phase = std::fmod(t, 0.1);
+  const double height = phase < 0.05 ? phase / 0.05 : 2.0 - phase / 0.05;
+  return t < 0.1 ? height : t < 0.2 ? -height : 0.0;
+}
+const std::vector<double> pulse_times = {0.0, 0.05, 0.1, 0.15, 0.2, 3.0};
+
+/// The file of the pulse, with the share of it that each support has.
+std::string pulse_file(const TemporaryFolder& folder, const std::vector<double>& shares) {
+  std::string rows;
+  for (const double t : pulse_times) {
+    rows += std::to_string(t);
+    for (const double share : shares) rows += "," + std::to_string(share * pulse(t));
+    rows += "\n";
+  }
+  return folder.write("pulse.csv", rows);
+}
+
+using Coordinates = Eigen::VectorXd;
+
+/// A bridge of sine modes whose supports have shares of the pulse, and an oscillator that crosses it. The state has the
+/// modes, the height of the oscillator and the displacement of the pulse, then their rates.
+struct Model {
+  std::array<double, 2> shares{1.0, 1.0};
+  double carried = 0.0, stiffness = 0.0, damping = 0.0, speed = 0.0, start = 0.0;  // of the oscillator
+  static constexpr int size = modes + 2;
+
+  static double omega(int n) { return std::pow((n + 1) * pi / span, 2) * std::sqrt(EI / mass); }
+  double share_at(double x) const {
+    const double s = std::clamp(x / span, 0.0, 1.0);
+    return (1.0 - s) * shares[0] + s * shares[1];
+  }
+
+  Coordinates rate(double t, const Coordinates& s) const {
+    Coordinates r = Coordinates::Zero(2 * size);
+    r.head(size) = s.tail(size);
+    const double b = 2.0 * ratio / (omega(0) + omega(1)), a = b * omega(0) * omega(1), ground = pulse(t);
+    const double x = start + speed * t;
+    const bool on = x > 0.0 && x < span;
+    double height = share_at(x) * s[modes + 1], rise = share_at(x) * s[size + modes + 1];
+    if (on) rise += speed / span * (shares[1] - shares[0]) * s[modes + 1];
+    for (int n = 0; n < modes && on; ++n) {
+      const double arc = (n + 1) * pi * x / span;
+      height += std::sin(arc) * s[n];
+      rise += std::sin(arc) * s[size + n] + (n + 1) * pi / span * speed * std::cos(arc) * s[n];
+    }
+    const double force = carried * 9.81 - stiffness * (s[modes] - height) - damping * (s[size + modes] - rise);
+    for (int n = 0; n < modes; ++n) {
+      const double k = n + 1, participation = 2.0 / (k * pi) * (shares[0] - std::cos(k * pi) * shares[1]);
+      r[size + n] = -participation * ground - (a + b * omega(n) * omega(n)) * s[size + n] - omega(n) * omega(n) * s[n];
+      if (on) r[size + n] -= 2.0 / (mass * span) * force * std::sin(k * pi * x / span);
+    }
+    if (carried > 0.0) r[size + modes] = force / carried - 9.81;
+    r[size + modes + 1] = ground;
+    return r;
+  }
+
+  /// Calls use(state) at each of the times.
+  void run(const std::vector<double>& times, double h,
+           const std::function<void(std::size_t, const Coordinates&)>& use) const {
+    Coordinates s = Coordinates::Zero(2 * size);
+    long steps = 0;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      for (; static_cast<double>(steps) * h < times[i] - 1e-9; ++steps) {
+        const double t = static_cast<double>(steps) * h;
+        const Coordinates a1 = rate(t, s), a2 = rate(t + 0.5 * h, s + 0.5 * h * a1),
+                          a3 = rate(t + 0.5 * h, s + 0.5 * h * a2), a4 = rate(t + h, s + h * a3);
+        s += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+      }
+      use(i, s);
+    }
+  }
+};
+
+class ShakenBridge : public ::testing::TestWithParam<std::array<double, 2>> {};
+
+// The response without traffic: a sum of modes, each under its share of the acceleration.
+TEST_P(ShakenBridge, ModalSeries) {
+  Model model;
+  model.shares = GetParam();
+  const TemporaryFolder folder;
+  const std::string file = pulse_file(folder, {model.shares[0], model.shares[1]});
+  Results run =
+      run_yaml(bridge + "load: {forces: 0, speed: 0}\nts: {max_time: 1.0, dt: 1.0e-3}\n", {{"support_motion", file}});
+  const std::vector<double> time = run.time(), deflection = run("/probes/deflection"), moment = run("/probes/moment"),
+                            displacement = run("/supports/displacement");
+  double greatest = 0.0, greatest_moment = 0.0, error = 0.0, error_of_moment = 0.0;
+  model.run(time, 5e-5, [&](std::size_t i, const Coordinates& s) {
+    double z = model.share_at(0.5 * span) * s[modes + 1], M = 0.0;
+    for (int n = 0; n < modes; ++n) {
+      const double shape = std::sin((n + 1) * pi / 2.0);
+      z += shape * s[n];
+      M -= EI * std::pow((n + 1) * pi / span, 2) * shape * s[n];
+    }
+    greatest = std::max(greatest, std::abs(z));
+    greatest_moment = std::max(greatest_moment, std::abs(M));
+    error = std::max(error, std::abs(deflection[i] - z));
+    error_of_moment = std::max(error_of_moment, std::abs(moment[i] + M));
+    for (std::size_t end : {0U, 1U}) EXPECT_NEAR(displacement[2 * i + end], model.shares[end] * s[modes + 1], 1e-9);
+  });
+  EXPECT_LT(error, 5e-5 * greatest);
+  EXPECT_LT(error_of_moment, 1e-4 * greatest_moment);
+  double unbalanced = 0.0, reaction = 0.0;
+  for (const double force : run("/balance/residual")) unbalanced = std::max(unbalanced, std::abs(force));
+  for (const double force : run("/supports/reaction")) reaction = std::max(reaction, std::abs(force));
+  EXPECT_LT(unbalanced, 1e-9 * reaction);
+  EXPECT_LT(energy_error(run), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(SupportMotion, ShakenBridge,
+                         ::testing::Values(std::array{1.0, 1.0}, std::array{0.0, 1.0}, std::array{1.0, -0.5}));
+
+// An oscillator comes from the ground, which moves with the first support, crosses, and leaves onto the ground.
+TEST(SupportMotion, OscillatorCrosses) {
+  Model model;
+  model.shares = {1.0, 0.6};
+  model.carried = 5000.0;
+  model.stiffness = 2.0e6;
+  model.damping = 2.0e4;
+  model.speed = 40.0;
+  model.start = -2.0;
+  const TemporaryFolder folder;
+  const std::string file = pulse_file(folder, {1.0, 0.6});
+  Results run =
+      run_yaml(bridge +
+                   "vehicle:\n  car:\n    bodies: [body]\n    drivers: [level]\n    wheels: [wheel]\n"
+                   "    body: {mass: 5000, inertia: 1000, position: [0, 1]}\n    level: {body: body, coordinate: phi}\n"
+                   "    wheel: {body: body, radius: 1, law: two_sided, stiffness: 2.0e6, damping: 2.0e4}\n"
+                   "train: {vehicles: car, positions: -2, speed: 40}\nts: {max_time: 0.7, dt: 2.0e-4}\n",
+               {{"support_motion", file}});
+  const std::vector<double> time = run.time(), deflection = run("/probes/deflection"),
+                            place = run("/vehicles/0/body/position"), force = run("/vehicles/0/wheel/normal_force");
+  double greatest = 0.0;
+  for (const double one : force) greatest = std::max(greatest, std::abs(one - 5000.0 * 9.81));
+  EXPECT_GT(greatest, 500.0);
+  model.run(time, 2e-5, [&](std::size_t i, const Coordinates& s) {
+    double z = model.share_at(0.5 * span) * s[modes + 1];
+    for (int n = 0; n < modes; ++n) z += std::sin((n + 1) * pi / 2.0) * s[n];
+    EXPECT_NEAR(deflection[i], z, 1e-5) << time[i];
+    EXPECT_NEAR(place[3 * i + 1] - place[1], s[modes], 1e-5) << time[i];
+  });
+  EXPECT_LT(energy_error(run), 1e-5);
+}
+
+// A slow motion of the middle support of two spans: M = 3 EI u/L^2 over it.
+TEST(SupportMotion, SlowMotionOfOneSupport) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("slow.csv", "0,0,0,0\n1,0,0,0\n20,0,5.0e-3,0\n39,0,1.0e-2,0\n40,0,1.0e-2,0\n");
+  Results run = run_yaml(
+      "beam: {spans: [20, 20], EI: 8.0e9, mass: 9000, elements_per_span: 6, damping_ratios: [0.05, 0.05]}\n"
+      "load: {forces: 0, speed: 0}\nts: {max_time: 40, dt: 1.0e-2}\noutput: {interval: 1.0, probes: [10, 20]}\n",
+      {{"support_motion", file}, {"support_motion_values", "displacement"}});
+  const std::vector<double> moment = run("/probes/moment"), deflection = run("/probes/deflection"),
+                            motion = run("/supports/displacement");
+  for (std::size_t i = 2; i < run.time().size(); ++i) {
+    const double u = motion[3 * i + 1];
+    EXPECT_NEAR(moment[2 * i + 1], -3.0 * EI * u / (span * span), 2e-3 * 3.0 * EI * 0.01 / (span * span));
+    EXPECT_NEAR(deflection[2 * i + 1], u, 1e-12);
+    EXPECT_NEAR(deflection[2 * i], 0.6875 * u, 2e-3 * 0.01);
+  }
+}
+
+TEST(SupportMotion, RefusedWhereTheGroundWouldMoveToo) {
+  const TemporaryFolder folder;
+  const std::string file = pulse_file(folder, {1.0});
+  const std::string rest = "load: {forces: 0, speed: 0}\nts: {max_time: 1.0, dt: 1.0e-3}\n";
+  const auto message = [&](const std::string& text) {
+    return message_of([&] { run_yaml(text, {{"support_motion", file}}); });
+  };
+  EXPECT_NE(message(bridge + rest + "foundation: {vertical_bed_k: 1.0e6}\n").find("support_motion"), std::string::npos);
+  EXPECT_NE(message(bridge + rest + "support: {stiffness: 1.0e8}\n").find("support_motion"), std::string::npos);
+  EXPECT_NE(message(bridge + rest + "scene: {analysis: static}\n").find("support_motion"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace traverse::test
