@@ -51,7 +51,9 @@ BeamModel checked(BeamModel model) {
 bool has_linear(const Foundation& foundation, const FoundationKind& kind, Term term) {
   if (kind.bed != nullptr) {
     const std::optional<Bed>& bed = foundation.*kind.bed;
-    return bed && !bed->law.nonlinear() && (term == Term::stiffness ? bed->k : bed->c).maximum() > 0.0;
+    if (!bed || bed->law.nonlinear()) return false;
+    const Distribution& density = term == Term::stiffness ? bed->k : bed->c;
+    return density.maximum() > 0.0 || density.minimum() < 0.0;
   }
   const std::vector<PointFoundation>& points = foundation.*kind.points;
   return std::any_of(points.begin(), points.end(), [&](const PointFoundation& p) {

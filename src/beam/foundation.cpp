@@ -28,7 +28,7 @@ std::size_t foundation_kind(std::string_view name) {
 
 double bending_decay_rate(Direction direction, double k, double EI) {
   if (direction == Direction::vertical) return std::pow(k / (4.0 * EI), 0.25);
-  return direction == Direction::rotational ? std::sqrt(k / EI) : 0.0;
+  return direction == Direction::rotational ? std::sqrt(std::abs(k) / EI) : 0.0;
 }
 
 bool present(const Foundation& foundation, const FoundationKind& kind) {

@@ -89,8 +89,9 @@ void check_foundation(const Foundation& foundation, double length) {
   for_beds(foundation, [&](const FoundationKind& kind, const Bed& bed) {
     const std::string option = "foundation_" + std::string(kind.name);
     const FoundationUnits units = units_of(kind);
+    const bool compression = kind.bed == &Foundation::rotational_bed && bed.k.maximum() <= 0.0;  // beam_tension below 0
     for (double value : {bed.k.minimum(), bed.k.maximum()})
-      require_not_negative(value, option + "_k", std::string(units.k));
+      if (!compression) require_not_negative(value, option + "_k", std::string(units.k));
     for (double value : {bed.c.minimum(), bed.c.maximum()})
       require_not_negative(value, option + "_c", std::string(units.c));
     check_law(bed.law, option, units);

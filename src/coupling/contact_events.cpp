@@ -27,6 +27,7 @@ double refinement(const train::Separations& separations, int contact, const cont
 // again or are no longer compressed, J.
 double ContactEvents::record_released() {
   double lost = 0.0;
+  left_guide_ = false;
   for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
     if (fleet_.has_points(i)) continue;
     train::Contact& c = fleet_.contact(i);
@@ -34,6 +35,7 @@ double ContactEvents::record_released() {
     const double stored = contact::potential(c.law, c.kinematics.penetration);
     if (separations_.touching(i) && !touches) {
       c.released = true;
+      left_guide_ = left_guide_ || c.law.kind == contact::LawKind::two_sided;
       lost += stored;
     } else if (c.released && (touches || stored == 0.0)) {
       c.released = false;

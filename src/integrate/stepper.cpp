@@ -183,6 +183,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       if (steps_ % steps_between_checks == 0) check_bounds(t, y.data);
       call_monitors(t);
       running = step(t, steps_) && !stopped_at_limit();
+      if (system_.contacts().left_guide() && t < progress.target) sample_now(sample, Purpose::peaks);
     }
     progress.under_way = t < progress.target;
     if (t == progress.next_sample) {

@@ -59,7 +59,7 @@ constexpr Row beam_rows[] = {
   {"beam_EA", number_or_file, "N", "", beam_stiffness, "", 0, "axial stiffness, or a file x,value; only needed for longitudinal action"},
   {"beam_GA", number_or_file, "N", "", beam_stiffness, "", 0, "shear stiffness kappa G A (Timoshenko beam), or a file x,value; without it: no shear deformation"},
   {"beam_rotary_inertia", number_or_file, "kg m", "", not_negative, "", 0, "rotary inertia rho I about the neutral axis, or a file x,value; without it: none"},
-  {"beam_tension", number_or_file, "N", "", positive, "", 0, "tension of the beam, or a file x,value: stiffens it against its slope; compression is not modelled"},
+  {"beam_tension", number_or_file, "N", "", any, "", 0, "tension of the beam, or a file x,value: stiffens it against its slope; negative: compression below its buckling load"},
   {"beam_mass", number_or_file, "kg/m", "", beam_weight, "", 0, "mass per length, or a file x,value"},
   {"beam_continuity", choice_list, "", "continuous", any, "continuous simply_supported hinge", 0, "connection at each inner span end, one word applies to all; simply_supported: two separate beams end there"},
   {"beam_hinges", numbers, "m", "", not_negative, "", 0, "stations of hinges within spans"},
@@ -78,6 +78,7 @@ constexpr Row beam_rows[] = {
   {"beam_surface_height", number, "m", "0", any, "", 0, "height of the running surface above the neutral axis"},
 
   {"support_settlement", numbers, "m", "0", any, "", 0, "upward displacement of each support from its built position, negative: settlement; one per span end"},
+  {"foundation_shear_layer", number_or_file, "N", "", positive, "", 0, "shear stiffness of the layer of a Pasternak foundation, or a file x,value: with a deflection v it exerts the force G v'' per length; its springs are foundation_vertical_bed_k"},
   {"support_motion", file, "", "", any, "", 0, "a file t,value of the vertical motion of all supports, or t,value0,value1,... with one column for each span end; the ground moves with the first and the last one"},
   {"support_motion_values", choice, "", "acceleration", any, "acceleration displacement", 0, "what the file of support_motion has; acceleration: m/s2, linear between its rows, from rest; displacement: m, natural cubic spline through its rows"},
   {"support_stiffness", numbers, "N/m", "0", not_negative, "", 0, "vertical stiffness of each support, one per span end; 0: rigid"},

@@ -10,6 +10,7 @@
 #include "base/notes.hpp"
 #include "modes/modes.hpp"
 #include "results/stage.hpp"
+#include "run/buckling_load.hpp"
 
 namespace traverse::app {
 namespace {
@@ -50,6 +51,18 @@ std::string beam_text(const beam::Beam& beam) {
                      m.axial ? "axial, deflection, rotation" : "deflection, rotation");
 }
 
+/// Refuses a compression at which the beam buckles.
+void check_compression(const beam::Beam& beam) {
+  const std::optional<beam::Bed>& tension = beam.model().foundation.rotational_bed;
+  if (!tension || !(tension->k.minimum() < 0.0)) return;
+  const double load = buckling_load(beam), compression = -tension->k.minimum();
+  if (compression >= load)
+    throw InputError(
+        fmt::format("beam_tension: the beam buckles under a compression of {:.4g} N; its buckling load is "
+                    "{:.6g} N",
+                    compression, load));
+}
+
 }  // namespace
 
 SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<std::string>& notes)
@@ -72,6 +85,7 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
         "gaps "
         "open");
   beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
+  check_compression(*beam);
   notes.push_back(base::detail(scene.beam->given ? given_modes_text(*beam) : beam_text(*beam)));
   if (beam->rail() != nullptr) notes.push_back(base::detail(track_text(*beam)));
 }

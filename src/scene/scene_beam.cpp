@@ -223,13 +223,25 @@ beam::Foundation read_foundation(const Options& o, const beam::BeamModel& beam) 
 
 namespace {
 
-/// A tension T adds T v'^2/2 per length to the strain energy, as a rotational bed of the stiffness T does.
+/// The shear layer of a Pasternak foundation, G v'^2/2 per length, and the tension of the beam. A tension T adds T
+/// v'^2/2 per length to the strain energy, as a rotational bed of the stiffness T does. SharedBeam refuses a
+/// compression at which the beam buckles.
 void read_tension(const Options& o, beam::BeamModel& beam) {
+  if (o.has("foundation_shear_layer")) {
+    if (beam.foundation.rotational_bed || o.has("beam_tension"))
+      o.refuse("foundation_shear_layer", "acts as a rotational bed and as a tension; give only one of the three");
+    if (beam.GA) o.refuse("foundation_shear_layer", "allowed for beams without shear deformation (beam_GA)");
+    beam.foundation.rotational_bed = beam::Bed{read_distribution(o, "foundation_shear_layer"), 0.0, {}};
+  }
   if (!o.has("beam_tension")) return;
   if (beam.foundation.rotational_bed)
     o.refuse("beam_tension", "acts as a rotational bed; give either this or foundation_rotational_bed");
   if (beam.GA) o.refuse("beam_tension", "allowed for beams without shear deformation (beam_GA)");
-  beam.foundation.rotational_bed = beam::Bed{read_distribution(o, "beam_tension"), 0.0, {}};
+  beam::Distribution tension = read_distribution(o, "beam_tension");
+  if (tension.minimum() < 0.0 && tension.maximum() > 0.0)
+    o.refuse("beam_tension", "allowed: tension everywhere, or compression everywhere");
+  if (tension.minimum() == 0.0 && tension.maximum() == 0.0) o.refuse("beam_tension", "allowed: a force other than 0");
+  beam.foundation.rotational_bed = beam::Bed{std::move(tension), 0.0, {}};
 }
 
 void read_ground(const Options& o, beam::BeamModel& beam) {

@@ -19,6 +19,7 @@ sys.path.insert(0, str(SCRIPTS))
 import matplotlib.pyplot as plt  # noqa: E402
 import animate  # noqa: E402
 import picture  # noqa: E402
+import picture_axes  # noqa: E402
 import picture_data  # noqa: E402
 import picture_hanging  # noqa: E402
 import picture_model  # noqa: E402
@@ -228,6 +229,56 @@ class PictureTest(unittest.TestCase):
             self.assertAlmostEqual(left + 0.5 * width, 0.0)
             self.assertEqual(picture_model.rods(model, 0)[:, :4].tolist(), [[0.0, 1.5, 0.0, -3.5]])
         self.assert_within("Angle of the hanging body from the vertical, positive ahead", "Force of its joint", "the vehicle, load", "the vehicle, rope")
+
+    def test_a_load_on_two_ropes(self):
+        self.write_crane(0.0 * np.zeros(400))
+        with h5py.File(self.file, "a") as file:
+            t = file["time"][:]
+            file["vehicles/0/load/position"][:, 0] += 0.3 * np.sin(t)
+            kind = "model/vehicles/0"
+            for name in ("joints", "joint_ends", "joint_names"):
+                rows = file[f"{kind}/{name}"][:1]
+                del file[f"{kind}/{name}"]
+                file[f"{kind}/{name}"] = rows
+            file[f"{kind}/springs"] = [[-0.5, 1.5, -0.5, -3.0, 0.0, 2.0], [0.5, 1.5, 0.5, -3.0, 0.0, 2.0]]
+            for name in ("left", "right"):
+                file[f"vehicles/0/{name}/force"] = 9e4 + 0.0 * t
+            options = [["vehicle_crane_springs", "left, right"], ["vehicle_crane_left_side", "tension"],
+                       ["vehicle_crane_right_side", "tension"], ["vehicle_crane_left_winding_table", "hoist.csv"]]
+            del file["options"]
+            file.create_dataset("options", data=np.array(options, dtype=object), dtype=h5py.string_dtype())
+            results = picture_data.Results(file)
+            hanging, = picture_hanging.hanging_of(results)
+            self.assertEqual((hanging.body, hanging.joint), ("load", "left and right"))
+            np.testing.assert_allclose(hanging.swing, 0.3 * np.sin(t), atol=1e-9)
+            np.testing.assert_allclose(hanging.force, 180e3)
+            np.testing.assert_allclose(hanging.place[0], [0.0, -3.0], atol=1e-9)
+            self.assertEqual([name for name, _ in picture_vehicles.drives_of(results, [])], ["left"])
+            self.assertEqual(picture_vehicles.drives_of(results, ["left"]), [])
+        self.assert_within("The load under its rope at some instants", "Sway: the load relative to the top of its ropes",
+                           "Force of its ropes together", "the vehicle, left and right")
+
+    def test_links_of_a_chain(self):
+        write_run(self.file, vehicles=1)
+        with h5py.File(self.file, "a") as file:
+            t, kind = file["time"][:], "model/vehicles/0"
+            file["model/train"] = [[0.0, 0.0]]
+            names = [[f"link{i}", "distance"] for i in range(9)]
+            for name, rows in (("names", [["chain", "car"], ["chain", "axle"]]), ("joint_names", names)):
+                file.create_dataset(f"{kind}/{name}", data=np.array(rows, dtype=object), dtype=h5py.string_dtype())
+            file[f"{kind}/bodies"] = [[0.0, 1.5, 1e3], [0.0, 0.5, 1e2]]
+            file[f"{kind}/wheels"] = [[0.0, 0.5, 0.5]]
+            file[f"{kind}/joints"] = [[0.0, 1.0, 0.0, 1.0]] * 9
+            file[f"{kind}/joint_ends"] = [[0.0, 1.0, 0.0, 1.0]] * 9
+            for i in range(9):
+                file[f"vehicles/0/link{i}/reaction"] = np.column_stack([3e3 * (9 - i) + 0 * t, 4e3 * (9 - i) + 0 * t, 0 * t])
+        self.assert_within("Force in the links of the chain (6 of 9)", "link 0", "link 8")
+
+    def test_small_values_have_small_units(self):
+        self.assertEqual(picture_axes.legible("mm", [np.array([0.004, -0.005])]), ("µm", 1e3))
+        self.assertEqual(picture_axes.legible("mm", [np.array([0.004, -0.5])]), ("mm", 1.0))
+        self.assertEqual(picture_axes.legible("kN", [np.zeros(3)]), ("kN", 1.0))
+        self.assertEqual(picture_words.millimetres(-5.09e-6), "5.09 µm")
 
     def test_the_load_is_drawn_below_the_bridge(self):
         self.write_crane(0.0 * np.zeros(400))

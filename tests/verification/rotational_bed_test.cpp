@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "modes/modes.hpp"
+#include "support/curve.hpp"
+#include "support/message.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::test {
@@ -158,6 +160,48 @@ TEST(Tension, FrequenciesOfAWire) {
                 1.0, 1e-7)
         << n;
   }
+}
+
+// omega_n^2 = (n pi/L)^2 (EI (n pi/L)^2 - N)/m below Euler's load.
+TEST(Compression, FrequenciesBelowTheBucklingLoad) {
+  const double euler = EI * std::pow(pi / L, 2);
+  Results run = run_yaml(
+      "beam: {spans: 20.0, elements_per_span: 24, EI: 1.96e9, mass: 1000.0}
+support: {types: [pinned, roller]}
+"
+      "scene: {analysis: modes}\nmodes: {count: 3}\n",
+      {{"beam_tension", text(-0.9 * euler)}});
+  const std::vector<double> frequency = run("/modes/frequency");
+  for (int n = 1; n <= 3; ++n) {
+    const double b = n * pi / L, exact = b * std::sqrt((EI * b * b - 0.9 * euler) / m);
+    EXPECT_NEAR(2.0 * pi * frequency[static_cast<std::size_t>(n - 1)] / exact, 1.0, 1e-4) << n;
+  }
+}
+
+// Two spans of 20 m buckle at Euler's load of one, a beam clamped at one end and free at the other at a quarter of it.
+TEST(Compression, BucklingLoad) {
+  const double euler = EI * std::pow(pi / L, 2);
+  const auto load_of = [&](const std::string& spans, const std::string& types) {
+    const std::string message = message_of([&] {
+      run_yaml("beam: {elements_per_span: 24, EI: 1.96e9, mass: 1000.0, tension: -1.0e9, spans: " + spans +
+               "}\nsupport: {types: " + types + "}\nload: {forces: 1.0e5, speed: 30}\nts: {dt: 1.0e-3}\n");
+    });
+    const std::size_t at = message.find("buckling load is ");
+    return at == std::string::npos ? 0.0 : std::stod(message.substr(at + 17));
+  };
+  EXPECT_NEAR(load_of("20", "[pinned, roller]") / euler, 1.0, 1e-5);
+  EXPECT_NEAR(load_of("[20, 20]", "[pinned, roller, roller]") / euler, 1.0, 1e-5);
+  EXPECT_NEAR(load_of("20", "[clamped, free]") / euler, 0.25, 1e-5);
+}
+
+// A shear layer is a rotational bed.
+TEST(ShearLayer, AsRotationalBed) {
+  const std::string beam =
+      "beam: {spans: 20.0, elements_per_span: 12, EI: 1.96e9, mass: 1000.0}\nsupport: {types: [pinned, roller]}\n"
+      "scene: {analysis: modes}\nmodes: {count: 2}\nfoundation: {vertical_bed_k: 1.0e5}\n";
+  Results layer = run_yaml(beam, {{"foundation_shear_layer", "3e7"}}),
+          bed = run_yaml(beam, {{"foundation_rotational_bed_k", "3e7"}});
+  EXPECT_EQ(layer("/modes/frequency"), bed("/modes/frequency"));
 }
 
 }  // namespace
