@@ -1,5 +1,6 @@
 """The rows of doc/verification.md on the equations: case, reference, test, bounds and recorded values."""
 
+from verification_applications import APPLICATIONS
 from verification_check import (
     FREQUENCY, NEWTON, Check, Row, number, order_in_space, order_in_time, over_accuracy,
     over_accuracy_but_acceleration, over_the_turns, over_tolerance)
@@ -192,6 +193,7 @@ EQUATIONS = [
         Row("vehicles joined by couplers", "the same bodies as one vehicle", "Couplers.JoinedVehiclesAreOneMechanism",
             [Check("EXPECT_LT(difference, {}) << a;", "joined_against_one_vehicle")]),
     ]),
+    ("Launchers, cranes, machines, chains and shaken bridges", APPLICATIONS),
     ("Contacts, impacts and wheels", [
         Row("elastic impacts of balls by Hertz' law, k 1e6 to 1e12, steps of 1 ms", "closed form", "ElasticImpact.Hertz",
             [Check('expect_near(what + "_rebound", seen.speed, speed, {}); '

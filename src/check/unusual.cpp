@@ -142,8 +142,10 @@ void check_position(const FirstRun& run, const std::vector<Axle>& axles, Lines& 
 
 void check_gravity(const FirstRun& run, Lines& lines) {
   const bool has_wheels = run.passage && !run.passage->system().fleet().wheels.empty();
-  if (has_wheels && std::abs(run.scene.gravity - earth) > near_earth)
-    lines.push_back(fmt::format("gravity: {:g} m/s2, on earth it is 9.81 m/s2", run.scene.gravity));
+  // Across an inclined beam gravity has a component only.
+  const double gravity = run.scene.gravity * (run.scene.beam ? std::hypot(1.0, run.scene.beam->gradient) : 1.0);
+  if (has_wheels && std::abs(gravity - earth) > near_earth)
+    lines.push_back(fmt::format("gravity: {:g} m/s2, on earth it is 9.81 m/s2", gravity));
 }
 
 }  // namespace

@@ -105,6 +105,7 @@ double QuasiStaticResponse::permanent_deflection(double station) {
 }
 
 bool QuasiStaticResponse::pass_together(const train::WheelPaths& paths) const {
+  if (paths.instants() > 1 && weights_.front().law.direction() == 0.0) return false;  // a free train starts from rest
   const auto other_speed = [this](const StaticLoad& w) { return w.law.speed(0.0) != weights_.front().law.speed(0.0); };
   return steady() && std::none_of(weights_.begin(), weights_.end(), other_speed) && paths.drift() < constant_distance;
 }

@@ -88,7 +88,7 @@ std::string bash_completion(const std::vector<std::string>& ts_types) {
     }
   choices["-ts_type"] = {ts_types.begin(), ts_types.end()};
   for (const HelpGroup& group : help_groups()) choices["-help"].insert(group.name);
-  for (const char* more : {"integrators", "man", "bash"}) choices["-help"].insert(more);
+  for (const char* more : {"integrators", "vehicles", "man", "bash"}) choices["-help"].insert(more);
   files.insert({"-options_file", "-output_file"});
 
   std::string values;

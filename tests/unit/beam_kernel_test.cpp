@@ -153,7 +153,9 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
       structure.accelerations(rate, rows(a));
     });
     EXPECT_TRUE(t.first <= element && element + 1 <= t.last && t.first <= t.middle && t.middle <= t.last);
-    if (columns > 50) EXPECT_LT(t.last - t.first, columns - 1);
+    if (columns > 50) {
+      EXPECT_LT(t.last - t.first, columns - 1);
+    }
     for (int l = 0; l < lanes; ++l) {
       const double d = Rows::numbers(displacement)[l];
       const Eigen::MatrixXd inverse = chain.inverse(Rows::numbers(rate)[l], d);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/curve.hpp"
 #include "support/paths.hpp"
 #include "support/scene_run.hpp"
 #include "traverse/base/time_function.hpp"
@@ -162,9 +163,15 @@ TEST(Applications, Launcher) {
   EXPECT_NEAR(position[1] - 0.05, s[Launcher::modes], 1e-3 * std::abs(tip));
   EXPECT_NEAR(position[2], s[Launcher::modes + 1], 1e-3 * std::abs(s[Launcher::modes + 1]));
   EXPECT_NEAR(velocity[1], s[2 * Launcher::modes + 2], 1e-3);
-  EXPECT_NEAR(velocity[2], s[2 * Launcher::modes + 3], 1e-3 * std::abs(velocity[2]));
-  EXPECT_NEAR(run("/exit/tip_deflection")[0], tip, 1e-3 * std::abs(tip));
-  EXPECT_NEAR(run("/exit/tip_velocity")[0], tip_rate, 5e-3);
+  const double tip_error = std::abs(run("/exit/tip_deflection")[0] / tip - 1.0),
+               turn_error = std::abs(velocity[2] / s[2 * Launcher::modes + 3] - 1.0);
+  RecordProperty("tip_error", text(tip_error));
+  RecordProperty("turn_error", text(turn_error));
+  EXPECT_LT(tip_error, 1e-3);
+  EXPECT_LT(turn_error, 1e-3);
+  // The velocity of the tip contains high modes; it needs short elements and steps.
+  Results fine = run_scene("launcher", {{"ts_dt", "1e-5"}, {"ts_max_time", "0.3"}, {"beam_elements_per_span", "64"}});
+  EXPECT_NEAR(fine("/exit/tip_velocity")[0], tip_rate, 1e-3);
   EXPECT_LT(energy_error(run), 1e-6);
 }
 
@@ -201,20 +208,22 @@ TEST(Applications, OverheadCrane) {
   const std::vector<double> time = run.time(), hook = run("/vehicles/0/load/position"),
                             carriage = run("/vehicles/0/trolley/position"), front = run("/vehicles/0/front_fall/force"),
                             rear = run("/vehicles/0/rear_fall/force");
-  double greatest = 0.0, later = 0.0;
+  double greatest = 0.0, later = 0.0, sway_error = 0.0;
   const double h = 1.0e-3;
   long steps = 0;
   for (std::size_t i = 0; i < time.size(); ++i) {
     for (; steps * h < time[i] - 1e-9; ++steps) s = stepped(rate, static_cast<double>(steps) * h, s, h);
     (void)rate(time[i], s);
     const double sway = hook[3 * i] - carriage[3 * i];
-    EXPECT_NEAR(sway, s[0] - trolley(time[i]).first, 2e-4) << time[i];
+    sway_error = std::max(sway_error, std::abs(sway - (s[0] - trolley(time[i]).first)));
     EXPECT_NEAR(front[i] + rear[i], tension, 1e-3 * load * gravity) << time[i];
     greatest = std::max(greatest, std::abs(sway));
     if (time[i] > 19.9) later = std::max(later, std::abs(sway));
   }
   EXPECT_NEAR(greatest, 0.2988, 2e-3);  // 2 a l/g
   EXPECT_LT(later, 1e-3);
+  RecordProperty("sway_error", text(sway_error));
+  EXPECT_LT(sway_error, 2e-4);
   EXPECT_NEAR(hook[1] + 2.0, hook[hook.size() - 2], 1e-3);
   EXPECT_LT(energy_error(run), 1e-6);
 }
@@ -229,17 +238,19 @@ TEST(Applications, PrecisionStage) {
   };
   Coordinates s = Coordinates::Zero(2);
   const std::vector<double> time = run.time(), carriage = run("/vehicles/0/carriage/position");
-  double greatest = 0.0, settled = 0.0;
+  double greatest = 0.0, settled = 0.0, worst = 0.0;
   long steps = 0;
   const double h = 1.0e-5;
   for (std::size_t i = 0; i < time.size(); ++i) {
     for (; steps * h < time[i] - 1e-9; ++steps) s = stepped(rate, static_cast<double>(steps) * h, s, h);
     const double error = carriage[3 * i] - carriage[0] - motion.value(time[i]);
-    EXPECT_NEAR(error, s[0] - motion.value(time[i]), 5e-8) << time[i];
+    worst = std::max(worst, std::abs(error - (s[0] - motion.value(time[i]))));
     greatest = std::max(greatest, std::abs(error));
     if (std::abs(error) > 1e-6) settled = time[i];
   }
   EXPECT_NEAR(greatest, 4.754e-5, 1e-7);
+  RecordProperty("worst", text(worst));
+  EXPECT_LT(worst, 5e-8);
   EXPECT_NEAR(settled, 0.619, 2e-3);
   EXPECT_LT(energy_error(run), 1e-6);
 }

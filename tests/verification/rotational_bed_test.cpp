@@ -166,9 +166,7 @@ TEST(Tension, FrequenciesOfAWire) {
 TEST(Compression, FrequenciesBelowTheBucklingLoad) {
   const double euler = EI * std::pow(pi / L, 2);
   Results run = run_yaml(
-      "beam: {spans: 20.0, elements_per_span: 24, EI: 1.96e9, mass: 1000.0}
-support: {types: [pinned, roller]}
-"
+      "beam: {spans: 20.0, elements_per_span: 24, EI: 1.96e9, mass: 1000.0}\nsupport: {types: [pinned, roller]}\n"
       "scene: {analysis: modes}\nmodes: {count: 3}\n",
       {{"beam_tension", text(-0.9 * euler)}});
   const std::vector<double> frequency = run("/modes/frequency");
