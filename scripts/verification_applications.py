@@ -15,7 +15,7 @@ APPLICATIONS = [
         "Chains.HangingChain", [Check("EXPECT_LT((end - exact).norm(), {});", "error", unit="m")]),
     Row("an escalator's chain under the polygon effect: forces in links", "M (g sin a + dv/dt)",
         "Chains.PolygonDrive", [Check("EXPECT_LT(error, {});", "error")]),
-    Row("a bridge on shaking supports", "a series of 24 modes", "SupportMotion/ShakenBridge.ModalSeries",
+    Row("a bridge on shaking supports", "a series of 24 modes", "ShakenBridge.ModalSeries",
         [Check("EXPECT_LT(error, {} * greatest);", "error", "deflection"),
          Check("EXPECT_LT(error_of_moment, {} * greatest_moment);", "moment_error", "moment")]),
     Row("an oscillator crosses a shaking bridge", "modes and oscillator, Runge-Kutta at 2e-5 s",
