@@ -111,7 +111,8 @@ void ModalBridge::set_forces_on_others(const Eigen::MatrixXd& forces, const Eige
   squares.row(0) = others.colwise().squaredNorm();
   squares.row(1) = forces.colwise().squaredNorm();
   MPI_Allreduce(MPI_IN_PLACE, squares.data(), static_cast<int>(squares.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
-  if ((squares.row(0) > negligible_damping * negligible_damping * squares.row(1)).any()) forces_on_others_ = std::move(others);
+  if ((squares.row(0) > negligible_damping * negligible_damping * squares.row(1)).any())
+    forces_on_others_ = std::move(others);
 }
 
 void ModalBridge::add_forces_on_others(const double* rates, double* nodal) const {

@@ -94,7 +94,7 @@ struct Scene {
   Damping damping;
   bool self_weight = false;
   std::vector<base::TimeFunction> support_motion;  // upward displacement of each support, m; empty: at rest
-  std::vector<Vehicle> vehicles;  // types of vehicles in the trains
+  std::vector<Vehicle> vehicles;                   // types of vehicles in the trains
   Train train;
   MovingLoad load;
   track::Profile profile;
