@@ -101,6 +101,8 @@ class BeamOperator {
   /// Collective. Writes or reads which factorisations are stored; they are computed again after reading. springs:
   /// returns the springs of a version that may be used again, otherwise null.
   void keep(base::Archive& archive, const std::function<const AddedSprings*(long)>& springs);
+  /// Collective. Writes or reads the largest relative error of the static solutions so far only.
+  void keep_static_error(base::Archive& archive) { archive.cache(static_error_); }
 
  private:
   struct Factor {

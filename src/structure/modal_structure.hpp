@@ -51,6 +51,7 @@ class ModalStructure final : public Structure {
   void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                NodalMotion& out) override;
   void keep(base::Archive& archive) override {
+    statics_->keep_static_error(archive);
     archive.cut(accelerations_[0]);
     archive.sum(powers_[0].damping, powers_[0].forces, dissipated_, worked_);
   }
