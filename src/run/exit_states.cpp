@@ -6,6 +6,16 @@
 #include <limits>
 
 namespace traverse::app {
+namespace {
+
+/// The number of the vehicle's first body among the bodies of all units.
+std::size_t first_body(const train::Fleet& fleet, const train::Member& member) {
+  auto first = static_cast<std::size_t>(member.first_body);
+  for (int k = 0; k < member.unit; ++k) first += fleet.vehicles[k].mechanism.model().bodies.size();
+  return first;
+}
+
+}  // namespace
 
 ExitStates::ExitStates(const Scene& scene) {
   if (!scene.beam) return;
@@ -36,15 +46,14 @@ double ExitStates::share_before_exit(const OpenEnd& end, const train::Fleet& fle
                                      double h) const {
   constexpr double never = 2.0;
   const train::MovingVehicle& vehicle = fleet.vehicles[member.unit];
-  std::size_t first = 0;  // of this vehicle's bodies in before_
-  for (int k = 0; k < member.unit; ++k) first += fleet.vehicles[k].mechanism.model().bodies.size();
+  const std::size_t first = first_body(fleet, member);
   double latest = member.type->wheels.empty() ? never : 0.0;
   for (const train::Wheel& wheel : member.type->wheels) {
     const int body = member.first_body + wheel.body;
     const multibody::Frame& frame = vehicle.state.frames[static_cast<std::size_t>(body) + 1];
     const Motion now{frame.origin.x(), frame.velocity.x()};
     if (!(end.outward * (now.value - end.x) > 0.0)) return never;
-    const Motion& before = before_[first + static_cast<std::size_t>(body)][0];
+    const Motion& before = before_[first + static_cast<std::size_t>(wheel.body)][0];
     if (end.outward * (before.value - end.x) > 0.0) continue;
     double low = 0.0, high = 1.0;
     for (int i = 0; i < 60; ++i) {
@@ -85,9 +94,7 @@ void ExitStates::add(double t, const train::Fleet& fleet, const std::vector<beam
       if (s > 1.0) continue;
       has_left_[m] = 1;
       if (first_instant) continue;
-      std::size_t first = 0;
-      for (int k = 0; k < member.unit; ++k) first += fleet.vehicles[k].mechanism.model().bodies.size();
-      first += static_cast<std::size_t>(member.first_body);
+      const std::size_t first = first_body(fleet, member);
       for (std::size_t i = 0; i < member.type->mechanism.bodies.size(); ++i) {
         Record record{time_before_ + s * h, static_cast<int>(m), static_cast<int>(i), {}, {}};
         for (std::size_t c = 0; c < 3; ++c)
