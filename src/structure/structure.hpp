@@ -52,9 +52,9 @@ struct StructureEnergy {
 struct NodalMotion {
   const double *v = nullptr, *w = nullptr, *a = nullptr;
   const double* damped_w = nullptr;  // the velocities that damping acts on: w, or relative to moving supports
-  std::vector<double> P;            // loads, also on held unknowns, if requested
-  std::vector<double> drag;         // acceleration whose inertia forces equal modal damping forces; empty: none
-  std::vector<double> coordinates;  // by modes: q of each mode, m kg^(1/2), on every rank
+  std::vector<double> P;             // loads, also on held unknowns, if requested
+  std::vector<double> drag;          // acceleration whose inertia forces equal modal damping forces; empty: none
+  std::vector<double> coordinates;   // by modes: q of each mode, m kg^(1/2), on every rank
   NonlinearForces foundation;
   std::vector<beam::ElementLoad> foundation_loads;  // loads from the nonlinear foundation
 };
