@@ -122,7 +122,7 @@ void Mechanism::plan_elimination(MechanismState& s) const {
   s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
   if (!s.dependent_block.many_sensitivities())
     s.reduced_mass.plan(s.dependent_block);
-  else if (s.partition_version != partition_version_)
+  else
     s.augmented_mass.plan(augmented_pattern());
   find_columns(s);
 }

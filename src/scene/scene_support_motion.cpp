@@ -39,8 +39,12 @@ void read_support_motion(const options::Options& o, Scene& scene) {
   if (!scene.beam || scene.by_given_modes()) o.refuse(motion_file, "needs a beam with supports (beam_spans)");
   const beam::BeamModel& beam = *scene.beam;
   if (scene.analysis != Analysis::transient) o.refuse(motion_file, "is for transient runs only (scene_analysis)");
-  const auto present = [&](const beam::FoundationKind& kind) { return beam::present(beam.foundation, kind); };
-  if (beam.track || (std::ranges::any_of(beam::foundation_kinds, present) && !o.has("beam_tension")))
+  const auto on_ground =
+      [&](const beam::FoundationKind& kind) {  // a tension is a rotational bed, but not on the ground
+        const bool tension = kind.bed == &beam::Foundation::rotational_bed && o.has("beam_tension");
+        return beam::present(beam.foundation, kind) && !tension;
+      };
+  if (beam.track || std::ranges::any_of(beam::foundation_kinds, on_ground))
     o.refuse(motion_file, "is not allowed with a foundation or a layered track, whose ground would move too");
   if (scene.model.modes > 0) o.refuse(motion_file, "needs elements; allowed: model_modes 0");
   if (scene.sweep) o.refuse(motion_file, "is for single runs; allowed in studies, one by one, without sweep options");
