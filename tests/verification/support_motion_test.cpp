@@ -13,6 +13,7 @@
 
 #include "support/curve.hpp"
 #include "support/message.hpp"
+#include "support/paths.hpp"
 #include "support/scene_run.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -193,6 +194,21 @@ TEST(SupportMotion, SlowMotionOfOneSupport) {
     EXPECT_NEAR(deflection[2 * i + 1], u, 1e-12);
     EXPECT_NEAR(deflection[2 * i], 0.6875 * u, 2e-3 * 0.01);
   }
+}
+
+// The runs of a study have the motion, too, also with linear vehicles.
+TEST(SupportMotion, InAStudy) {
+  const TemporaryFolder folder;
+  const std::string file = pulse_file(folder, {1.0, 0.6});
+  const std::string coach =
+      bridge +
+      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      "/options/vehicles/velaro.yml}}\ntrain: {vehicles: coach, positions: -1}\nts: {max_time: 0.5, dt: 1.0e-3}\n"
+      "model: {vehicles: linear}\n";
+  Results study = run_yaml(coach, {{"support_motion", file}, {"study_vary_train_speed", "40,50"}}),
+          single = run_yaml(coach, {{"support_motion", file}, {"train_speed", "50"}});
+  const double peak = single.attribute("/summary", "deflection");
+  EXPECT_NEAR(study("/study/peak_deflection")[1], std::abs(peak), 1e-9);
 }
 
 TEST(SupportMotion, RefusedWhereTheGroundWouldMoveToo) {
