@@ -41,6 +41,7 @@ constexpr Heading headings[] = {
     {"output", "output", "Results"},
     {"checkpoint", "checkpoint", "Checkpoints"},
     {"restart", "restart", "Restart from a checkpoint"},
+    {"report", "report", "Title page and language of the report (scripts/traverse-report)"},
     {"sweep", "sweep", "Sweeps over speeds and trains"},
     {"study", "study", "Studies of varied options"},
     {"log", "petsc", "Other options of PETSc than ts_..."},

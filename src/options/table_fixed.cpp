@@ -223,6 +223,19 @@ constexpr Row later_rows[] = {
   {"checkpoint_file", text, "", "<output_file>.checkpoint", any, "", 0, "file of the checkpoints; each replaces the one before; none: no checkpoints"},
   {"restart", file, "", "", any, "", 0, "continues from this checkpoint of the same scene; end time and file names may differ"},
 
+  {"report_project", text, "", "", any, "", 0, "name of the project on the title page of the report"},
+  {"report_structure", text, "", "(scene_name)", any, "", 0, "name of the structure"},
+  {"report_line", text, "", "", any, "", 0, "line and kilometre of the structure"},
+  {"report_author", text, "", "", any, "", 0, "who has made the calculation"},
+  {"report_checker", text, "", "", any, "", 0, "who has checked it"},
+  {"report_revision", text, "", "", any, "", 0, "revision of the report"},
+  {"report_date", text, "", "(day of the run)", any, "", 0, "date of the report"},
+  {"report_note", text, "", "", any, "", 0, "a remark on the title page"},
+  {"report_logo", file, "", "", any, "", 0, "a picture for the title page, PNG or JPEG"},
+  {"report_norm_edition", text, "", "", any, "", 0, "edition of the norm, such as EN 1991-2:2003"},
+  {"report_national_annex", text, "", "", any, "", 0, "national annex, such as DIN EN 1991-2/NA:2012-08"},
+  {"report_language", choice, "", "en", any, "en de fr", 0, "language of the report"},
+
   {"verbose", flag, "", "false", any, "", 0, "print the description of the model, and in sweeps the resonance speeds of each train; the results file always has them"},
   {"output_quiet", flag, "", "false", any, "", 0, "no progress display on the terminal"},
 
