@@ -20,4 +20,7 @@ APPLICATIONS = [
          Check("EXPECT_LT(error_of_moment, {} * greatest_moment);", "moment_error", "moment")]),
     Row("an oscillator crosses a shaking bridge", "modes and oscillator, Runge-Kutta at 2e-5 s",
         "SupportMotion.OscillatorCrosses", [Check("EXPECT_LT(error, {});", "error", unit="m")]),
+    Row("a bar whose support moves along it", "a series of 24 modes, Runge-Kutta at 2e-5 s", "SupportMotion.AlongTheBeam",
+        [Check("EXPECT_LT(error, {} * greatest);", "error", "displacement"),
+         Check("EXPECT_LT(error_of_force, {} * greatest_force);", "force_error", "reaction")]),
 ]

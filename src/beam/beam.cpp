@@ -81,18 +81,28 @@ void release_nodes(const Line& line, Slice& slice) {
   }
 }
 
+/// For every span end, whether its left and its right node are held along x.
+std::vector<std::array<bool, 2>> held_along(const BeamModel& model) {
+  std::vector<std::array<bool, 2>> held;
+  for (const Support s : model.supports) held.push_back({fixes_axial(s), fixes_axial(s)});
+  const auto bearings = axial_bearings(model);
+  for (std::size_t span = 0; span < bearings.size(); ++span)
+    if (bearings[span] != 0) held[span][1] = true;
+  return held;
+}
+
 void hold_supports(const Line& bridge, Slice& slice) {
-  const auto bearings = axial_bearings(bridge.model);
+  const auto along = held_along(bridge.model);
   for (int end = 0; end <= bridge.mesh.spans(); ++end) {
     const auto [left, right] = bridge.mesh.nodes_at(end);
     const Support s = bridge.model.supports[end];
+    if (along[index(end)][0]) slice.hold(bridge.unknown(left, 0));
+    if (along[index(end)][1]) slice.hold(bridge.unknown(right, 0));
     for (int node : {left, right}) {
-      if (fixes_axial(s)) slice.hold(bridge.unknown(node, 0));
       if (fixes_vertical(s)) slice.hold(bridge.unknown(node, 1));
       if (fixes_rotation(s)) slice.hold(bridge.unknown(node, 2));
       if (fixes_rotation(s)) slice.hold(bridge.unknown(node, 3));
     }
-    if (end < bridge.mesh.spans() && bearings[end] != 0) slice.hold(bridge.unknown(right, 0));
   }
 }
 
@@ -197,11 +207,16 @@ double Beam::settlement_of(int unknown) const {
 
 void Beam::record_strains(const Slice& slice, const Rows& springs, const Rows& mass) {
   strain_forces_.assign(index(local_unknowns()), 0.0);
-  const std::vector<double>& settlement = model().settlement;
-  for (std::size_t end = 0; end < settlement.size(); ++end) {
+  const std::vector<double>&settlement = model().settlement, &shift = model().shift;
+  const auto along = held_along(model());
+  for (std::size_t end = 0; end < model().supports.size(); ++end) {
     const auto [left, right] = mesh().nodes_at(static_cast<int>(end));
-    for (int node = left; node <= right && settlement[end] != 0.0; ++node)
-      settlements_.emplace_back(bridge_.unknown(node, 1), settlement[end]);
+    for (int node = left; node <= right; ++node) {
+      if (!shift.empty() && shift[end] != 0.0 && along[end][node == left ? 0 : 1])
+        settlements_.emplace_back(bridge_.unknown(node, 0), shift[end]);
+      if (!settlement.empty() && settlement[end] != 0.0)
+        settlements_.emplace_back(bridge_.unknown(node, 1), settlement[end]);
+    }
   }
   for (int i = 0; i < local_unknowns() && !settlements_.empty(); ++i) {
     const int unknown = first_ * block() + i;

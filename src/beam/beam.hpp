@@ -94,6 +94,8 @@ class Beam {
   /// Displacements of held unknowns by settlements for this rank, 0 elsewhere; empty if there are none. The matrices do
   /// not contain these unknowns, but InternalForces includes them in the elements' forces.
   const std::vector<double>& imposed() const { return imposed_; }
+  /// Whether a held unknown of the whole beam is displaced.
+  bool has_imposed() const { return !settlements_.empty(); }
   /// Nodal forces of the beam's temperature and of springs that a settlement deforms, for this rank; or empty.
   const std::vector<double>& strain_forces() const { return strain_forces_; }
   /// The product of the mass matrix with the settlements, held unknowns included: inertia forces if these were

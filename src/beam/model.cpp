@@ -177,6 +177,8 @@ void check_strains(const BeamModel& model) {
     require(std::isfinite(model.settlement[i]) && (model.settlement[i] == 0.0 || fixes_vertical(model.supports[i])),
             "support_settlement", number(model.settlement[i]),
             "what settles holds the beam vertically; 0 elsewhere (m)");
+  require(model.shift.empty() || model.shift.size() == model.supports.size(), "support_motion_along",
+          std::to_string(model.shift.size()) + " numbers", "one at every span end is needed");
   if (!model.temperature) return;
   const Temperature& t = *model.temperature;
   for (const double value : {t.uniform, t.gradient, t.expansion, t.strain(), t.curvature()})
@@ -220,7 +222,8 @@ BeamModel linearised(const BeamModel& model) {
 bool BeamModel::strained() const {
   return (temperature && (temperature->strain() != 0.0 || temperature->curvature() != 0.0)) ||
          (track && axial && track->rail_temperature * track->rail_expansion != 0.0) ||
-         std::any_of(settlement.begin(), settlement.end(), [](double s) { return s != 0.0; });
+         std::any_of(settlement.begin(), settlement.end(), [](double s) { return s != 0.0; }) ||
+         std::any_of(shift.begin(), shift.end(), [](double s) { return s != 0.0; });
 }
 
 bool BeamModel::all_separate() const {

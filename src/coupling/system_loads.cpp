@@ -35,7 +35,7 @@ void System::load_structure(double t) {
 void System::move_supports(double t) {
   if (!structure_ || structure_->support_motion() == nullptr) return;
   structure_->set_time(t);
-  const std::vector<structure::Movement>& now = structure_->support_motion()->of_supports();
+  const std::vector<structure::Movement>& now = structure_->support_motion()->upward();
   fleet_.move_ground({now.front().displacement, now.front().velocity}, {now.back().displacement, now.back().velocity});
 }
 

@@ -9,7 +9,7 @@
 namespace traverse::app {
 std::string batch_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (scene.beam->gradient != 0.0) return "the track is inclined";
-  if (!scene.support_motion.empty()) return "the supports move";
+  if (scene.supports_move()) return "the supports move";
   if (scene.vehicles.empty()) return "the scene has no vehicles";
   if (!scene.load.forces.empty()) return "forces move in addition to the vehicles";
   if (scene.model.vehicles != VehicleModel::linear) return "vehicles are mechanisms, not linear";

@@ -33,7 +33,7 @@ struct EnergyTerms {
 struct Observed {
   std::vector<beam::Response> probes, rail;         // at the scene's probes; empty without a bridge or a rail
   std::vector<std::array<double, 3>> supports;      // fx, fy, moment on the beam, at the ends of spans
-  std::vector<structure::Movement> support_motion;  // of the supports there; empty: they do not move
+  std::array<std::vector<structure::Movement>, 2> support_motion;  // of the supports there, upward and along the beam
   coupling::Observation motion;
   std::optional<beam::GroundForces> ground;     // with a bridge
   std::optional<beam::SleeperForces> sleepers;  // forces of the sleepers in output_sleepers

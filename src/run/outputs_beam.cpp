@@ -34,6 +34,11 @@ constexpr Row<structure::Movement> movement_rows[] = {
     {"velocity", "m/s", of<&structure::Movement::velocity>},
     {"acceleration", "m/s2", of<&structure::Movement::acceleration>},
 };
+constexpr Row<structure::Movement> movement_along_rows[] = {
+    {"displacement_along", "m", of<&structure::Movement::displacement>},
+    {"velocity_along", "m/s", of<&structure::Movement::velocity>},
+    {"acceleration_along", "m/s2", of<&structure::Movement::acceleration>},
+};
 
 /// Resultants {x, y} of all forces on the structure, and their sum. The resultants along x are zero if the structure
 /// has no axial unknowns.
@@ -84,7 +89,8 @@ Balance balance_of(const Observed& now, double gravity, bool axial, double gradi
 const Response& probe(const Observed& now, std::size_t i) { return now.probes[i]; }
 const Response& rail(const Observed& now, std::size_t i) { return now.rail[i]; }
 const Triple& support(const Observed& now, std::size_t i) { return now.supports[i]; }
-const structure::Movement& motion_of(const Observed& now, std::size_t i) { return now.support_motion[i]; }
+const structure::Movement& moved_upward(const Observed& now, std::size_t i) { return now.support_motion[0][i]; }
+const structure::Movement& moved_along(const Observed& now, std::size_t i) { return now.support_motion[1][i]; }
 
 }  // namespace
 
@@ -103,7 +109,9 @@ void add_supports(const Source& source, Outputs& outputs) {
   const std::vector<double> x = source.beam->mesh().span_ends();
   outputs.add_constant("/supports/x", x, "m");
   outputs.add_each("/supports/", support_rows, x.size(), support);
-  if (!source.scene.support_motion.empty()) outputs.add_each("/supports/", movement_rows, x.size(), motion_of);
+  if (!source.scene.support_motion.empty()) outputs.add_each("/supports/", movement_rows, x.size(), moved_upward);
+  if (!source.scene.support_motion_along.empty())
+    outputs.add_each("/supports/", movement_along_rows, x.size(), moved_along);
 }
 
 void add_balance(const Source& source, Outputs& outputs) {

@@ -94,7 +94,7 @@ void RunObserver::store(bool end) {
     beam_->reactions(beam.v, beam.damped_w, beam.a, beam.P.data(), now_.supports);
     if (const structure::SupportMotion* moved = system_.structure()->support_motion()) {
       moved->add_reactions(now_.supports);
-      now_.support_motion = moved->of_supports();
+      now_.support_motion = {moved->upward(), moved->along()};
     }
     now_.ground->evaluate(beam.v, beam.damped_w, beam.a);
     if (now_.sleepers) now_.sleepers->evaluate(beam.v, beam.w);

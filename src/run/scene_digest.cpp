@@ -15,8 +15,7 @@ std::string digest_of(const Scene& scene, std::span<const std::string_view> excl
   std::erase_if(entries, [&](const auto& option) {
     const std::string& name = option.first;
     const bool display_only = name == "verbose" || name.starts_with("ts_monitor") || name.starts_with("log_") ||
-                              name.starts_with("report_") ||
-                              name.find("_view") != name.npos;
+                              name.starts_with("report_") || name.find("_view") != name.npos;
     return display_only || std::find(excluded.begin(), excluded.end(), name) != excluded.end();
   });
   std::sort(entries.begin(), entries.end());

@@ -120,8 +120,9 @@ void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
   if (!beam) return;
   const results::Stage stage(scene.model.modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
   statics = std::make_shared<structure::BeamOperator>(*beam);
-  if (!scene.support_motion.empty())
-    moving_supports = std::make_shared<structure::SupportMotion>(*beam, scene.support_motion);
+  if (scene.supports_move())
+    moving_supports =
+        std::make_shared<structure::SupportMotion>(*beam, scene.support_motion, scene.support_motion_along);
   if (scene.model.modes == 0) return;
   if (scene.by_given_modes())
     modal.emplace(*beam, *statics, scene.model.modes);

@@ -28,6 +28,7 @@ std::string longitudinal_action(const options::Options& o, const Scene& scene) {
   const beam::Foundation& foundation = scene.beam->foundation;
   if (present(foundation, beam::Direction::longitudinal)) return "longitudinal foundations";
   if (scene.beam->temperature && scene.beam->temperature->strain() != 0.0) return "temperature";
+  if (o.has("support_motion_along")) return "support_motion_along";
   if (!option_along_the_track(o, scene).empty()) return "the track's resistance along x";
   if (scene.beam->gradient != 0.0 && (scene.self_weight || !scene.vehicles.empty())) return "track_gradient";
   if (scene.analysis == Analysis::rail_forces) return "the requested rail forces";
@@ -64,6 +65,9 @@ void decide_axial(const options::Options& o, Scene& scene) {
   if (axial_strain && (!stiffness || setting == "false"))
     o.refuse("beam_temperature_uniform", stiffness ? "causes axial strain; allowed with it: model_axial auto or true"
                                                    : "causes axial strain, which needs " + missing);
+  if (o.has("support_motion_along") && (!stiffness || setting == "false"))
+    o.refuse("support_motion_along", stiffness ? "acts along x; allowed with it: model_axial auto or true"
+                                               : "acts along x, which needs " + missing);
   if (setting == "true" && !stiffness) o.refuse("model_axial", "needs " + missing);
   if (const std::string along = option_along_the_track(o, scene); !along.empty() && (!stiffness || setting == "false"))
     o.refuse(along, stiffness ? "acts along x; allowed with it: model_axial auto or true"

@@ -8,13 +8,12 @@
 namespace traverse::app {
 namespace {
 
-constexpr const char* motion_file = "support_motion";
-
-/// The displacements of the columns of the file.
-std::vector<base::TimeFunction> displacements(const options::Options& o, std::size_t supports) {
+/// The displacements of the columns of a file.
+std::vector<base::TimeFunction> displacements(const options::Options& o, const std::string& file,
+                                              std::size_t supports) {
   const bool integrated = o.choice("support_motion_values") == "acceleration";
   try {
-    const auto columns = options::read_columns(o.path(motion_file), 2, supports + 1, options::Order::rising);
+    const auto columns = options::read_columns(o.path(file), 2, supports + 1, options::Order::rising);
     if (columns.size() != 2 && columns.size() != supports + 1)
       throw InputError("allowed: a time and one column, or one for each span end");
     std::vector<base::TimeFunction> all;
@@ -25,33 +24,59 @@ std::vector<base::TimeFunction> displacements(const options::Options& o, std::si
     }
     return all;
   } catch (const InputError& error) {
-    o.refuse(motion_file, error.what());
+    o.refuse(file, error.what());
   }
 }
 
-}  // namespace
-
-void read_support_motion(const options::Options& o, Scene& scene) {
-  if (!o.has(motion_file)) {
-    if (o.has("support_motion_values")) o.refuse("support_motion_values", "needs support_motion");
-    return;
-  }
-  if (!scene.beam || scene.by_given_modes()) o.refuse(motion_file, "needs a beam with supports (beam_spans)");
+/// Refuses what does not go with moving supports.
+void check_motion(const options::Options& o, const std::string& file, const Scene& scene) {
+  if (!scene.beam || scene.by_given_modes()) o.refuse(file, "needs a beam with supports (beam_spans)");
   const beam::BeamModel& beam = *scene.beam;
-  if (scene.analysis != Analysis::transient) o.refuse(motion_file, "is for transient runs only (scene_analysis)");
+  if (scene.analysis != Analysis::transient) o.refuse(file, "is for transient runs only (scene_analysis)");
   const auto on_ground =
       [&](const beam::FoundationKind& kind) {  // a tension is a rotational bed, but not on the ground
         const bool tension = kind.bed == &beam::Foundation::rotational_bed && o.has("beam_tension");
         return beam::present(beam.foundation, kind) && !tension;
       };
   if (beam.track || std::ranges::any_of(beam::foundation_kinds, on_ground))
-    o.refuse(motion_file, "is not allowed with a foundation or a layered track, whose ground would move too");
-  if (scene.model.modes > 0) o.refuse(motion_file, "needs elements; allowed: model_modes 0");
-  if (scene.sweep) o.refuse(motion_file, "is for single runs; allowed in studies, one by one, without sweep options");
-  if (!std::ranges::all_of(beam.supports, beam::fixes_vertical))
-    o.refuse(motion_file,
-             "needs supports that hold the beam vertically at every span end (support_types, support_stiffness)");
-  scene.support_motion = displacements(o, beam.supports.size());
+    o.refuse(file, "is not allowed with a foundation or a layered track, whose ground would move too");
+  if (scene.model.modes > 0) o.refuse(file, "needs elements; allowed: model_modes 0");
+  if (scene.sweep) o.refuse(file, "is for single runs; allowed in studies, one by one, without sweep options");
+}
+
+void check_motion_along(const options::Options& o, const std::string& file, const Scene& scene) {
+  if (!std::ranges::any_of(scene.beam->supports, beam::fixes_axial))
+    o.refuse(file, "needs a support that holds the beam along x (support_types)");
+  const auto has_friction = [](const Vehicle& vehicle) {
+    return std::ranges::any_of(vehicle.wheels, [](const Wheel& wheel) { return wheel.law.friction > 0.0; });
+  };
+  if (scene.train.drive == Drive::free || std::ranges::any_of(scene.vehicles, has_friction))
+    o.refuse(
+        file,
+        "is not allowed with train_drive free or wheels with friction, on which the ground beside the bridge would "
+        "act along x");
+}
+
+}  // namespace
+
+void read_support_motion(const options::Options& o, Scene& scene) {
+  const std::string upward = "support_motion", along = "support_motion_along", values = "support_motion_values";
+  if (!o.has(upward) && !o.has(along)) {
+    if (o.has(values)) o.refuse(values, "needs " + upward + " or " + along);
+    return;
+  }
+  check_motion(o, o.has(upward) ? upward : along, scene);
+  const std::vector<beam::Support>& supports = scene.beam->supports;
+  if (o.has(upward)) {
+    if (!std::ranges::all_of(supports, beam::fixes_vertical))
+      o.refuse(upward,
+               "needs supports that hold the beam vertically at every span end (support_types, support_stiffness)");
+    scene.support_motion = displacements(o, upward, supports.size());
+  }
+  if (o.has(along)) {
+    check_motion_along(o, along, scene);
+    scene.support_motion_along = displacements(o, along, supports.size());
+  }
   scene.modes_open = false;
 }
 

@@ -1,5 +1,5 @@
-// Supports that move vertically by given displacements u_s(t), as in an earthquake or beside a pile driver. The motion
-// of the beam is
+// Supports that move vertically and along the beam by given displacements u_s(t), as in an earthquake or beside a pile
+// driver. The motion of the beam is
 //
 //   v = sum of R_s u_s + z,   M z'' + C z' + K z = P - sum of M R_s u_s''
 //
@@ -23,8 +23,9 @@ struct Movement {
 
 class SupportMotion {
  public:
-  /// Collective. displacement: upward displacement of the support at each span end, m.
-  SupportMotion(const beam::Beam& beam, std::vector<base::TimeFunction> displacement);
+  /// Collective. The displacement of the support at each span end upward and along the beam, m; empty: none. Supports
+  /// that do not hold the beam along x do not move it along x.
+  SupportMotion(const beam::Beam& beam, std::vector<base::TimeFunction> upward, std::vector<base::TimeFunction> along);
 
   /// Sets all following quantities to their values at t.
   void set_time(double t);
@@ -35,21 +36,24 @@ class SupportMotion {
   const std::vector<double>& acceleration() const { return moved_[2]; }
   /// The load -sum of M R_s u_s'' on this rank's free unknowns, N and N m.
   const std::vector<double>& load() const { return load_; }
-  /// The motion of the support at each span end.
-  const std::vector<Movement>& of_supports() const { return now_; }
+  /// The motion of the support at each span end upward, and along the beam.
+  const std::vector<Movement>& upward() const { return now_[0]; }
+  const std::vector<Movement>& along() const { return now_[1]; }
   /// The parts of the reactions that come from the motion of the held unknowns themselves (Beam::reactions has those of
   /// the free ones): {fx, fy, moment} at every span end.
   void add_reactions(std::vector<std::array<double, 3>>& reactions) const;
 
  private:
-  struct Unit {  // a unit displacement of one support
-    std::size_t support = 0;
+  struct Unit {  // a unit displacement of one support: upward (0) or along the beam (1)
+    std::size_t direction = 0, support = 0;
     std::vector<double> shape, inertia;                                   // R_s and M R_s
     std::vector<std::array<double, 3>> by_displacement, by_acceleration;  // reactions
   };
-  std::vector<base::TimeFunction> function_;
+  void add_unit(const beam::Beam& beam, std::size_t direction, std::size_t support);
+
+  std::array<std::vector<base::TimeFunction>, 2> function_;  // upward, along the beam
   std::vector<Unit> units_;
-  std::vector<Movement> now_;
+  std::array<std::vector<Movement>, 2> now_;
   std::array<std::vector<double>, 3> moved_;
   std::vector<double> load_;
 };

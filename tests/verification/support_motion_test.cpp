@@ -196,6 +196,61 @@ TEST(SupportMotion, SlowMotionOfOneSupport) {
   }
 }
 
+// A bar held at its left end, whose support moves along it: a sum of the modes sin((2n - 1) pi x / 2 L) in x.
+TEST(SupportMotion, AlongTheBeam) {
+  constexpr double EA = 4.0e9, b = 1.0e-3, wave = std::numbers::pi / 2.0 / span, h = 2e-5;
+  const TemporaryFolder folder;
+  Results run = run_yaml(
+      "beam: {spans: 20, EI: 8.0e9, EA: 4.0e9, mass: 9000, elements_per_span: 80, rayleigh: [0, 1.0e-3]}\n"
+      "load: {forces: 0, speed: 0}\nts: {max_time: 0.6, dt: 2.0e-4}\noutput: {interval: 0.01, probes: [10, 20]}\n",
+      {{"support_motion_along", pulse_file(folder, {1.0})}});
+  const std::vector<double> time = run.time(), along = run("/probes/axial_displacement"),
+                            reaction = run("/supports/reaction"), support = run("/supports/displacement_along");
+  std::array<double, 2 * modes + 2> s{};  // modal coordinates, the support's displacement, and their rates
+  const auto rate = [&](double t, const auto& now) {
+    std::array<double, 2 * modes + 2> r{};
+    for (std::size_t n = 0; n <= modes; ++n) {
+      const double k = 2.0 * static_cast<double>(n) + 1.0, omega2 = k * k * wave * wave * EA / mass;
+      r[n] = now[modes + 1 + n];
+      r[modes + 1 + n] = n == modes ? pulse(t) : -4.0 / (k * pi) * pulse(t) - omega2 * (b * r[n] + now[n]);
+    }
+    return r;
+  };
+  const auto moved = [&](const auto& from, double step, const auto& by) {
+    auto to = from;
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += step * by[i];
+    return to;
+  };
+  double greatest = 0.0, error = 0.0, greatest_force = 0.0, error_of_force = 0.0;
+  for (std::size_t i = 0, step = 0; i < time.size(); ++i) {
+    for (; static_cast<double>(step) * h < time[i] - 1e-9; ++step) {
+      const double t = static_cast<double>(step) * h;
+      const auto k1 = rate(t, s), k2 = rate(t + 0.5 * h, moved(s, 0.5 * h, k1)),
+                 k3 = rate(t + 0.5 * h, moved(s, 0.5 * h, k2)), k4 = rate(t + h, moved(s, h, k3));
+      s = moved(moved(moved(moved(s, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4);
+    }
+    double force = mass * span * pulse(time[i]);  // the support accelerates all mass
+    for (const std::size_t probe : {0U, 1U}) {
+      double u = s[modes];
+      for (std::size_t n = 0; n < modes; ++n)
+        u += std::sin((2.0 * static_cast<double>(n) + 1.0) * pi / 4.0 * static_cast<double>(probe + 1)) * s[n];
+      greatest = std::max(greatest, std::abs(u - s[modes]));
+      error = std::max(error, std::abs(along[2 * i + probe] - u));
+    }
+    const auto now = rate(time[i], s);
+    for (std::size_t n = 0; n < modes; ++n)
+      force += mass * now[modes + 1 + n] / ((2.0 * static_cast<double>(n) + 1.0) * wave);
+    greatest_force = std::max(greatest_force, std::abs(force));
+    error_of_force = std::max(error_of_force, std::abs(reaction[6 * i] - force));
+    EXPECT_NEAR(support[2 * i], s[modes], 1e-9);
+  }
+  RecordProperty("error", text(error / greatest));
+  RecordProperty("force_error", text(error_of_force / greatest_force));
+  EXPECT_LT(error, 3e-4 * greatest);
+  EXPECT_LT(error_of_force, 3e-4 * greatest_force);
+  EXPECT_LT(energy_error(run), 1e-6);
+}
+
 // The runs of a study have the motion, too, also with linear vehicles.
 TEST(SupportMotion, InAStudy) {
   const TemporaryFolder folder;
@@ -221,6 +276,12 @@ TEST(SupportMotion, RefusedWhereTheGroundWouldMoveToo) {
   EXPECT_NE(message(bridge + rest + "foundation: {vertical_bed_k: 1.0e6}\n").find("support_motion"), std::string::npos);
   EXPECT_NE(message(bridge + rest + "support: {stiffness: 1.0e8}\n").find("support_motion"), std::string::npos);
   EXPECT_NE(message(bridge + rest + "scene: {analysis: static}\n").find("support_motion"), std::string::npos);
+  const std::string without_EA = message_of([&] { run_yaml(bridge + rest, {{"support_motion_along", file}}); });
+  EXPECT_NE(without_EA.find("beam_EA"), std::string::npos);
+  const auto along = [&](const std::string& text) {
+    return message_of([&] { run_yaml(text, {{"support_motion_along", file}, {"beam_EA", "4e9"}}); });
+  };
+  EXPECT_NE(along(bridge + rest + "support: {types: [roller, roller]}\n").find("support_types"), std::string::npos);
 }
 
 }  // namespace

@@ -68,6 +68,7 @@ struct BeamModel {
   std::vector<double> cuts;               // stations of additional nodes, m, ascending
   std::vector<Support> supports;   // one at every span end: spans + 1; separate spans share the support between them
   std::vector<double> settlement;  // m upward, settlements of supports that fix v: one at every span end, or empty
+  std::vector<double> shift;       // m along the beam, displacements of supports that fix u: likewise
   std::optional<Temperature> temperature;
   Foundation foundation;
   std::optional<LayeredTrack> track;

@@ -93,7 +93,8 @@ struct Scene {
   std::optional<beam::BeamModel> beam;  // none: mechanisms without a bridge, or on rigid ground
   Damping damping;
   bool self_weight = false;
-  std::vector<base::TimeFunction> support_motion;  // upward displacement of each support, m; empty: at rest
+  // Displacement of each support upward and along the beam, m; empty: at rest.
+  std::vector<base::TimeFunction> support_motion, support_motion_along;
   std::vector<Vehicle> vehicles;                   // types of vehicles in the trains
   Train train;
   MovingLoad load;
@@ -148,6 +149,7 @@ struct Scene {
   /// Whether the bridge consists of given modes, without elements.
   bool by_given_modes() const { return beam && beam->given; }
   /// Whether the motion is exact in time: modes under moving forces alone, but not single runs of given modes.
+  bool supports_move() const { return !support_motion.empty() || !support_motion_along.empty(); }
   bool exact_in_time() const {
     return model.modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep);
   }
