@@ -31,8 +31,8 @@ struct EnergyTerms {
 
 /// The values at a stored instant.
 struct Observed {
-  std::vector<beam::Response> probes, rail;         // at the scene's probes; empty without a bridge or a rail
-  std::vector<std::array<double, 3>> supports;      // fx, fy, moment on the beam, at the ends of spans
+  std::vector<beam::Response> probes, rail;     // at the scene's probes; empty without a bridge or a rail
+  std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam, at the ends of spans
   std::array<std::vector<structure::Movement>, 2> support_motion;  // of the supports there, upward and along the beam
   coupling::Observation motion;
   std::optional<beam::GroundForces> ground;     // with a bridge

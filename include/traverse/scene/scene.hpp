@@ -95,7 +95,7 @@ struct Scene {
   bool self_weight = false;
   // Displacement of each support upward and along the beam, m; empty: at rest.
   std::vector<base::TimeFunction> support_motion, support_motion_along;
-  std::vector<Vehicle> vehicles;                   // types of vehicles in the trains
+  std::vector<Vehicle> vehicles;  // types of vehicles in the trains
   Train train;
   MovingLoad load;
   track::Profile profile;
