@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds Traverse where needed, runs it in this folder and draws what it has written to results/.
+# Builds Traverse where needed, runs it in this folder, and makes a picture and a page for any browser of each results
+# file in results/.
 #   ./run.sh                                                     the example: a train over three spans
 #   ./run.sh -options_file options/scenes/x.yml -train_speed 40  any arguments of the program
 #   RANKS=2 ./run.sh ...                                         on two ranks
@@ -27,6 +28,7 @@ status=0
 "${program[@]}" "$@" || status=$?
 find results -name '*.h5' -newer build/run.start | while read -r results; do
   /usr/bin/python3 scripts/picture.py "$results" "${results%.h5}.png"
+  /usr/bin/python3 scripts/page.py "$results" "${results%.h5}.html"
   case ${REPORT:-} in
     0) ;;
     '') scripts/traverse-report --if-limits --folder "$folder" --program build/traverse "$results" ;;

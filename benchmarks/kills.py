@@ -29,11 +29,15 @@ def words(build, model, file, end):
 
 
 def series(file):
-    """All numbers of a file by the name of their dataset."""
+    """All numbers of a file by the name of their dataset; dimensions without coordinates have none."""
     found = {}
+
+    def take(name, item):
+        if isinstance(item, h5py.Dataset) and item.dtype.kind == "f" and b"netCDF" not in item.attrs.get("NAME", b""):
+            found[name] = item[()]
+
     with h5py.File(file) as results:
-        results.visititems(lambda name, item: found.update({name: item[()]})
-                           if isinstance(item, h5py.Dataset) and item.dtype.kind == "f" else None)
+        results.visititems(take)
     return found
 
 

@@ -8,12 +8,12 @@ set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME traverse)
 
 install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
 install(PROGRAMS scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY scripts/traverse_report DESTINATION ${share}/python FILES_MATCHING PATTERN *.py)
-install(FILES scripts/animate.py scripts/comfort.py scripts/export.py scripts/export_tables.py scripts/export_xdmf.py
-        scripts/fatigue.py scripts/picture.py scripts/picture_axes.py scripts/picture_data.py scripts/picture_hanging.py
-        scripts/picture_layout.py scripts/picture_model.py
-        scripts/picture_motion.py scripts/picture_rail.py scripts/picture_vehicles.py scripts/picture_words.py
-        DESTINATION ${share}/python)
+install(DIRECTORY scripts/traverse_report scripts/traverse_page DESTINATION ${share}/python
+        FILES_MATCHING PATTERN *.py PATTERN *.csv PATTERN *.yml PATTERN *.html PATTERN *.css PATTERN *.js)
+file(GLOB pictures CONFIGURE_DEPENDS scripts/picture*.py)
+install(FILES ${pictures} scripts/animate.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
+        scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_tables.py
+        scripts/export_xdmf.py scripts/fatigue.py scripts/page.py DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
 install(FILES examples/three_span_train.py DESTINATION ${share}/examples)
@@ -78,7 +78,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_NAME traverse)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_TRAVERSE_PACKAGE_RECOMMENDS "openmpi-bin, python3-h5py, python3-matplotlib, python3-openpyxl, python3-xarray, python3-yaml")
+set(CPACK_DEBIAN_TRAVERSE_PACKAGE_RECOMMENDS "openmpi-bin, libjs-chart.js, python3-h5py, python3-matplotlib, python3-openpyxl, python3-xarray, python3-yaml")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtraverse-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS

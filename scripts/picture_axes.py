@@ -6,11 +6,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 from picture_data import spread, thin
 from picture_layout import NAME, NOTE
+from picture_table import draw_curve, keep
 
 # Okabe and Ito's colours, which colour-blind readers can distinguish; the darker ones first, for text.
 COLOURS = ["#0072B2", "#D55E00", "#007A59", "#A8578A", "#8A6A00", "#3A3A3A"]
 STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2))]  # if there are more curves than colours
 GREY, PALE = "#666666", "#B8B8B8"
+RED = "#B00020"  # limits, and lost contact
 LABEL_SIZE, SMALLEST_LABEL = 10, 5
 
 plt.rcParams.update({
@@ -20,6 +22,14 @@ plt.rcParams.update({
     "text.parse_math": False,  # the name of a scene may contain $
     "axes.axisbelow": True, "lines.linewidth": 1.5, "lines.solid_joinstyle": "round", "axes.xmargin": 0.0,
 })
+
+
+class Panel(NamedTuple):
+    """A part of a picture: a function of its axes and of the instant of the greatest deflection, which may return
+    another instant. A wide panel uses the room of the names beside it too."""
+    draw: object
+    height: float = 1.75  # inches
+    wide: bool = False
 
 
 class End(NamedTuple):
@@ -48,9 +58,9 @@ def label_at_ends(ax, ends):
                     fontsize=size, annotation_clip=False, arrowprops=line, gid=NAME)
 
 
-def note_beside(ax, words, size=9):
+def note_beside(ax, words, size=9, colour=GREY):
     """Draws a note beside the title, above the names of the curves."""
-    ax.text(1.035, 1.03, words, transform=ax.transAxes, va="bottom", fontsize=size, color=GREY, gid=NOTE)
+    ax.text(1.035, 1.03, words, transform=ax.transAxes, va="bottom", fontsize=size, color=colour, gid=NOTE)
 
 
 SMALL = {"mm": ("µm", 0.01), "m/s²": ("mm/s²", 0.01), "kN": ("N", 1.0), "kN m": ("N m", 1.0)}  # below: the smaller unit
@@ -70,6 +80,7 @@ def time_panel(ax, results, title, unit, curves, band=None, worst=None):
     band = band and (band[0], factor * band[1], factor * band[2])
     ax.set_title(title)
     ax.set_ylabel(unit)
+    ax.set_xlabel("time (s)")
     time, ends = results.time, []
     if band is not None:
         name, least, greatest = band
@@ -77,9 +88,11 @@ def time_panel(ax, results, title, unit, curves, band=None, worst=None):
         u, upper = thin(time, greatest)
         grid = np.union1d(t, u)
         ax.fill_between(grid, np.interp(grid, t, lower), np.interp(grid, u, upper), color=PALE, alpha=0.55, lw=0)
+        keep(ax, f"{name}: least", t, lower)
+        keep(ax, f"{name}: greatest", u, upper)
         ends.append(End(0.5 * (least[-1] + greatest[-1]), name, GREY))
     for (name, values), colour in zip(curves, COLOURS):
-        ax.plot(*thin(time, values), color=colour)
+        draw_curve(ax, *thin(time, values), name, color=colour)
         ends.append(End(values[-1], name, colour))
     if worst is not None and time[0] <= worst <= time[-1]:
         ax.axvline(worst, color=GREY, lw=0.9, ls=(0, (4, 3)))

@@ -7,7 +7,6 @@ import numpy as np
 
 MOST_CURVES = 6
 MOST_WHEELS = 4
-MOST_TRAINS = 14
 MOST_POINTS = 4000
 
 
@@ -160,10 +159,21 @@ def spaced(name):
     return re.sub(r"(?<=[a-z])(\d+)$", r" \1", name.replace("_", " "))
 
 
+def part_name(vehicle, count, name):
+    """The name of a part of a vehicle as text, with the vehicle if there are several: 'first vehicle, front wheel'."""
+    return spaced(name) if count == 1 else f"{ordinal(vehicle, count, 'vehicle')}, {spaced(name)}"
+
+
 def spring_names(results, model, kind):
     """The names of the springs of a vehicle type, in the order of its rows; empty if they are unknown."""
     names = [name.strip() for name in results.options.get(f"vehicle_{model.type_name(kind)}_springs", "").split(",")]
     return names if len(names) == len(model.rows(kind, "springs", 6)) else []
+
+
+def spring_gaps(results):
+    """[(x, gap)] of the vertical foundation springs below a gap, m."""
+    rows = results.values("model/foundation/vertical")
+    return [] if rows is None else [(row[0], row[3]) for row in rows if row[3] > 0.0]
 
 
 def bodies_of(vehicle):

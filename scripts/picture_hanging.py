@@ -1,19 +1,21 @@
-"""Bodies that hang from a vehicle or from the ground on one joint or on ropes, like the load of a crane: where they are,
-swing, and force in the ropes or in the pin."""
+"""Bodies that hang from a vehicle or from the ground on one joint or on ropes, like the load of a crane: where they
+are, swing, and force in the ropes or in the pin."""
 
 from typing import NamedTuple
 
 import numpy as np
+from engineering_units import shown
 from picture_axes import COLOURS, GREY, PALE, time_panel
-from picture_data import MOST_CURVES, choose, ordinal, spring_names
+from picture_data import MOST_CURVES, choose, part_name, spring_names
 from picture_model import Model
+from picture_table import draw_curve
 
 TURNS = ("revolute", "distance")  # joints that allow a swing
 
 
 class Hanging(NamedTuple):
-    """Swing over the samples, positive with the load ahead along x: the angle from the vertical, degrees, or on ropes the
-    distance along x, m; and force, N."""
+    """Swing over the samples, positive with the load ahead along x: the angle from the vertical, degrees, or on ropes
+    the distance along x, m; and force, N."""
     vehicle: int
     body: str
     joint: str  # or the names of the ropes
@@ -39,9 +41,10 @@ def swinging(model, kind):
 
 
 def on_ropes(results, model, kind):
-    """Yields (names, body, end on it, supporting body, end on that): bodies that hang on springs in tension only, with the
-    means of their ends."""
-    names, springs, bodies = spring_names(results, model, kind), model.rows(kind, "springs", 6), model.rows(kind, "bodies", 3)
+    """Yields (names, body, end on it, supporting body, end on that): bodies that hang on springs in tension only, with
+    the means of their ends."""
+    names, springs = spring_names(results, model, kind), model.rows(kind, "springs", 6)
+    bodies = model.rows(kind, "bodies", 3)
     tense = [results.options.get(f"vehicle_{model.type_name(kind)}_{name}_side") == "tension" for name in names]
     jointed = {int(body) for joint in model.joint_ends(kind) for body in joint[4:]}
     for body in range(len(bodies)):
@@ -49,7 +52,8 @@ def on_ropes(results, model, kind):
         others = {int(springs[i, 4] + springs[i, 5]) - body for i in own}
         if body in jointed or len(names) == 0 or not own or not all(tense[i] for i in own) or len(others) != 1:
             continue
-        ends = np.array([springs[i, [2, 3, 0, 1]] if springs[i, 5] == body else springs[i, :4] for i in own]).mean(axis=0)
+        ends = [springs[i, [2, 3, 0, 1]] if springs[i, 5] == body else springs[i, :4] for i in own]
+        ends = np.array(ends).mean(axis=0)
         if ends[3] > ends[1]:
             yield [names[i] for i in own], body, ends[:2], others.pop(), ends[2:]
 
@@ -87,15 +91,17 @@ def hanging_of(results):
 
 
 def draw_places(ax, results, hanging):
-    """Draws the loads under their ropes at some instants, and their paths; the height is not in the scale of the length."""
+    """Draws the loads under their ropes at some instants, and their paths; the height is not in the scale of the
+    length."""
     low, high = min(one.place[:, 1].min() for one in hanging), max(one.top[:, 1].max() for one in hanging)
-    ends = [*(results.supports if results.supports is not None else []), *(x for one in hanging for x in one.place[:, 0])]
+    ends = [x for one in hanging for x in one.place[:, 0]]
+    ends += [] if results.supports is None else list(results.supports)
     left, right = min(ends), max(ends)
     ax.set(xlim=(left - 0.02 * (right - left), right + 0.02 * (right - left)),
            ylim=(low - 0.22 * (high - low), high + 0.12 * (high - low)))
     ax.axhline(0.0, color=PALE, lw=1.0)
     for one, colour in zip(hanging, COLOURS):
-        ax.plot(*one.place.T, color=colour, lw=1.0)
+        draw_curve(ax, *one.place.T, f"path of the {one.body.replace('_', ' ')}", color=colour, lw=1.0)
         last = None
         for i in np.linspace(0, results.rows - 1, 200).round().astype(int):
             if last is None or np.hypot(*((one.place[i] - one.place[last]) / (right - left, high - low))) > 0.1:
@@ -104,22 +110,24 @@ def draw_places(ax, results, hanging):
                 ax.plot([u, x], [v, y], color=GREY, lw=1.0)
                 ax.plot([x], [y], "s", ms=8, color=colour, zorder=4)
                 ax.plot([u], [v], "o", ms=5, color="white", mec=GREY, zorder=4)
-                ax.annotate(f"{results.time[i]:.1f} s", (x, y), (8, -6), textcoords="offset points", va="top", fontsize=8.5,
-                            color=GREY)
-    ax.set(title="The load under its rope at some instants, and its path", ylabel="m", xlabel="place along the track (m)")
+                ax.annotate(f"{results.time[i]:.1f} s", (x, y), (8, -6), textcoords="offset points", va="top",
+                            fontsize=8.5, color=GREY)
+    ax.set(title="The load under its rope at some instants, and its path", ylabel="m",
+           xlabel="place along the track (m)")
 
 
 def draw(ax, results, hanging, what):
     """Draws the 'swing' or the 'force' over time."""
     count = len(results.vehicles)
-    ropes = all(one.ropes for one in hanging)
-    values = [getattr(one, what) * (1.0 if what == "swing" else 1e-3) for one in hanging]
+    ropes, (unit, factor) = all(one.ropes for one in hanging), shown("force") if what == "force" else ("", 1.0)
+    values = [factor * getattr(one, what) for one in hanging]
     chosen = choose(len(values), MOST_CURVES, np.array([np.abs(v).max() for v in values]))
     note = "" if len(chosen) == len(values) else f" ({len(chosen)} of {len(values)})"
-    curves = [(f"{ordinal(hanging[i].vehicle, count, 'vehicle')}, "
-               f"{(hanging[i].body if what == 'swing' else hanging[i].joint).replace('_', ' ')}", values[i]) for i in chosen]
+    names = [one.body if what == "swing" else one.joint for one in hanging]
+    curves = [(part_name(hanging[i].vehicle, count, names[i]), values[i]) for i in chosen]
     if what == "force":
-        time_panel(ax, results, f"Force of its {'ropes together' if ropes else 'joint'}{note}", "kN", curves)
+        where = "of the ropes of the load together" if ropes else "in the joint of the hanging body"
+        time_panel(ax, results, f"Force {where}{note}", unit, curves)
     elif ropes:
         time_panel(ax, results, f"Sway: the load relative to the top of its ropes, positive ahead{note}", "m", curves)
     else:

@@ -10,7 +10,8 @@ LEADING = 1.4 / 72.0  # inches from line to line, per point of font size
 
 def width_of(text, size, weight="normal"):
     """The width of a text, inches."""
-    return text_to_path.get_text_width_height_descent(text or " ", FontProperties(size=size, weight=weight), False)[0] / 72.0
+    font = FontProperties(size=size, weight=weight)
+    return text_to_path.get_text_width_height_descent(text or " ", font, False)[0] / 72.0
 
 
 def wrapped(text, inches, size, weight="normal"):
@@ -45,16 +46,16 @@ def draw_key(ax, entries, inches, below, size):
     y = -below
     for row in range(rows):
         for column, i in enumerate(range(row, len(lines), rows)):
-            ax.text(column * inches / columns / width, y / height, "\n".join(lines[i]), transform=ax.transAxes, va="top",
-                    fontsize=size, color=entries[i][2], linespacing=1.2)
+            ax.text(column * inches / columns / width, y / height, "\n".join(lines[i]), transform=ax.transAxes,
+                    va="top", fontsize=size, color=entries[i][2], linespacing=1.2)
         y -= max(map(len, lines[row::rows])) * LEADING * size
     return -y - below + 0.5 * LEADING * size
 
 
 def fit(ax, right, below, size=9.0):
     """Wraps the title of the axes and the notes beside it. Replaces names that exceed `right` (a fraction of the width
-    of the figure) by numbers, with a key at the distance `below` (inches) below the axes. Returns the additional heights
-    of title and key, inches."""
+    of the figure) by numbers, with a key at the distance `below` (inches) below the axes. Returns the additional
+    heights of title and key, inches."""
     box, figure = ax.get_position(), ax.figure
     width = box.width * figure.get_figwidth()
     title = ax._left_title
@@ -75,13 +76,13 @@ def fit(ax, right, below, size=9.0):
     return above, draw_key(ax, entries, room, below, size)
 
 
-def stack(figure, axes, height, gaps):
-    """Places axes of this height below each other, with gaps above, between and below them in inches, and sets the
+def stack(figure, axes, heights, gaps):
+    """Places axes of these heights below each other, with gaps above, between and below them in inches, and sets the
     height of the figure."""
-    total = sum(gaps) + height * len(axes)
+    total = sum(gaps) + sum(heights)
     figure.set_figheight(total)
     y = total
-    for ax, gap in zip(axes, gaps):
+    for ax, height, gap in zip(axes, heights, gaps):
         y -= gap + height
         box = ax.get_position()
         ax.set_position([box.x0, y / total, box.width, height / total])

@@ -10,9 +10,11 @@ from picture_data import speed_of
 DARK, GREY, BODY, FORCE = "#333333", "#666666", "#C9D8E3", "#B03A00"
 CONCRETE = 2400.0  # kg/m3
 MOST_SYMBOLS = 80  # of one kind
+GAP = -8.0  # points, top of a spring that the beam reaches only when a gap has closed
 MARKERS = {"pinned": "^", "roller": "o", "clamped": "s", "guided": "D"}
 WORDS = {"pinned": "pinned", "roller": "roller", "clamped": "clamped", "guided": "guided: moves vertically",
-         "vertical": "spring", "longitudinal": "spring along the track", "rotational": "spring against rotation",
+         "vertical": "spring", "gap": "spring below a gap", "longitudinal": "spring along the track",
+         "rotational": "spring against rotation",
          "hinge": "hinge", "crack": "crack, a rotational spring", "separate": "joint of separate spans"}
 
 
@@ -120,10 +122,12 @@ def draw_foundation(ax, model, low, high):
         places = places[(places >= low) & (places <= high)]
         if len(places) > MOST_SYMBOLS:
             places = places[np.linspace(0, len(places) - 1, MOST_SYMBOLS).round().astype(int)]
+        open_below = {x for x, _, _, gap, *_ in data if gap > 0.0} if kind == "vertical" else set()
         for x in places:
-            draw_spring(ax, x, base)
-        if len(places):
-            drawn.add(base)
+            draw_spring(ax, x, base, -2.0 if x not in open_below else GAP)
+            if x in open_below:
+                draw_points(ax, (x, 0.0), [(-5.5, GAP), (5.5, GAP)], 1.8, FORCE)
+            drawn.add("gap" if x in open_below else base)
     return drawn
 
 
@@ -159,8 +163,9 @@ def draw_hinge(ax, x, joint):
 
 
 def symbols_in_words(kinds):
-    """The drawn kinds as text: '▲ pinned   ● roller   spring'."""
-    shapes = {"pinned": "△ ", "roller": "○ ", "clamped": "□ ", "guided": "◇ ", "hinge": "∘ ", "crack": "≀ ", "separate": "‖ "}
+    """The drawn kinds as text: '△ pinned    ○ roller    spring'."""
+    shapes = {"pinned": "△ ", "roller": "○ ", "clamped": "□ ", "guided": "◇ ", "hinge": "∘ ", "crack": "≀ ",
+              "separate": "‖ "}
     return "    ".join(shapes.get(kind, "") + WORDS[kind] for kind in WORDS if kind in kinds)
 
 

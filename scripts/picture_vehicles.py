@@ -1,10 +1,14 @@
 """Panels of the vehicles: wheel forces, accelerations of car bodies, signals of sensors."""
 
 import numpy as np
+from engineering_units import shown
 from picture_axes import COLOURS, time_panel
 from picture_data import (
-    CALLED_CAR, MOST_CURVES, MOST_WHEELS, bodies_of, car_body, choose, envelope, natural, ordinal, spaced, spring_names)
+    CALLED_CAR, MOST_CURVES, MOST_WHEELS, bodies_of, car_body, choose, envelope, natural, ordinal, part_name, spaced,
+    spring_names)
 from picture_model import Model
+from picture_table import keep
+from picture_track import draw_losses
 
 FEWEST_LINKS = 8  # joints of the type distance with numbered names that make a chain
 
@@ -32,29 +36,33 @@ def sensors_of(results):
 
 
 def draw_wheels(ax, results, wheels):
-    count = len(results.vehicles)
+    """Draws the forces of a few wheels, or of the first and the last one with the range of all; losses of contact are
+    gaps."""
+    count, (unit, factor) = len(results.vehicles), shown("force")
     title = "Wheel forces on the track" if results.supports is not None else "Wheel forces"
     if len(wheels) <= MOST_WHEELS:
-        curves = [(f"{ordinal(k, count, 'vehicle')}, {name.replace('_', ' ')}", 1e-3 * results.over_time(data))
+        curves = [(part_name(k, count, name), factor * results.over_time(data))
                   for k, name, data in wheels]
-        time_panel(ax, results, title, "kN", curves)
-        return
-    least, greatest = envelope(results, (1e-3 * results.over_time(data) for _, _, data in wheels))
-    curves = [(f"{end} wheel of the train", 1e-3 * results.over_time(wheels[i][2]))
-              for i, end in ((0, "first"), (-1, "last"))]
-    time_panel(ax, results, title, "kN", curves, (f"all {len(wheels)} wheels, least to greatest", least, greatest))
+        time_panel(ax, results, title, unit, curves)
+    else:
+        least, greatest = envelope(results, (factor * results.over_time(data) for _, _, data in wheels))
+        curves = [(f"{end} wheel of the train", factor * results.over_time(wheels[i][2]))
+                  for i, end in ((0, "first"), (-1, "last"))]
+        time_panel(ax, results, title, unit, curves, (f"all {len(wheels)} wheels, least to greatest", least, greatest))
+    draw_losses(ax, results)
 
 
 def draw_static_wheels(ax, results, wheels):
     """Draws the wheel forces of one instant, one bar per wheel, from the front of the train."""
-    forces = [1e-3 * data[0] for _, _, data in wheels]
-    ax.set_title("Wheel forces, from the front of the train")
-    ax.set_ylabel("kN")
+    unit, factor = shown("force")
+    forces = [factor * data[0] for _, _, data in wheels]
+    ax.set(title="Wheel forces, from the front of the train", ylabel=unit, xlabel="number of the wheel")
+    keep(ax, "force", np.arange(1.0, len(forces) + 1.0), forces)
     ax.bar(np.arange(len(forces)), forces, width=0.6, color=COLOURS[0])
     ax.set_xmargin(0.03)
     ax.grid(False, axis="x")
     if len(forces) <= MOST_CURVES:
-        names = [f"{ordinal(k, len(results.vehicles), 'vehicle')},\n{name.replace('_', ' ')}" for k, name, _ in wheels]
+        names = [part_name(k, len(results.vehicles), name).replace(", ", ",\n") for k, name, _ in wheels]
         ax.set_xticks(np.arange(len(forces)), names, fontsize=9)
     else:
         ax.set_xticks([])
@@ -67,8 +75,8 @@ def with_article(noun):
 
 def draw_accelerations(ax, results, cars):
     """Draws vertical accelerations of car bodies; other bodies keep their own names."""
-    count = len(cars)
-    series = [results.over_time(car["acceleration"])[:, 1] for _, car in cars]
+    count, (unit, factor) = len(cars), shown("acceleration")
+    series = [factor * results.over_time(car["acceleration"])[:, 1] for _, car in cars]
     names = {spaced(name) for name, _ in cars}
     if all(CALLED_CAR.search(name) for name in names):
         noun, what = "car", "car body" if count == 1 else "car bodies"
@@ -77,11 +85,11 @@ def draw_accelerations(ax, results, cars):
         what = noun if count == 1 else "bodies" if names == {"body"} else what
     title = f"Vertical acceleration of {with_article(what)}"
     if count <= MOST_WHEELS:
-        time_panel(ax, results, title, "m/s²", [(with_article(noun) if count == 1 else ordinal(k, count, noun), a)
+        time_panel(ax, results, title, unit, [(with_article(noun) if count == 1 else ordinal(k, count, noun), a)
                                                   for k, a in enumerate(series)])
         return
     band = (f"all {count}, least to greatest", *envelope(results, series))
-    time_panel(ax, results, title, "m/s²", [(f"first {noun}", series[0]), (f"last {noun}", series[-1])], band)
+    time_panel(ax, results, title, unit, [(f"first {noun}", series[0]), (f"last {noun}", series[-1])], band)
 
 
 def draw_positions(ax, results, direction):
@@ -104,25 +112,28 @@ def chains_of(results):
 
 
 def draw_chains(ax, results, links):
-    forces = [1e-3 * np.hypot(*results.over_time(reaction)[:, :2].T) for _, _, reaction in links]
+    unit, factor = shown("force")
+    forces = [factor * np.hypot(*results.over_time(reaction)[:, :2].T) for _, _, reaction in links]
     chosen = choose(len(links), MOST_CURVES, np.array([force.max() for force in forces]))
     note = "" if len(chosen) == len(links) else f" ({len(chosen)} of {len(links)})"
     names = [f"{'' if len(results.vehicles) == 1 else f'vehicle {k}, '}{spaced(name)}" for k, name, _ in links]
-    time_panel(ax, results, f"Force in the links of the chain{note}", "kN", [(names[i], forces[i]) for i in chosen])
+    time_panel(ax, results, f"Force in the links of the chain{note}", unit, [(names[i], forces[i]) for i in chosen])
 
 
 def drives_of(results, others):
     """(name, force) of springs whose free length is prescribed over time, except for the others."""
     model, found = Model(results), []
     for k, (kind, _) in enumerate(model.train[:len(results.vehicles)]):
+        option = f"vehicle_{model.type_name(kind)}_{{}}_winding_table"
         found += [(name, results.vehicles[k][name]["force"]) for name in spring_names(results, model, kind)
-                  if results.options.get(f"vehicle_{model.type_name(kind)}_{name}_winding_table") and name not in others]
+                  if results.options.get(option.format(name)) and name not in others]
     return found[:MOST_CURVES]
 
 
 def draw_drives(ax, results, drives):
-    time_panel(ax, results, "Force of the spring with a prescribed free length, tension positive", "kN",
-               [(spaced(name), 1e-3 * results.over_time(force)) for name, force in drives])
+    unit, factor = shown("force")
+    time_panel(ax, results, "Force of the spring with a prescribed free length, tension positive", unit,
+               [(spaced(name), factor * results.over_time(force)) for name, force in drives])
 
 
 def draw_sensors(ax, results, sensors, signal):
@@ -131,5 +142,5 @@ def draw_sensors(ax, results, sensors, signal):
     series = [results.over_time(group[signal]) for _, _, group in sensors]
     chosen = choose(len(series), MOST_CURVES, np.array([np.abs(values).max() for values in series]))
     note = "" if len(chosen) == len(series) else f" ({len(chosen)} of {len(series)})"
-    names = [f"{ordinal(k, count, 'vehicle')}, {name.replace('_', ' ')}" for k, name, _ in sensors]
+    names = [part_name(k, count, name) for k, name, _ in sensors]
     time_panel(ax, results, title + note, unit, [(names[i], series[i]) for i in chosen])

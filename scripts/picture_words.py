@@ -1,10 +1,19 @@
 """Texts of picture.py about a run: its peaks, each with position, speed and train."""
 
+from engineering_units import shown
 from picture_data import MOST_CURVES, place_in_words, speed_of
+from picture_runs import Runs
 
 
 def millimetres(metres):
-    return f"{1e6 * abs(metres):.3g} µm" if 0.0 < abs(metres) < 1e-5 else f"{1e3 * abs(metres):.3g} mm"
+    unit, factor = shown("deflection")
+    return f"{1e6 * abs(metres):.3g} µm" if 0.0 < abs(metres) < 1e-5 else f"{factor * abs(metres):.3g} {unit}"
+
+
+def speed_in_words(*speeds):
+    """A speed in m/s, or a range of speeds, as text."""
+    unit, factor = shown("speed")
+    return f"{' to '.join(f'{factor * speed:.4g}' for speed in speeds)} {unit}"
 
 
 def from_rest(options):
@@ -12,10 +21,14 @@ def from_rest(options):
     return options.get("train_drive") == "free" and speed_of(options.get("train_speed", "0")) == 0.0
 
 
-def run_in_words(summary, name):
-    """Train and speed of a peak in a sweep: ' by train A10 at 344 km/h'; otherwise empty."""
+def run_in_words(results, name):
+    """Train and speed of a peak in a sweep: ' by train A10 at 344 km/h'; the run of one in a study; otherwise empty."""
+    summary = results.summary
+    if f"{name}_run" in summary and "study/finished" in results.file:
+        run = Runs(results).run_in_words(int(summary[f"{name}_run"]))
+        return f" in the run with {run}" if run else ""
     train = f" by train A{summary[f'{name}_train']}" if f"{name}_train" in summary else ""
-    speed = f" at {3.6 * summary[f'{name}_speed']:.4g} km/h" if f"{name}_speed" in summary else ""
+    speed = f" at {speed_in_words(summary[f'{name}_speed'])}" if f"{name}_speed" in summary else ""
     return train + speed
 
 
@@ -26,13 +39,13 @@ def summary_in_words(results):
         probed = "" if "sweep" in results.file or at_worst_place(results) else " at a probe"
         said.append(f"greatest deflection{probed} {millimetres(summary['deflection'])}, "
                     f"{place_in_words(summary['deflection_place'], results.supports)}"
-                    f"{run_in_words(summary, 'deflection')}")
+                    f"{run_in_words(results, 'deflection')}")
     if summary.get("amplification") and not from_rest(results.options):
         said.append(f"{summary['amplification']:.3g} times the static one")
     if summary.get("least_wheel_force") is not None:
         wheels = "least_wheel" in summary or "least_wheel_force_speed" in summary
-        force = f"least wheel force {1e-3 * summary['least_wheel_force']:.3g} kN"
-        said += [force + run_in_words(summary, "least_wheel_force")] if wheels else []
+        force = f"least wheel force {shown('force')[1] * summary['least_wheel_force']:.3g} kN"
+        said += [force + run_in_words(results, "least_wheel_force")] if wheels else []
     if "exit/time" in results.file and len(results.file["exit/time"]):
         (time, *_), (velocity, *_) = results.values("exit/time"), results.values("exit/velocity")
         said.append(f"the vehicle leaves the beam after {time:.4g} s at {abs(velocity[0]):.4g} m/s, turning at "
@@ -56,12 +69,12 @@ def worst_in_words(results, x, deflection):
 
 
 def sweep_in_words(results):
-    speeds = 3.6 * results.values("sweep/speed")
+    speeds = results.values("sweep/speed")
     numbers = results.values("sweep/hslm_a")
     trains = "" if numbers is None or len(numbers) == 1 else f"{len(numbers)} trains, "
     if len(speeds) == 1:
-        return f"{trains}{speeds[0]:.4g} km/h"
-    return f"{trains}{len(speeds)} speeds from {speeds[0]:.4g} to {speeds[-1]:.4g} km/h"
+        return f"{trains}{speed_in_words(speeds[0])}"
+    return f"{trains}{len(speeds)} speeds from {speed_in_words(speeds[0], speeds[-1])}"
 
 
 def method_in_words(results):

@@ -38,8 +38,9 @@ typedef struct {
   const char* name; /* its path, "/probes/deflection"; valid while the passage is open */
   const char* unit; /* different units of the numbers of a row are all listed: "N, N, N m" */
   size_t dimensions;
-  size_t shape[2]; /* one entry per dimension; their product is the number of values */
-  int varies;      /* 1: with time; 0: stations of other quantities */
+  size_t shape[2];   /* one entry per dimension; their product is the number of values */
+  int varies;        /* 1: with time; 0: stations of other quantities */
+  const char* names; /* the names of the dimensions, separated by blanks: "x", "supports_x component"; as name */
 } traverse_quantity;
 /* NOLINTEND(modernize-use-using) */
 

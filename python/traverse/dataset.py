@@ -1,13 +1,23 @@
 """A results file as an xarray.Dataset."""
 
+import re
+
 import h5py
 import xarray
 
 from . import places
-from .dimensions import MEANINGS, dimensions_of, name_of
 
 # Omitted are the scene itself, and the state at an end between two samples; h5py reads these.
-_LEFT_OUT = ("options", "input/", "model/", "end/", "study/shape", "study/row_digest")
+_LEFT_OUT = ("options", "input", "model", "end", "study/shape", "study/row_digest")
+_BARE = re.compile(r"^/?(?:probes|sweep|study)/")
+_WITHOUT_COORDINATES = b"This is a netCDF dimension but not a netCDF variable."
+# The values along a dimension of quantities that no file contains: those of a Passage.
+_MEANINGS = {"coordinate": ["x", "y", "angle"], "component": ["fx", "fy", "moment"], "direction": ["x", "y"]}
+
+
+def name_of(path):
+    """The name of the dataset at a path: its path with "_" for "/", without a leading probes, sweep or study."""
+    return _BARE.sub("", path).strip("/").replace("/", "_")
 
 
 def open_results(path):
@@ -25,41 +35,66 @@ def open_results(path):
 
 
 def _of_file(file):
-    variables = {}
     samples = len(file["time"]) if "time" in file else None
-
-    def visit(path, item):
-        if isinstance(item, h5py.Dataset) and not path.startswith(_LEFT_OUT):
-            variables[name_of(path)] = _variable(path, item, samples)
-
-    file.visititems(visit)
+    variables = {}
+    for path, item in _datasets(file):
+        scale = item.attrs.get("NAME")
+        if scale == _WITHOUT_COORDINATES:
+            continue
+        name = name_of(path) if scale is None else scale.decode()
+        if name in variables and scale is None:
+            name += "_words"  # a table whose first column is a coordinate of this name
+        variables[name] = _variable(file, item, samples)
     results = with_coordinates(variables)
     results.attrs = _attributes(file)
-    return _along_axes(results, file["study"]) if "study" in file else results
+    return _in_km_per_hour(_along_axes(results, file["study"]) if "study" in file else results)
 
 
-def _variable(path, item, samples):
+def _datasets(group, folder=""):
+    """(path, dataset) of all datasets in the group that are not left out, those of the root first."""
+    paths = [(f"{folder}{name}", item) for name, item in group.items()]
+    paths = [(path, item) for path, item in paths if path not in _LEFT_OUT]
+    for path, item in sorted(paths, key=lambda one: isinstance(one[1], h5py.Group)):
+        if isinstance(item, h5py.Group):
+            yield from _datasets(item, f"{path}/")
+        else:
+            yield path, item
+
+
+def _dimensions(file, item):
+    if "DIMENSION_LIST" not in item.attrs:
+        return (item.attrs["NAME"].decode(),)
+    scales = [file[references[0]] for references in item.attrs["DIMENSION_LIST"]]
+    names = [scale.attrs["NAME"] for scale in scales]
+    return tuple(scale.name.rsplit("/", 1)[-1] if name == _WITHOUT_COORDINATES else name.decode()
+                 for scale, name in zip(scales, names))
+
+
+def _variable(file, item, samples):
     values = item.asstr()[()] if h5py.check_string_dtype(item.dtype) else item[()]
-    dimensions = dimensions_of(path, values.ndim)
+    dimensions = _dimensions(file, item)
     if dimensions[:1] == ("time",):
         values = values[:samples]  # a killed run may have left more rows
-    attributes = {"units" if key == "unit" else key: value for key, value in item.attrs.items()}
+    attributes = {key: value for key, value in item.attrs.items()
+                  if key not in ("unit", "CLASS", "NAME", "DIMENSION_LIST")}
     return xarray.Variable(dimensions, values, attributes)
 
 
-def with_coordinates(variables):
-    """The Dataset of the variables by their names: a variable with the name of a dimension is its coordinate.
+def _in_km_per_hour(results):
+    """Adds to each coordinate in m/s one in km/h: speed_kmh to speed."""
+    speeds = {name: results[name] for name in results.coords
+              if results[name].ndim == 1 and results[name].attrs.get("units") == "m/s"}
+    return results.assign_coords({f"{name}_kmh": (speed.dims, 3.6 * speed.values, {"units": "km/h"})
+                                  for name, speed in speeds.items()})
 
-    The first column of a table of words with the name of its rows is the coordinate; NAME_words contains all columns.
-    """
-    tables = {name: table for name, table in variables.items() if table.ndim > 1 and table.dims[0] == name}
-    for name, table in tables.items():
-        variables = variables | {name: table[:, 0], f"{name}_words": table}
+
+def with_coordinates(variables):
+    """The Dataset of the variables by their names: a variable with the name of a dimension is its coordinate."""
     coordinates = {name for variable in variables.values() for name in variable.dims if name in variables}
     results = xarray.Dataset({name: v for name, v in variables.items() if name not in coordinates},
                              {name: variables[name] for name in sorted(coordinates)})
-    for name, meaning in MEANINGS.items():
-        if results.sizes.get(name) == len(meaning):
+    for name, meaning in _MEANINGS.items():
+        if name not in results.coords and results.sizes.get(name) == len(meaning):
             results = results.assign_coords({name: meaning})
     return results
 
@@ -79,10 +114,10 @@ def _along_axes(results, study):
     axes = [axis.strip() for axis in str(study.attrs["axes"]).split(",")]
     lengths = [int(length) for length in study["shape"][()]]
     varied = {name: int(study[name].attrs["axis"]) for name in study if "axis" in study[name].attrs}
-    if (results["probes_x"] == results["x"]).all():
-        results = results.drop_vars("probes_x")
-    else:  # stations of the first run only
-        results = results.drop_vars("x").rename_dims(x="probe")
+    stations = results["x"].values
+    results = results.drop_vars("x")  # those of the first run
+    if (results["probes_x"] == stations).all():
+        results = results.drop_vars("probes_x").rename_dims(probe="x").assign_coords(x=("x", stations, {"units": "m"}))
     runs = {}
     for name, variable in results.variables.items():
         if variable.dims[:1] == ("run",):

@@ -10,15 +10,14 @@ import numpy as np
 import xarray
 
 from . import places, words
-from .dataset import with_coordinates
-from .dimensions import dimensions_of, name_of
+from .dataset import name_of, with_coordinates
 
 _MOST_C_INT = 2**31 - 1
 
 
 class _Quantity(ctypes.Structure):
     _fields_ = [("name", ctypes.c_char_p), ("unit", ctypes.c_char_p), ("dimensions", ctypes.c_size_t),
-                ("shape", ctypes.c_size_t * 2), ("varies", ctypes.c_int)]
+                ("shape", ctypes.c_size_t * 2), ("varies", ctypes.c_int), ("names", ctypes.c_char_p)]
 
 
 @functools.lru_cache(maxsize=None)
@@ -73,7 +72,7 @@ class Passage:
             _checked(self._library.traverse_describe(self._handle, i, ctypes.byref(quantity)))
             path = quantity.name.decode()
             shape = tuple(quantity.shape[: quantity.dimensions])
-            dimensions = dimensions_of(path, len(shape) + quantity.varies)[quantity.varies:]
+            dimensions = tuple(quantity.names.decode().split())
             yield name_of(path), (quantity.name, dimensions, shape, {"units": quantity.unit.decode()})
 
     def _open(self):

@@ -4,7 +4,9 @@ import comfort
 import numpy as np
 from picture_data import car_body
 
+from .language import num, t
 from .page import GREY, LEFT, table
+from .quantities import unit_of_si
 
 LONGEST_INTERVAL = 0.01  # s; longer intervals do not resolve the weighted frequencies
 
@@ -34,10 +36,10 @@ def comfort_rows(source):
         return [], ""
     steps = np.diff(results.time[:results.rows])
     if np.ptp(steps) > 1e-6 * steps[0]:
-        return [], "Samples are not evenly spaced: comfort is not evaluated."
+        return [], t("The samples are not evenly spaced: comfort is not evaluated.")
     if steps[0] > LONGEST_INTERVAL * (1.0 + 1e-9):
-        return [], (f"Samples every {steps[0]:g} s are too long for the frequency weighting; allowed: at most "
-                    f"{LONGEST_INTERVAL:g} s (-output_interval).")
+        return [], t("Samples every {step} s are too long for the frequency weighting; allowed: at most {longest} s "
+                     "(option -output_interval).", step=num(steps[0]), longest=num(LONGEST_INTERVAL))
     rows = []
     for i, vehicle in enumerate(results.vehicles):
         body = car_body(vehicle)
@@ -48,23 +50,29 @@ def comfort_rows(source):
     return rows, ""
 
 
-def sheet(report, source, heading):
+def sheet(report, source, run):
     rows, trouble = comfort_rows(source)
     if not rows and not trouble:
         return
-    page = report.page(f"Comfort: {heading}")
+    page = report.page(t("Ride comfort"))
+    report.anchor("comfort")
+    page.text(LEFT, run, colour=GREY)
     if trouble:
         page.text(LEFT, trouble, colour=GREY)
         return
     time = source.results.time
-    page.text(LEFT, f"Vertical accelerations of the car bodies over {time[-1] - time[0]:.4g} s of one crossing, sampled every "
-                    f"{time[1] - time[0]:.4g} s: the root of their mean square, the greatest weighted by Wb of EN 12299 in "
-                    "windows of 5 s, its index N_MV of the vertical direction only, and Sperling's ride index. A run shorter "
-                    "than 5 s is one window. The norm requires five minutes of line; these values are for comparison only.",
-              size=8, colour=GREY)
+    page.text(LEFT, t("Vertical accelerations of the car bodies over {duration} s of one passage, sampled every {step} "
+                      "s: root mean square; greatest root mean square weighted by Wb of EN 12299 in windows of 5 s; "
+                      "index N_MV of the vertical direction only; ride index of Sperling. A run shorter than 5 s is "
+                      "one window. The norm requires five minutes of line: these values are for comparison only.",
+                      duration=num(time[-1] - time[0]),
+                      step=num(time[1] - time[0])), size=8, colour=GREY)
     page.y -= 0.08
-    table(report, page, [("vehicle", 0.7, "right"), ("body", 1.0, "left"), ("from its centre", 0.95, "right"),
-                         ("rms m/s²", 0.85, "right"), ("Wb m/s²", 0.85, "right"), ("windows", 0.75, "right"),
-                         ("N_MV, vertical", 0.95, "right"), ("Sperling Wz", 0.75, "right")],
-          [[f"{i}", body, f"{x:+.4g} m" if x else "0", f"{felt.rms:.4f}", f"{felt.weighted:.4f}", f"{felt.windows}",
-            f"{felt.n_mv:.3f}", f"{felt.sperling:.3f}"] for i, body, x, felt in rows])
+    unit, _ = unit_of_si("m/s2")
+    table(report, page, [(t("vehicle"), 0.7, "right"), (t("body"), 1.0, "left"), (t("from its centre"), 0.95, "right"),
+                         (f"{t('rms')} ({unit})", 0.85, "right"), (f"Wb ({unit})", 0.85, "right"),
+                         (t("windows"), 0.75, "right"),
+                         ("N_MV", 0.85, "right"), ("Sperling Wz", 0.85, "right")],
+          [[f"{i}", body, f"{num(x, '+.4g')} m" if x else "0", num(felt.rms, ".4f"), num(felt.weighted, ".4f"),
+            f"{felt.windows}",
+            num(felt.n_mv, ".3f"), num(felt.sperling, ".3f")] for i, body, x, felt in rows])

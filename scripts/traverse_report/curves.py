@@ -1,12 +1,14 @@
 """Curves over the speed, one per train, with limit lines; envelopes; time histories."""
 
 import numpy as np
+from engineering_units import shown
 from picture_axes import COLOURS, GREY, LABEL_SIZE, PALE, End, label_at_ends, note_beside
 from picture_data import choose, thin
 from picture_layout import width_of, wrapped
 
+from .language import num, t
 from .limits import STORED
-from .source import QUANTITIES
+from .quantities import unit_of
 
 RED = "#B00020"  # used for limits only
 # Lines differ in colour and in style, so that a grey print distinguishes them too.
@@ -28,6 +30,14 @@ def mark_every(count):
     return max(count // 12, 1)
 
 
+def shown_limit(value, quantity):
+    """A limit as text with its unit; a deflection as a part of the span."""
+    if quantity.endswith("deflection_over_span"):
+        return f"L/{num(1.0 / value)}"
+    unit, factor = unit_of(quantity)
+    return f"{num(factor * value)} {unit}".strip()
+
+
 def draw_limits(ax, limits):
     """Draws limits: (value, text) in the unit of the axes. A limit far above the curves is named, not drawn."""
     low, high = ax.get_ylim()
@@ -40,24 +50,25 @@ def draw_limits(ax, limits):
                 transform=ax.get_yaxis_transform(), bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6})
     beyond = [words for value, words in limits if value > 2.5 * high]
     if beyond:
-        ax.text(0.006, 0.985, "far above: " + "; ".join(beyond), color=RED, fontsize=7, va="top", ha="left",
+        ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits="; ".join(beyond)), color=RED, fontsize=7,
+                va="top", ha="left",
                 transform=ax.transAxes)
 
 
 def limit_lines(source, limits, name):
     """The limits of a quantity of the file, in the unit of its curve."""
-    factor = QUANTITIES.get(name, ("", "", 1.0))[2]
+    factor = unit_of(name)[1]
     spans = np.unique(np.round(np.diff(source.model.span_ends), 6))
     lines = []
     for limit in limits:
-        words = f"limit {1e3 * limit.value:g} mrad" if limit.unit == "rad" else f"limit {limit.value:g} {limit.unit}".strip()
+        words = f"{shown_limit(limit.value, limit.quantity)} ({limit.clause})"
         if STORED.get(limit.quantity, limit.quantity) == name:
-            lines.append((factor * limit.value, f"{words} ({limit.clause})"))
+            lines.append((factor * limit.value, t("limit {value}", value=words)))
         elif limit.quantity == "deflection_over_span" and name == "peak_deflection" and len(spans) == 1:
-            lines.append((factor * limit.value * spans[0], f"limit L/{1.0 / limit.value:.4g} ({limit.clause})"))
+            lines.append((factor * limit.value * spans[0], t("limit {value}", value=words)))
         elif limit.quantity == "deck_acceleration" and name == "peak_acceleration" and \
                 "deck_acceleration" not in source.runs.values:
-            lines.append((limit.value, f"{limit.value:g} m/s² ({limit.clause}) applies to low-passed ones"))
+            lines.append((factor * limit.value, t("{value} applies to low-pass filtered values", value=words)))
     return lines
 
 
@@ -66,8 +77,9 @@ def draw_resonances(ax, source, lines):
     dotted lines at the cancellation speeds. Returns whether the file contains resonance speeds."""
     file = source.file
     low, high = ax.get_xlim()
+    kmh = shown("speed")[1]
     if "cancellations/speed" in file:
-        for speed in 3.6 * file["cancellations/speed"][:][file["cancellations/mode"][:] == 1.0]:
+        for speed in kmh * file["cancellations/speed"][:][file["cancellations/mode"][:] == 1.0]:
             if low < speed < high:
                 ax.axvline(speed, color=GREY, lw=1.1, ls=(0, (1.0, 2.0)), zorder=0.6)
     if "resonances/speed" not in file:
@@ -77,7 +89,7 @@ def draw_resonances(ax, source, lines):
         name = f"A{train:.0f}" if train is not None else None
         place = [i for i, (line, _) in enumerate(lines) if name in (line, None)]
         own = (group["mode"] == 1.0) & (group["hslm_a"] == train if train is not None else True)
-        for speed, order in zip(3.6 * group["speed"][own], group["order"][own]):
+        for speed, order in zip(kmh * group["speed"][own], group["order"][own]):
             if not place or not low < speed < high or (len(lines) > 3 and order > 1.0):
                 continue
             ax.axvline(speed, color=look(place[0])[0], lw=1.0, alpha=0.35, zorder=0.5)
@@ -92,7 +104,7 @@ def chosen_lines(ax, runs, values, most=MOST_LINES):
     lines = [(runs.curve_name(indices[0]), indices) for _, indices in runs.lines()]
     chosen = choose(len(lines), most, np.array([np.nan_to_num(values[indices]).max() for _, indices in lines]))
     if len(chosen) < len(lines):
-        note_beside(ax, f"{len(chosen)} of {len(lines)} lines, including the greatest one", 7.5)
+        note_beside(ax, t("{count} of {all} lines, including the greatest one", count=len(chosen), all=len(lines)), 7.5)
     return [lines[i] for i in chosen]
 
 
@@ -124,7 +136,7 @@ def over_x(ax, source, name, values, unit, limits, band=True):
         part = (at[last] - low) / (high - low) if high > low else 0.5
         ends.append(End(worst[last], line, colour, style if len(lines) > 1 else "-", part))
     ax.set_xlabel(label)
-    ax.set_ylabel(unit or "ratio")
+    ax.set_ylabel(unit or t("ratio"))
     if high > low:
         ax.set_xlim(low, high)
     ax.set_ylim(min(0.0, np.nanmin(values)) if least_counts else 0.0, None)
@@ -153,7 +165,7 @@ def names_of(runs):
 
 
 def draw_static(ax, x, static):
-    ax.plot(x, -1e3 * static, color=GREY, lw=1.4, ls=(0, (4, 2)), zorder=5)
+    ax.plot(x, -shown("deflection")[1] * static, color=GREY, lw=1.4, ls=(0, (4, 2)), zorder=5)
 
 
 def along_bridge(ax, supports, x, series, unit, marks=True, static=None):
@@ -170,11 +182,11 @@ def along_bridge(ax, supports, x, series, unit, marks=True, static=None):
         if greatest is not None:
             ax.plot(x[order], greatest[order], color=colour, ls=style)
     ax.set_xlim(supports[0], supports[-1])
-    ax.set_xlabel("place along the bridge (m)")
+    ax.set_xlabel(t("position along the bridge (m)"))
     ax.set_ylabel(unit)
     if static is not None and static.any():
         ax.plot(x[order], static[order], color="#000000", lw=2.0, ls=(0, (3, 1.5)) if joined else "none", zorder=6,
-                marker=None if joined else "_", ms=12, mew=2.0, label="static")
+                marker=None if joined else "_", ms=12, mew=2.0, label=t("static"))
     if len([line for line in ax.get_lines() if not line.get_label().startswith("_")]) > 1:
         handles, names = ax.get_legend_handles_labels()
         ax.legend(handles, ["\n".join(wrapped(name, WIDEST_NAMES - 0.5, 8)) for name in names], loc="upper left",
@@ -193,7 +205,7 @@ def history(ax, time, curves, title, unit, limits=()):
         ends.append(End(values[-1], name, colour, style))
     ax.set_title(title)
     ax.set_ylabel(unit)
-    ax.set_xlabel("time (s)")
+    ax.set_xlabel(t("time (s)"))
     if len(time) > 1:
         ax.set_xlim(time[0], time[-1])
     for value in limits:

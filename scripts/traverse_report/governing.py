@@ -7,13 +7,15 @@ import subprocess
 
 import numpy as np
 
+from .language import t
 from .limits import values_of
+from .quantities import words_of
 
 STATIONS_A_SPAN, MOST_STATIONS = 20, 161
 LONGEST = 120.0  # s, limit for the run
 # Options of the sweep or study, or of the first run only.
-LEFT_OUT = re.compile(r"^(sweep|study|output|limits|scene_name|options_file|restart|checkpoint|log_view|malloc_debug|"
-                      r"skip_petscrc)")
+LEFT_OUT = re.compile(r"^(sweep|study|output|limits|report|scene_name|options_file|restart|checkpoint|log_view|"
+                      r"malloc_debug|skip_petscrc)")
 
 
 def value_text(value):
@@ -77,7 +79,7 @@ def write_vehicles(options, folder):
 def governing_run(source, limits):
     """The run with the least margin of a limit, otherwise the one with the largest deflection, and the reason."""
     worst, margin = int(np.nanargmax(source.runs.of_run("peak_deflection"))), np.inf
-    why = "it has the greatest deflection"
+    why = t("it has the greatest deflection")
     for limit in limits:
         values, _ = values_of(source, limit.quantity)
         if limit.quantity == "deck_acceleration" and values is None:
@@ -86,7 +88,7 @@ def governing_run(source, limits):
             continue
         if 1.0 - np.nanmax(values) / limit.value < margin:
             worst, margin = int(np.nanargmax(values)), 1.0 - np.nanmax(values) / limit.value
-            why = f"it has the least margin to the limit of {limit.quantity.replace('_', ' ')}"
+            why = t("it has the greatest utilisation of the limit: {quantity}", quantity=words_of(limit.quantity))
     return worst, why
 
 

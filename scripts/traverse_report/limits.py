@@ -1,15 +1,17 @@
 """Limits and verdicts of the runs: those of the file, otherwise computed from its values."""
 
 import pathlib
+import re
 from typing import NamedTuple
 
 import numpy as np
 import yaml
 
+from .language import decimal, known, num, t
 from .source import ReportError
 
 # Static effects by EN 1991-2: they are independent of the runs and checked once.
-OF_NORM = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "train_over_lm71"}
+STATIC = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "train_over_lm71"}
 # Quantities of limits with another name in a table of runs.
 STORED = {"unfiltered_deck_acceleration": "peak_acceleration", "contact_loss": "longest_loss"}
 
@@ -19,12 +21,11 @@ class Limit(NamedTuple):
     quantity: str
     value: float
     text: str
-    unit: str = ""
 
 
 class Verdict(NamedTuple):
     limit: Limit
-    word: str      # kept, broken, not judged
+    word: str      # kept, broken, not judged, kept alone: in the governing run
     value: float   # NaN without a verdict
     run: str       # name of the run
     where: str     # place and time, or the reason of a missing verdict
@@ -32,6 +33,10 @@ class Verdict(NamedTuple):
     @property
     def margin(self):
         return 1.0 - self.value / self.limit.value
+
+    @property
+    def utilisation(self):
+        return self.value / self.limit.value
 
 
 def as_number(text):
@@ -51,14 +56,7 @@ def read_limits(path):
 
 
 def limits_of(source, given, folder):
-    """The given limits, those of the stored verdicts, or those of the file in the options; with their units."""
-    units = dict(row for name in ("verdicts/quantity", "quantities/limits") if name in source.file
-                 for row in source.file[name].asstr()[:])
-    return [limit._replace(unit=units.get(limit.quantity, "1").replace("2", "²").replace("1", ""))
-            for limit in _limits_of(source, given, folder)]
-
-
-def _limits_of(source, given, folder):
+    """The given limits, those of the stored verdicts, or those of the file in the options."""
     if given:
         return read_limits(given)
     if "verdicts/limit" in source.file:
@@ -78,12 +76,18 @@ def stored(source):
     verdicts = []
     texts = [group[name].asstr()[:] for name in ("clause", "quantity", "verdict")]
     columns = zip(*texts, group["value"][:], group["limit"][:], group["time"][:])
-    run = source.kind_in_words().replace("one run at ", "") if source.is_run else ""
     for clause, quantity, verdict, value, limit, time in columns:
-        when = "" if np.isnan(time) else f", t = {time:.4g} s"
+        when = "" if np.isnan(time) else f", t = {num(time)} s"
         verdicts.append(Verdict(Limit(clause[0], quantity[0], float(limit), clause[1]), verdict[0], float(value),
-                                run, verdict[1] + when))
+                                "", place_of(verdict[1]) + when))
     return verdicts
+
+
+def place_of(text):
+    """The place of a value, or the reason of a missing verdict, as the program writes it; in the language if it is
+    known."""
+    said = known(re.sub(r"with alpha = ([\d.]+) and Phi(\d) =", r"α = \1, Φ\2 =", text))
+    return re.sub(r"(?<![\d.])\d+\.\d+(?![\d.])", lambda found: decimal(found[0]), said)
 
 
 def spans_of(source, stations):
@@ -104,11 +108,11 @@ def values_of(source, quantity):
             return runs.of_run(name), ""
     if quantity == "deflection_over_span":
         if not len(source.model.span_ends):
-            return None, "the file contains no spans"
+            return None, t("the file contains no spans")
         return (np.abs(runs.values["peak_deflection"]) / spans_of(source, runs.probes)).max(axis=1), ""
     if quantity == "deck_acceleration":
-        return None, "its runs were stored without a low-pass"
-    return None, "the file does not contain it for every run"
+        return None, t("the runs were stored without low-pass filter")
+    return None, t("the file does not contain it for every run")
 
 
 def judge(source, limits):
@@ -118,21 +122,23 @@ def judge(source, limits):
     verdicts, known = [], {verdict.limit.quantity: verdict for verdict in stored(source)}
     whys = {quantity: verdict.where for quantity, verdict in known.items()}
     for limit in limits:
-        if limit.quantity in OF_NORM and limit.quantity in known:
+        if limit.quantity in STATIC and limit.quantity in known:
             found = known[limit.quantity]
             word = found.word if found.word == "not judged" else word_of(found.value, limit)
             verdicts.append(found._replace(limit=limit, word=word))
             continue
         values, why = values_of(source, limit.quantity)
         if values is None or np.isnan(values).all():
-            verdicts.append(Verdict(limit, "not judged", np.nan, "", why or whys.get(limit.quantity, "no run knows it")))
+            verdicts.append(Verdict(limit, "not judged", np.nan, "", why
+                                    or whys.get(limit.quantity, t("no run contains it"))))
             continue
         run = int(np.nanargmax(values))
         name = limit.quantity if limit.quantity in source.runs.values else STORED.get(limit.quantity, "peak_deflection")
         place = source.runs.place(name, run) if name in source.runs.values else None
         broken = np.count_nonzero(values > limit.value)
-        where = [] if place is None else [f"x = {place:.6g} m"]
-        where += [f"broken in {broken} of {np.count_nonzero(~np.isnan(values))} runs"] if broken else []
+        where = [] if place is None else [f"x = {num(place, '.6g')} m"]
+        where += [t("exceeded in {count} of {all} runs", count=broken,
+                    all=np.count_nonzero(~np.isnan(values)))] if broken else []
         verdicts.append(Verdict(limit, word_of(values[run], limit), float(values[run]), source.runs.run_in_words(run),
                                 ", ".join(where)))
     return verdicts
@@ -155,11 +161,11 @@ def judge_run(source, limits):
             verdicts.append(found._replace(limit=limit, word=word))
         elif name in summary:
             value = abs(float(summary[name]))
-            where = f"x = {summary[f'{name}_place']:.6g} m" if f"{name}_place" in summary else ""
+            where = f"x = {num(summary[f'{name}_place'], '.6g')} m" if f"{name}_place" in summary else ""
             verdicts.append(Verdict(limit, word_of(value, limit), value, "", where))
         else:
-            verdicts.append(Verdict(limit, "not judged", np.nan, "", "the run did not evaluate it; use the option "
-                                                                     "-limits of traverse"))
+            verdicts.append(Verdict(limit, "not judged", np.nan, "",
+                                    t("the run did not evaluate it; the option -limits of traverse evaluates it")))
     return verdicts
 
 

@@ -1,7 +1,6 @@
 """The command traverse-report: pages of each results file in their order."""
 
 import argparse
-import datetime
 import pathlib
 import shutil
 import sys
@@ -11,12 +10,23 @@ from typing import NamedTuple, Optional
 import fatigue
 import h5py
 
-from . import comfort_sheet, fatigue_sheet, norm_sheet, rail_sheet, sheets, statistics, summary_sheet, workbook
+from . import (
+    annex_sheet, assumptions_sheet, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet, fatigue_sheet,
+               front_sheet,
+    loads_sheet, norm_sheet, rail_sheet, run_sheet, statistics, title_sheet, workbook_sheets)
 from . import governing as again
 from . import limits as judging
-from .model_sheet import sheet as model_page
-from .page import Report, table
+from .language import LANGUAGES, choose, t
+from .page import Report
 from .source import ReportError, Source
+
+# Texts of the title page. --line is the S-N curve, as in fatigue.py.
+TITLE = {"project": "name of the project", "structure": "name of the structure",
+         "railway-line": "line and kilometre of the structure", "author": "who has made the calculation",
+         "checker": "who has checked it", "revision": "revision of the report", "date": "date of the report",
+         "note": "a remark on the title page", "logo": "a picture for the title page, PNG or JPEG",
+         "norm-edition": "edition of the norm, such as EN 1991-2:2003",
+         "national-annex": "national annex, such as DIN EN 1991-2/NA:2012-08"}
 
 
 class Governing(NamedTuple):
@@ -33,27 +43,37 @@ def positive(text):
     return value
 
 
-def arguments_of(words):
+def arguments_of(given):
     parser = argparse.ArgumentParser(
         prog="traverse-report", description="A report of results files: PDF on A4 and XLSX, to hand in.",
         epilog="A sweep's or study's governing run is computed again for its time histories and verdicts, by the "
                "program that stands beside this one.")
     parser.add_argument("results", nargs="+", metavar="RESULTS.h5", help="results files of traverse")
-    parser.add_argument("-o", "--output", metavar="NAME", help="writes NAME.pdf and NAME.xlsx; left out: beside the first "
-                        "results file, under its name")
-    parser.add_argument("--limits", metavar="FILE", help="limits to judge by, as -limits of traverse takes them; left out: "
-                        "those of the computation")
+    parser.add_argument("-o", "--output", metavar="NAME",
+                        help="writes NAME.pdf and NAME.xlsx; left out: beside the first results file, under its name")
+    parser.add_argument("--limits", metavar="FILE",
+                        help="limits to check, as -limits of traverse takes them; left out: those of the computation")
     parser.add_argument("--program", metavar="FILE", help="the program that repeats the governing run")
-    parser.add_argument("--folder", metavar="FOLDER", help="where files that a scene names are looked for; left out: here")
+    parser.add_argument("--folder", metavar="FOLDER",
+                        help="where files that a scene names are looked for; left out: here")
     parser.add_argument("--if-limits", action="store_true", help="does nothing for results that are no sweep or study "
                         "with limits")
-    parser.add_argument("--factor", type=fatigue.number, default=1.0, metavar="NUMBER", help="the stress that a unit of the "
-                        "bridge's moment makes, e.g. 1/0.35")
+    parser.add_argument("--factor", type=fatigue.number, default=1.0, metavar="NUMBER",
+                        help="the stress that a unit of the bridge's moment makes, e.g. 1/0.35")
     parser.add_argument("--line", type=fatigue.line_of, help="damage is counted by it: en1993:CATEGORY or "
                         "slope:M,RANGE,CYCLES, in the stress's unit")
     parser.add_argument("--passages", type=positive, default=1.0, metavar="A_DAY", help="of the run; left out: 1")
     parser.add_argument("--no-governing-run", action="store_true", help="does not repeat it")
-    return parser.parse_args(words)
+    group = parser.add_argument_group("title page", "These replace the options report_... of the scene.")
+    for name, words in TITLE.items():
+        group.add_argument(f"--{name}", metavar="TEXT" if name != "logo" else "FILE", help=words)
+    group.add_argument("--language", choices=LANGUAGES, help="language of the report")
+    return parser.parse_args(given)
+
+
+def given_title(arguments):
+    return {name.replace("railway-line", "line").replace("-", "_"): getattr(arguments, name.replace("-", "_"))
+            for name in TITLE}
 
 
 def program_beside(given):
@@ -83,26 +103,25 @@ def governing_of(source, limits, arguments, scratch):
 
 
 def add_pages(report, source, limits, verdicts, governing, asked):
-    sheets.front(report, source, verdicts, governing)
-    model_page(report, source)
+    front_sheet.sheet(report, source, verdicts, governing)
+    assumptions_sheet.sheet(report, source)
+    loads_sheet.sheet(report, source)
+    checks_sheet.sheet(report, source, verdicts)
     norm_sheet.sheet(report, source)
     rail_sheet.sheet(report, source)
     if source.runs is not None:
-        sheets.line_sheet(report, source, limits)
-        sheets.curve_sheets(report, source, limits)
-        sheets.envelope_sheet(report, source)
+        curve_sheet.line_sheet(report, source, limits)
+        curve_sheet.curve_sheets(report, source, limits)
+        curve_sheet.envelope_sheet(report, source)
         statistics.sheet(report, source)
     one = source if source.is_run else governing.source if governing is not None else None
     if one is not None:
-        heading = source.title() if source.runs is None else f"governing run, {governing.words}"
-        sheets.run_envelope_sheet(report, one, heading)
-        sheets.history_sheets(report, one, heading, limits)
-        comfort_sheet.sheet(report, one, heading)
-        fatigue_sheet.sheet(report, one, heading, asked)
-    rows = [(name, value) for name, value in sorted(source.options.items())
-            if not name.startswith(("vehicle_", "output_file"))]
-    page = report.page(f"What was asked for: {source.title()}")
-    table(report, page, [("option", 2.4, "left"), ("value", 4.3, "left")], rows, size=7)
+        words = source.kind_in_words() if source.is_run else t("Governing run: {run}", run=governing.words)
+        run_sheet.envelope_sheet(report, one, t("Results along the bridge"), words)
+        run_sheet.history_sheets(report, one, t("Time histories"), words, limits)
+        comfort_sheet.sheet(report, one, words)
+        fatigue_sheet.sheet(report, one, words, asked)
+    annex_sheet.sheet(report, source)
 
 
 def has_limits(path):
@@ -112,6 +131,40 @@ def has_limits(path):
         return many and "options" in file and "limits" in [name.lstrip("-") for name in file["options"].asstr()[:, 0]]
 
 
+def entry_of(source, arguments, scratch):
+    """(source, limits, verdicts, governing run or None)"""
+    limits = judging.limits_of(source, arguments.limits, arguments.folder)
+    verdicts = judging.judge(source, limits)
+    governing = governing_of(source, limits, arguments, scratch)
+    if governing is not None and governing.source is not None:
+        alone = judging.stored(governing.source)
+        name = t("{run}, governing run only", run=governing.words)
+        verdicts = judging.with_governing(verdicts, [verdict._replace(run=name) for verdict in alone])
+    if governing is not None and governing.trouble:
+        print(f"the governing run, {governing.words}, could not be repeated: {governing.trouble}")
+    return source, limits, verdicts, governing
+
+
+def report_of(entries, title, lines, colour, asked):
+    """The pages: title, contents, comparison of several files, and the pages of each file."""
+    sources = [source for source, *_ in entries]
+    report, first_pages = Report(f"traverse {sources[0].file.attrs.get('version', '')}"), []
+    for number, (source, limits, verdicts, governing) in enumerate(entries, 1):
+        report.part("" if len(entries) == 1 else f"{source.title()} ({source.path.name})", number)
+        before = len(report.pages)
+        add_pages(report, source, limits, verdicts, governing, asked)
+        first_pages.append(report.pages[before])
+    report.part("", 0)
+    own, report.pages = report.pages, []
+    if len(entries) > 1:
+        comparison_sheet.sheet(report, [(source, verdicts) for source, _, verdicts, _ in entries], first_pages)
+    compared, report.pages = report.pages, []
+    title_sheet.title_page(report, title, sources, lines, colour)
+    title_sheet.contents_page(report, compared)
+    report.pages += compared + own
+    return report
+
+
 def run(words):
     arguments = arguments_of(words)
     if arguments.if_limits:
@@ -119,35 +172,24 @@ def run(words):
         if not arguments.results:
             return
     sources = [Source(path) for path in arguments.results]
+    wanted = arguments.language or sources[0].options.get("report_language", "en")
+    choose(wanted if wanted in LANGUAGES else "en")
+    title = title_sheet.title_of(sources, given_title(arguments), arguments.folder)
     out = pathlib.Path(arguments.output) if arguments.output else sources[0].path
     stem = out.with_suffix("") if out.suffix in (".pdf", ".xlsx", ".h5") else out
-    version = sources[0].file.attrs.get("version", "")
     asked = fatigue_sheet.Asked(arguments.factor, arguments.line, arguments.passages)
-    today = datetime.date.today().isoformat()
-    report = Report(", ".join(source.title() for source in sources)[:60], f"traverse {version}, report of {today}")
     with tempfile.TemporaryDirectory() as scratch:
-        entries, first_pages = [], []
+        entries = []
         for number, source in enumerate(sources):
             folder = pathlib.Path(scratch) / str(number)
             folder.mkdir()
-            limits = judging.limits_of(source, arguments.limits, arguments.folder)
-            verdicts = judging.judge(source, limits)
-            governing = governing_of(source, limits, arguments, folder)
-            if governing is not None and governing.source is not None:
-                alone = judging.stored(governing.source)
-                verdicts = judging.with_governing(verdicts, [v._replace(run=f"{governing.words}, alone") for v in alone])
-            if governing is not None and governing.trouble:
-                print(f"the governing run, {governing.words}, could not be repeated: {governing.trouble}")
-            first_pages.append(len(report.pages) + 1)
-            add_pages(report, source, limits, verdicts, governing, asked)
-            entries.append((source, limits, verdicts, governing))
-        if len(sources) > 1:
-            summary_sheet.sheet(report, [(source, verdicts, first) for (source, _, verdicts, _), first in
-                                         zip(entries, first_pages)])
+            entries.append(entry_of(source, arguments, folder))
+        lines, colour = comparison_sheet.headline([(source, verdicts) for source, _, verdicts, _ in entries])
+        report = report_of(entries, title, lines, colour, asked)
         paths = [f"{stem}.pdf", f"{stem}.xlsx"]
         try:
-            report.save(paths[0])
-            workbook.write(paths[1], entries, asked)
+            title_sheet.save(report, paths[0], title)
+            workbook_sheets.write(paths[1], title, lines, entries, asked)
         except OSError as error:
             raise ReportError(f"{error.filename or stem}: {error.strerror}") from None
     print(f"report  {paths[0]} ({len(report.pages)} pages), {paths[1]}")

@@ -1,35 +1,43 @@
 """A4 pages: headings, text, tables and axes; all sizes are in inches."""
 
+import functools
+
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
-import picture_axes  # noqa: E402, F401: sets its style first
+import picture_axes  # noqa: E402, F401  sets its style first
 import picture_layout  # noqa: E402
-from matplotlib.backends.backend_pdf import PdfPages  # noqa: E402
-from picture_layout import wrapped  # noqa: E402
+
+from .language import Ticks, capital, t  # noqa: E402
 
 plt.rcParams.update({"font.size": 8.5, "axes.titlesize": 10, "axes.titlepad": 6, "lines.linewidth": 1.2,
                      "figure.max_open_warning": 0})  # one figure per page
 
 WIDTH, HEIGHT = 8.27, 11.69
-LEFT, RIGHT, TOP, BOTTOM = 0.8, 7.6, 11.0, 0.75
+LEFT, RIGHT, TOP, BOTTOM = 0.8, 7.6, 10.85, 0.75
 INK, GREY, PALE, RED, GREEN, AMBER = "#222222", "#666666", "#C8C8C8", "#B00020", "#00693E", "#8A5A00"
 SIZE = 8.5
+SMALLEST = 0.7  # of the size of a table, for words that are longer than their column
+
+width_of = functools.lru_cache(maxsize=20_000)(picture_layout.width_of)
+
+
+@functools.lru_cache(maxsize=20_000)
+def wrapped(text, inches, size, weight="normal"):
+    return picture_layout.wrapped(text, inches, size, weight)
 
 
 class Page:
     """One page. y: position of the next item, inches from the bottom."""
 
-    def __init__(self, heading):
+    def __init__(self, heading, number=""):
         self.figure = plt.figure(figsize=(WIDTH, HEIGHT))
         self.paper = self.figure.add_axes([0, 0, 1, 1])
         self.paper.set(xlim=(0, WIDTH), ylim=(0, HEIGHT))
         self.paper.axis("off")
-        self.heading = heading
+        self.heading, self.number = heading, number
         self.y = TOP
-        self.text(LEFT, heading, size=14, weight="bold")
-        self.y -= 0.12
 
     def text(self, x, text, size=SIZE, colour=INK, width=None, **words):
         """Writes lines from y downward."""
@@ -40,6 +48,9 @@ class Page:
 
     def room(self):
         return self.y - BOTTOM
+
+    def line(self, y, left=LEFT, right=RIGHT, colour=PALE, width=0.5):
+        self.paper.plot([left, right], [y, y], color=colour, lw=width, solid_capstyle="butt")
 
     def fit(self, ax, below=0.45):
         """Adapts drawn axes to long titles above them and to a key of long names below."""
@@ -52,63 +63,131 @@ class Page:
         """Adds axes of this height within the margins, with space for a title, labels and names."""
         bottom = self.y - above - height
         self.y = bottom - below
-        return self.figure.add_axes([(LEFT + left) / WIDTH, bottom / HEIGHT, (RIGHT - right - LEFT - left) / WIDTH,
-                                     height / HEIGHT])
+        ax = self.figure.add_axes([(LEFT + left) / WIDTH, bottom / HEIGHT, (RIGHT - right - LEFT - left) / WIDTH,
+                                   height / HEIGHT])
+        for axis in (ax.xaxis, ax.yaxis):
+            axis.set_major_formatter(Ticks())
+        return ax
+
+
+class Reference:
+    """A cell with the number of a page: of the page itself, or of an anchor of the report."""
+
+    def __init__(self, target):
+        self.target = target
 
 
 class Report:
-    """The pages of a report in their order."""
+    """The pages of a report in their order, with their contents and with references between them."""
 
-    def __init__(self, title, foot):
-        self.title, self.foot, self.pages = title, foot, []
+    def __init__(self, foot=""):
+        self.foot = foot
+        self.pages, self.contents, self.anchors, self.references = [], [], {}, []
+        self.prefix, self.count, self.in_annex = "", 0, False
 
-    def page(self, heading):
-        self.pages.append(Page(heading))
-        return self.pages[-1]
+    def part(self, title, number):
+        """Starts the pages of one results file of several; its sections are numbered from 1."""
+        self.count, self.in_annex = 0, False
+        self.prefix = f"{number}." if title else ""
+        if title:
+            self.contents.append([str(number), title, None])
 
-    def save(self, path):
-        with PdfPages(path, metadata={"Title": self.title}) as pdf:
-            for number, page in enumerate(self.pages, 1):
-                page.paper.plot([LEFT, RIGHT], [0.62, 0.62], color=PALE, lw=0.6)
-                page.paper.text(LEFT, 0.55, f"{self.title}   {self.foot}", fontsize=7, color=GREY, va="top")
-                page.paper.text(RIGHT, 0.55, f"page {number} of {len(self.pages)}", fontsize=7, color=GREY, va="top",
-                                ha="right")
-                pdf.savefig(page.figure)
-                plt.close(page.figure)
+    def annex(self):
+        self.count, self.in_annex = 0, True
+
+    def page(self, heading, numbered=True, drop=0.0):
+        """Adds a page; of the same heading as the page before, it continues its section. drop: inches above the
+        heading."""
+        before = self.pages[-1] if self.pages else None
+        if before is not None and before.heading == heading:
+            page = Page(heading, before.number)
+            page.text(LEFT, t("{heading} (continued)", heading=f"{page.number} {heading}".strip()), size=11,
+                      colour=GREY)
+        else:
+            self.count += numbered
+            own = chr(64 + self.count) if self.in_annex else str(self.count)
+            page = Page(heading, self.prefix + own if numbered else "")
+            page.y -= drop
+            page.text(LEFT, f"{page.number}  {heading}".strip(), size=14, weight="bold")
+            if self.contents and self.contents[-1][2] is None:
+                self.contents[-1][2] = page
+            if numbered:
+                self.contents.append([page.number, heading, page])
+        page.y -= 0.12
+        self.pages.append(page)
+        return page
+
+    def anchor(self, key):
+        """The last page is the one of this key; the first one remains."""
+        self.anchors.setdefault((self.prefix, key), self.pages[-1])
+
+    def refer(self, reference, artist):
+        """Writes the number of a page into a text when all pages are known."""
+        target = reference.target
+        self.references.append((target if isinstance(target, Page) else (self.prefix, target), artist))
+
+    def number_of(self, target):
+        page = target if isinstance(target, Page) else self.anchors.get(target)
+        return "" if page is None else str(self.pages.index(page) + 1)
+
+    def fill_references(self):
+        for target, artist in self.references:
+            artist.set_text(self.number_of(target))
 
 
-def table(report, page, columns, rows, size=7.5, heading=None):
-    """Draws a table. columns: (name, width in inches, alignment). A cell is a text, or (text, colour). The table
-    continues on further pages with the heading of the first one. Returns its last page."""
+def text_of(cell):
+    return "00" if isinstance(cell, Reference) else cell[0] if isinstance(cell, tuple) else cell
+
+
+class Cell:
+    """A cell of a table that is to be drawn: its lines, in a smaller size if a word is longer than its column."""
+
+    def __init__(self, cell, width, size, weight):
+        text = text_of(cell)
+        longest = max((width_of(word, size, weight) for word in text.split(" ")), default=0.0)
+        self.size = max(min(size, size * width / longest if longest else size), SMALLEST * size)
+        self.lines = wrapped(text, width, self.size, weight)
+        self.cell, self.weight = cell, weight
+        self.colour = cell[1] if isinstance(cell, tuple) else INK
+
+    def draw(self, report, page, x, align, step):
+        for i, line in enumerate(self.lines):
+            artist = page.paper.text(x, page.y - i * step, line, fontsize=self.size, color=self.colour, va="top",
+                                     ha=align,
+                                     weight=self.weight)
+            if isinstance(self.cell, Reference):
+                report.refer(self.cell, artist)
+
+
+def table(report, page, columns, rows, size=7.5):
+    """Draws a table. columns: (name, width in inches, alignment). A cell is a text, (text, colour) or a Reference. The
+    table continues on further pages. Returns its last page."""
     step = 1.35 * size / 72.0
 
-    def draw_head():
-        draw_row([(name, GREY) for name, _, _ in columns], "bold")
-
-    def draw_row(cells, weight="normal"):
-        x, lines = LEFT, []
-        for cell, (_, width, _) in zip(cells, columns):
-            text = cell[0] if isinstance(cell, tuple) else cell
-            lines.append(wrapped(text, width - 0.08, size, weight))
-        for cell, words, (_, width, align) in zip(cells, lines, columns):
-            colour = cell[1] if isinstance(cell, tuple) else INK
-            for i, line in enumerate(words):
-                page.paper.text(x if align == "left" else x + width - 0.08, page.y - i * step, line, fontsize=size,
-                                color=colour, va="top", ha=align, weight=weight)
-            x += width
-        page.y -= max(map(len, lines)) * step + 0.05
-        page.paper.plot([LEFT, RIGHT], [page.y + 0.025] * 2, color=PALE, lw=0.5)
+    def cells_of(row, weight="normal"):
+        return [Cell(cell, width - 0.08, size, weight) for cell, (_, width, _) in zip(row, columns)]
 
     def height_of(cells):
-        texts = [cell[0] if isinstance(cell, tuple) else cell for cell in cells]
-        return max(len(wrapped(text, width - 0.08, size)) for text, (_, width, _) in zip(texts, columns)) * step + 0.05
+        return max(len(cell.lines) for cell in cells) * step + 0.05
 
-    draw_head()
+    def draw_row(cells):
+        x = LEFT
+        for cell, (_, width, align) in zip(cells, columns):
+            cell.draw(report, page, x if align == "left" else x + width - 0.08, align, step)
+            x += width
+        page.y -= height_of(cells)
+        page.line(page.y + 0.025)
+
+    head = cells_of([(capital(name), GREY) for name, _, _ in columns], "bold")
+    named = any(name for name, _, _ in columns)
+    if named:
+        draw_row(head)
     for row in rows:
-        if page.y - height_of(row) < BOTTOM:
-            page = report.page(f"{heading or page.heading} (continued)".replace(" (continued) (continued)",
-                                                                                " (continued)"))
-            draw_head()
-        draw_row(row)
+        cells = cells_of(row)
+        if page.y - height_of(cells) < BOTTOM:
+            page = report.page(page.heading, bool(page.number))
+            if named:
+                draw_row(head)
+        draw_row(cells)
     page.y -= 0.12
     return page

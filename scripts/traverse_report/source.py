@@ -1,54 +1,38 @@
 """A results file for the report: a single run, or a table of runs with varied options and results."""
 
 import pathlib
-import re
 
 import h5py
 import numpy as np
+from engineering_units import printed, shown
 from picture_data import Results
 from picture_model import Model
+
+from .language import number, t
+
+
+# Rows of engineering_units.csv for varied options of these units.
+OF_OPTION = {"N m2": "bending_stiffness", "kg/m": "mass_per_length", "N/m": "spring_stiffness", "N/m2": "bed_stiffness",
+             "N m/rad": "rotational_stiffness", "N s/m": "damping", "kg": "mass"}
+
+
+OPTIONS = {"foundation_vertical_k": "stiffness of the vertical springs",
+           "foundation_rotational_k": "stiffness of the rotational springs",
+           "foundation_longitudinal_k": "stiffness of the longitudinal springs", "beam_EI": "bending stiffness EI",
+           "beam_mass": "mass per length", "model_damping_ratios": "damping ratio",
+           "beam_damping_ratios": "damping ratio"}
 
 
 class ReportError(Exception):
     """The reason why the report fails, in one line."""
 
 
-# Name in the file: description, unit in the report, and the factor to this unit.
-QUANTITIES = {
-    "peak_deflection": ("greatest deflection", "mm", 1e3),
-    "peak_acceleration": ("greatest deck acceleration, unfiltered", "m/s²", 1.0),
-    "deck_acceleration": ("greatest deck acceleration, low-passed", "m/s²", 1.0),
-    "peak_moment": ("greatest bending moment", "kN m", 1e-3),
-    "amplification": ("amplification at the greatest deflection", "", 1.0),
-    "least_wheel_force": ("least wheel force", "kN", 1e-3),
-    "greatest_wheel_force": ("greatest wheel force", "kN", 1e-3),
-    "longest_loss": ("longest loss of contact", "ms", 1e3),
-    "end_rotation": ("greatest rotation at the bridge's ends", "mrad", 1e3),
-    "joint_rotation": ("greatest rotation between two decks", "mrad", 1e3),
-    "car_acceleration": ("greatest vertical acceleration of car bodies", "m/s²", 1.0),
-    "wheel_unloading": ("greatest wheel unloading, unfiltered", "", 1.0),
-    "filtered_wheel_unloading": ("greatest wheel unloading, low-passed", "", 1.0),
-    "unloading_time": ("longest time of unloading, low-passed", "ms", 1e3),
-}
-PARAMETERS = {"speed": ("speed", "km/h", 3.6), "seed": ("seed", "", 1.0)}
-
-
-def parameter_words(name):
-    """The name of a varied option, its unit and the factor to this unit."""
-    for end, words in PARAMETERS.items():
-        if name.endswith(end):
-            return (words[0] if name in ("train_speed", "load_speed", "speed") else name, words[1], words[2])
-    return name, "", 1.0
-
-
-def number(value):
-    return f"{value:.0f}" if value == round(value) and abs(value) < 1e5 else digits(value)
-
-
-def digits(value):
-    """A number with four significant digits, without an exponent if possible."""
-    short = f"{value:.4g}"
-    return f"{value:,.0f}" if "e" in short and 1e4 <= abs(value) < 1e6 else re.sub(r"e\+?(-?)0*", r"e\1", short)
+def parameter_words(name, unit=""):
+    """The name of a varied option, its unit for print and the factor from the unit of the file to this one."""
+    if name.endswith("speed"):
+        return (t("speed") if name in ("train_speed", "load_speed", "speed") else name, *shown("speed"))
+    said = t(OPTIONS[name]) if name in OPTIONS else t("seed") if name.endswith("seed") else name
+    return (said, *shown(OF_OPTION[unit])) if unit in OF_OPTION else (said, printed(unit) if unit != "1" else "", 1.0)
 
 
 class Runs:
@@ -73,38 +57,48 @@ class Runs:
         known = self.values["peak_deflection"]
         return ~np.isnan(known.reshape(self.count, -1)).any(axis=1)
 
-    def x(self):
-        name, unit, factor = parameter_words(self.x_name)
-        label = "speed" if self.x_name.endswith("speed") else name
-        unit = unit or self.unit(self.x_name)
-        return factor * self.parameters[self.x_name], f"{label} ({unit})" if unit else label
+    def words(self, name):
+        """The name of a varied option, its unit for print and the factor to it."""
+        return parameter_words(name, self.units.get(name, ""))
 
-    def unit(self, name):
-        """The unit of a varied option in the file."""
-        return self.units.get(name, "").replace("2", "²").replace("3", "³") if self.units.get(name) != "1" else ""
+    def x(self):
+        name, unit, factor = self.words(self.x_name)
+        return factor * self.parameters[self.x_name], f"{name} ({unit})" if unit else name
 
     def lines_in_words(self):
         """The varied options of the lines, in the order of the numbers in their names."""
-        units = {name: parameter_words(name)[1] or self.unit(name) for name in self.line_names}
-        return ", ".join("train" if name == "hslm_a" else f"{name} ({units[name]})" if units[name] else name
-                         for name in self.line_names)
+        found = [(name, *self.words(name)[:2]) for name in self.line_names]
+        return ", ".join(t("train") if name == "hslm_a" else f"{said} ({unit})" if unit else said
+                         for name, said, unit in found)
+
+    def value(self, name, run):
+        """The value of a varied option in a run with its unit: 'A10', '250 km/h'."""
+        _, unit, factor = self.words(name)
+        value = factor * self.parameters[name][run]
+        if name.endswith("hslm_a"):
+            return f"A{value:.0f}"
+        return f"{value:.0f}" if name.endswith("seed") else f"{number(value)} {unit}".strip()
+
+    def named_value(self, name, run):
+        """The same with the name of the option, which trains and speeds do not need."""
+        obvious = name.endswith(("hslm_a", "speed"))
+        return self.value(name, run) if obvious else f"{self.words(name)[0]} {self.value(name, run)}"
 
     def line_name(self, run):
-        parts = []
-        for name in self.line_names:
-            value = self.parameters[name][run]
-            said, unit, factor = parameter_words(name)
-            unit = unit or self.unit(name)
-            said = "" if len(self.line_names) == 1 and unit else f"{said} "
-            parts.append(f"A{value:.0f}" if name.endswith("hslm_a") else f"{said}{number(factor * value)} {unit}".strip())
-        return ", ".join(parts) or "all runs"
+        if len(self.line_names) == 1 and self.words(self.line_names[0])[1]:
+            return self.value(self.line_names[0], run)
+        return ", ".join(self.named_value(name, run) for name in self.line_names) or t("all runs")
 
     def curve_name(self, run):
         """A short name for a picture with lines_in_words in its heading: only the values of several options."""
         if len(self.line_names) < 2:
             return self.line_name(run)
-        return ", ".join(f"A{self.parameters[name][run]:.0f}" if name.endswith("hslm_a") else
-                         number(parameter_words(name)[2] * self.parameters[name][run]) for name in self.line_names)
+        return ", ".join(self.value(name, run).split(" ")[0] for name in self.line_names)
+
+    def run_in_words(self, run):
+        """The name of a run: 'A10, 344 km/h'."""
+        names = self.line_names + ([self.x_name] if self.x_name else []) + self.over
+        return ", ".join(self.named_value(name, run) for name in names)
 
     def lines(self):
         """(name, indices of its runs by ascending x) of each drawn line, with all values of `over` together."""
@@ -135,16 +129,6 @@ class Runs:
         stations = self.probes[run] if self.probes.ndim == 2 else self.probes
         return None if values.ndim == 1 else float(stations[int(np.nanargmax(np.abs(values[run])))])
 
-    def run_in_words(self, run):
-        """The name of a run: 'A10, 344 km/h'."""
-        name = self.line_names[0] if len(self.line_names) == 1 and not self.line_names[0].endswith("hslm_a") else ""
-        parts = [f"{name} {self.line_name(run)}".strip()] if self.line_names else []
-        for name in ([self.x_name] if self.x_name else []) + self.over:
-            said, unit, factor = parameter_words(name)
-            said = "" if unit == "km/h" else f"{said} "
-            parts.append(f"{said}{number(factor * self.parameters[name][run])} {unit}".strip())
-        return ", ".join(parts)
-
 
 class Source:
     """One results file with the data of all pages."""
@@ -168,7 +152,8 @@ class Source:
         self.is_run = self.runs is None and "probes/deflection" in self.file and self.results.rows > 0
         self.is_rail = "rail_forces/x" in self.file
         if self.runs is None and not self.is_run and not self.is_rail:
-            raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor forces of the rails: "
+            raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor forces of the "
+                              f"rails: "
                               "nothing to report on")
 
     def _judged(self, runs):
@@ -209,48 +194,48 @@ class Source:
         return self._judged(Runs(parameters, values, group["probes_x"][:], group["static_deflection"][:], over, units))
 
     def title(self):
-        return self.results.scene()
+        return self.options.get("report_structure") or self.results.scene()
 
     def kind_in_words(self):
         if self.is_rail:
-            return "forces between rail and bridge, UIC 774-3"
+            return t("track-bridge interaction, static analysis")
         if self.is_run:
-            speed = self.results.speed()
-            return f"one run at {3.6 * speed:.4g} km/h" if speed else "one run"
+            speed, (unit, factor) = self.results.speed(), shown("speed")
+            return t("one run at {speed}", speed=f"{number(factor * speed)} {unit}") if speed else t("one run")
         runs = self.runs
         parts = []
         for name in runs.line_names + ([runs.x_name] if runs.x_name else []) + runs.over:
-            values, (said, unit, factor) = np.unique(runs.parameters[name]), parameter_words(name)
+            values, (said, unit, factor) = np.unique(runs.parameters[name]), runs.words(name)
+            low, high = (number(factor * values[i]) for i in (0, -1))
             if name.endswith("hslm_a"):
-                parts.append(f"trains A{values[0]:.0f} to A{values[-1]:.0f} of HSLM-A")
+                parts.append(t("trains {first} to {last} of HSLM-A", first=f"A{low}", last=f"A{high}"))
             else:
-                many = f"{len(values)} speeds" if said == "speed" else f"{len(values)} values of {said}"
-                parts.append(f"{many} from {number(factor * values[0])} to "
-                             f"{number(factor * values[-1])} {unit}".strip())
-        done = int(runs.finished.sum())
-        missing = "" if done == runs.count else f"; {runs.count - done} of the runs have not ended"
-        return f"{runs.count:,} runs: {', '.join(parts)}{missing}" if parts else f"{runs.count} run{missing}"
+                many = t("{count} speeds", count=len(values)) if name.endswith("speed") else \
+                    t("{count} values of {name}", count=len(values), name=said)
+                parts.append(t("{many} from {low} to {high}", many=many, low=low, high=f"{high} {unit}".strip()))
+        missing = runs.count - int(runs.finished.sum())
+        said = ", ".join([t("{count} runs", count=number(runs.count)), *parts])
+        return f"{said}; {t('{count} of the runs have not ended', count=missing)}" if missing else said
 
     def train_in_words(self):
         model = self.model
         if self.is_rail:
-            return f"a train at {len(self.file['rail_forces/front'])} places"
+            return t("a train at {count} positions", count=len(self.file["rail_forces/front"]))
         if len(model.train):
-            names = [model.type_name(index) for index, _ in model.train]
             counted = []
-            for name in names:
+            for name in (model.type_name(index) for index, _ in model.train):
                 if counted and counted[-1][0] == name:
                     counted[-1][1] += 1
                 else:
                     counted.append([name, 1])
-            said = ", ".join(name if count == 1 else f"{count} × {name}" for name, count in counted)
-            return said
+            return ", ".join(name if count == 1 else f"{count} × {name}" for name, count in counted)
         names = [name for name in model.forces if name != "load"]
         if names:
-            return f"trains {names[0]} to {names[-1]} of HSLM-A" if len(names) > 1 else f"train {names[0]} of HSLM-A"
+            return t("trains {first} to {last} of HSLM-A", first=names[0], last=names[-1]) if len(names) > 1 else \
+                t("train {name} of HSLM-A", name=names[0])
         if "load_hslm_a" in self.options:
-            return f"train A{self.options['load_hslm_a']} of HSLM-A"
+            return t("train {name} of HSLM-A", name=f"A{self.options['load_hslm_a']}")
         if "train_vehicles" in self.options:
             return self.options["train_vehicles"]
         count = len(model.forces.get("load", ()))
-        return f"{count} moving forces" if count else "nothing that moves"
+        return t("{count} moving forces", count=count) if count else t("no moving load")

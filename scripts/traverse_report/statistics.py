@@ -3,8 +3,9 @@
 import numpy as np
 
 from . import curves
+from .language import capital, num, number, percent, t
 from .page import GREY, LEFT, table
-from .source import QUANTITIES, number, parameter_words
+from .quantities import QUANTITIES, unit_of, words_of
 
 
 def groups_in_words(source):
@@ -15,9 +16,9 @@ def groups_in_words(source):
     for g in range(count):
         parts = []
         for name in names:
-            said, unit, factor = parameter_words(name)
+            said, unit, factor = source.runs.words(name)
             parts.append(f"{said} {number(factor * group[name][g])} {unit}".strip())
-        words.append(", ".join(parts) or "all runs")
+        words.append(", ".join(parts) or t("all runs"))
     return words
 
 
@@ -35,7 +36,8 @@ def statistic_rows(source):
     judged = judged_quantities(source) if "judged_mean" in group else []
     levels = group["quantiles"][:]
     for g, words in enumerate(groups_in_words(source)):
-        for name, (said, unit, factor) in QUANTITIES.items():
+        for name in QUANTITIES:
+            unit, factor = unit_of(name)
             column = name if f"{name}_mean" in group else "judged" if name in judged else None
             if column is None:
                 continue
@@ -49,36 +51,39 @@ def statistic_rows(source):
             quantiles = [(level, *(factor * group[f"{column}_quantile{end}"][at][k] for end in ("", "_low", "_high")))
                          for k, level in enumerate(levels)]
             samples = group[f"{column}_samples"][g]
-            rows.append((words, said, unit, int(np.max(samples)), factor * float(group[f"{column}_mean"][at]),
+            rows.append((words, words_of(name), unit, int(np.max(samples)), factor * float(group[f"{column}_mean"][at]),
                          factor * float(group[f"{column}_deviation"][at]), quantiles))
     return rows
 
 
 def bound(value):
-    return "?" if np.isnan(value) else f"{value:.4g}"
+    return "?" if np.isnan(value) else num(value)
 
 
 def sheet(report, source):
     rows = statistic_rows(source)
     if not rows:
         return
-    page = report.page(f"Statistics: {source.title()}")
+    page = report.page(t("Statistics"))
     confidence = source.file["study/statistics"].attrs.get("confidence", 0.95)
-    page.text(LEFT, f"Over {' and '.join(source.runs.over) or 'all runs'}; each at the probe where its mean is largest. "
-                    f"Brackets: distribution-free confidence interval of a quantile, {100 * confidence:g} %; ?: too few "
-                    "runs for a bound on this side.", size=8, colour=GREY)
+    over = ", ".join(source.runs.words(name)[0] for name in source.runs.over) or t("all runs")
+    page.text(LEFT, t("Over {names}; each value at the station where the mean is largest. Brackets: distribution-free "
+                      "confidence interval of the quantile, {level}; ?: too few runs for a bound on this side.",
+                      names=over,
+                      level=percent(confidence)), size=8, colour=GREY)
     page.y -= 0.08
     if len(np.unique([row[0] for row in rows])) == 1:
         distributions(page, source)
     levels = [quantile[0] for quantile in rows[0][6]]
     width = 2.5 / max(len(levels), 1)
-    columns = [("case", 1.1, "left"), ("quantity", 1.5, "left"), ("runs", 0.4, "right"), ("mean", 0.7, "right"),
-               ("deviation", 0.65, "right")] + [(f"{100 * level:g} %", width, "right") for level in levels]
+    columns = [(t("case"), 1.05, "left"), (t("quantity"), 1.45, "left"), (t("runs"), 0.45, "right"),
+               (t("mean"), 0.65, "right"),
+               (t("standard deviation"), 0.7, "right")] + [(percent(level), width, "right") for level in levels]
     cells, before = [], None
     for words, said, unit, samples, mean, deviation, quantiles in rows:
-        cells.append([words if words != before else "", f"{said} ({unit})" if unit else said, str(samples), f"{mean:.4g}",
-                      f"{deviation:.3g}"] + [f"{value:.4g} [{bound(low)}, {bound(high)}]"
-                                             for _, value, low, high in quantiles])
+        cells.append([words if words != before else "", f"{said} ({unit})" if unit else said, str(samples), num(mean),
+                      num(deviation, ".3g")]
+                     + [f"{num(value)} [{bound(low)}; {bound(high)}]" for _, value, low, high in quantiles])
         before = words
     table(report, page, columns, cells, size=7)
 
@@ -88,11 +93,12 @@ def distributions(page, source):
     shown = [name for name in ("peak_deflection", "peak_acceleration", "least_wheel_force", "greatest_wheel_force")
              if name in source.runs.values][:4]
     for name in shown:
-        words, unit, factor = QUANTITIES[name]
+        unit, factor = unit_of(name)
         values = np.sort(factor * source.runs.of_run(name))
         values = values[~np.isnan(values)]
         if not len(values):
             continue
         ax = page.axes(1.1, right=0.1)
         ax.step(values, np.arange(1, len(values) + 1) / len(values), where="post", color=curves.COLOURS[0])
-        ax.set(title=f"{words[0].upper()}{words[1:]}: share of the runs below", xlabel=unit, ylim=(0, 1.02))
+        ax.set(title=t("{quantity}: share of the runs below", quantity=capital(words_of(name))), xlabel=unit,
+               ylim=(0, 1.02))

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fast_mpi_init.hpp"
+#include "results/dataset_words.hpp"
 #include "run/process.hpp"
 #include "step_by_step.hpp"
 #include "traverse/options/input.hpp"
@@ -21,6 +22,7 @@
 // Closing deletes the scene but not the handle, so that calls with a closed handle are detected.
 struct traverse_passage {
   std::unique_ptr<traverse::app::StepByStep> steps;
+  std::vector<std::string> names;  // of the dimensions of each quantity
 };
 
 namespace {
@@ -115,6 +117,21 @@ traverse::app::Scene scene_of(std::span<const char* const> words) {
   return traverse::app::read_scene();
 }
 
+/// The names of the dimensions of all fields, without the time, and of all constants, separated by blanks.
+std::vector<std::string> names_of_dimensions(const traverse::results::Layout& layout) {
+  std::vector<std::string> all;
+  const auto add = [&](const std::string& path, std::size_t rank, std::size_t without) {
+    std::string names;
+    const std::vector<std::string> dimensions = traverse::results::words_of(path, rank).dimensions;
+    for (std::size_t i = without; i < dimensions.size(); ++i)
+      names += (names.empty() ? "" : " ") + traverse::results::name_of_dimension(dimensions[i]);
+    all.push_back(std::move(names));
+  };
+  for (const auto& field : layout.fields) add(field.name, field.row.size() + 1, 1);
+  for (const auto& constant : layout.constants) add(constant.name, 1, 0);
+  return all;
+}
+
 /// The values of a dataset at the last computed sample.
 std::span<const double> values_of(const traverse::app::StepByStep& steps, const std::string& name) {
   std::size_t first = 0;
@@ -135,7 +152,8 @@ int traverse_open(int argc, const char* const* argv, traverse_passage** passage)
     if (argc < 0) throw InputError("argc is negative");
     if (argc > 0) require_not_null(argv, "argv");
     auto steps = std::make_unique<traverse::app::StepByStep>(scene_of(std::span(argv, static_cast<std::size_t>(argc))));
-    *passage = &handles().emplace_back(traverse_passage{std::move(steps)});
+    std::vector<std::string> names = names_of_dimensions(steps->layout());
+    *passage = &handles().emplace_back(traverse_passage{std::move(steps), std::move(names)});
   });
 }
 
@@ -172,13 +190,14 @@ int traverse_describe(const traverse_passage* passage, size_t i, traverse_quanti
     const auto& constants = layout.constants;
     if (i < fields.size()) {
       const auto& field = fields[i];
-      *quantity = {field.name.c_str(), field.unit.c_str(), field.row.size(), {0, 0}, 1};
+      *quantity = {field.name.c_str(), field.unit.c_str(), field.row.size(), {0, 0}, 1, passage->names[i].c_str()};
       std::copy(field.row.begin(), field.row.end(), quantity->shape);
       return;
     }
     const std::size_t k = i - fields.size();
     if (k >= constants.size()) throw InputError("there is no quantity number " + std::to_string(i));
-    *quantity = {constants[k].name.c_str(), constants[k].unit.c_str(), 1, {constants[k].values.size(), 0}, 0};
+    const auto& [name, values, unit] = constants[k];
+    *quantity = {name.c_str(), unit.c_str(), 1, {values.size(), 0}, 0, passage->names[i].c_str()};
   });
 }
 

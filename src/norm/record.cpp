@@ -87,6 +87,9 @@ void NormCheck::record(results::Recorder& recorder) const {
       values.values.insert(values.values.end(), {one.least.value, one.greatest.value});
     sets.push_back(std::move(values));
   }
+  std::vector<std::string> names;
+  for (const auto& [name, clause] : loads) names.push_back(name);
+  recorder.names("/static_load", names);
   recorder.tables({{"/static/load", loads}});
   std::vector<results::Attribute> rules = {{"n0", n0_}};
   if (!models_.empty()) {

@@ -14,6 +14,7 @@
 #include <numeric>
 #include <unordered_set>
 
+#include "results/dataset_words.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results::hdf5 {
@@ -189,6 +190,7 @@ void File::secure_space() {
 }
 
 void File::flush() {
+  attach_scales();
   secure_space();
   check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL));
 }
@@ -229,12 +231,21 @@ void File::attribute(const std::string& object, const std::string& name, const s
   write_attribute(object, name, text_.get(), &value);
 }
 
-void File::label(const Id& dataset, const std::string& unit) {
-  const std::string valid = printable(unit);
+void File::set_text(const Id& object, const char* name, const std::string& text) {
+  const std::string valid = printable(text);
   const char* value = valid.c_str();
   const Id space(check(H5Screate(H5S_SCALAR)));
-  const Id attribute(check(H5Acreate2(dataset.get(), "unit", text_.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT)));
+  const Id attribute(check(H5Acreate2(object.get(), name, text_.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT)));
   check(H5Awrite(attribute.get(), text_.get(), &value));
+}
+
+void File::label(const Id& dataset, const std::string& name, const std::string& unit) {
+  const Id space(check(H5Dget_space(dataset.get())));
+  DatasetWords words = words_of(name, static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.get()))));
+  set_text(dataset, "unit", unit);
+  set_text(dataset, "units", unit);
+  set_text(dataset, "long_name", words.long_name);
+  if (!words.dimensions.empty()) unscaled_.emplace_back(name, std::move(words.dimensions));
 }
 
 void File::attribute(const std::string& object, const std::string& name, double value) {
@@ -262,7 +273,7 @@ void File::create(const std::string& name, const std::vector<hsize_t>& shape, co
   const Id data(
       check(H5Dcreate2(id(), name.c_str(), H5T_NATIVE_DOUBLE, space.get(), parents(), creation, H5P_DEFAULT)));
   check(H5Dwrite(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
-  label(data, unit);
+  label(data, name, unit);
 }
 
 void File::rewrite(const std::string& name, const std::vector<double>& values) {
@@ -286,7 +297,7 @@ void File::texts(const std::string& name, const std::vector<std::pair<std::strin
   const Id space(check(H5Screate_simple(2, shape, nullptr)));
   const Id data(check(H5Dcreate2(id(), name.c_str(), text_.get(), space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
   if (!rows.empty()) check(H5Dwrite(data.get(), text_.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, cells.data()));
-  label(data, "text");
+  label(data, name, "text");
 }
 
 Id File::hold_open(Id dataset) {
@@ -324,7 +335,7 @@ void Series::make(File& file, const std::string& unit, hsize_t expected) {
   file.check(H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER));
   Id dataset(file.check(H5Dcreate2(file.id(), name_.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
                                    creation.get(), file.rows_access())));
-  file.label(dataset, unit);
+  file.label(dataset, name_, unit);
   dataset_ = file.hold_open(std::move(dataset));
 }
 

@@ -94,8 +94,11 @@ class File {
   /// Unchangeable text in two columns, with escapes for characters that readers reject.
   void table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows);
 
-  /// Sets the unit of a dataset that has none yet.
-  void label(const Id& dataset, const std::string& unit);
+  /// A dimension with a word for each place along it, unless the file has it already.
+  void words(const std::string& name, const std::vector<std::string>& words);
+
+  /// Sets the unit and the long name of a new dataset. The next flush gives it its dimensions.
+  void label(const Id& dataset, const std::string& name, const std::string& unit);
   /// Returns the dataset if its owner may keep it open, or an invalid identifier if too many datasets are open.
   Id hold_open(Id dataset);
 
@@ -107,6 +110,12 @@ class File {
   void open(Id file);
   Id access() const;
   int descriptor() const;
+  void set_text(const Id& object, const char* name, const std::string& text);
+  /// Gives the new datasets their dimension scales, as netCDF-4 has them; they are created where they are missing.
+  void attach_scales();
+  void attach_scales(const std::string& dataset, const std::vector<std::string>& dimensions);
+  std::string scale_for(const std::string& dimension, hsize_t length);
+  void make_scale(const Id& dataset, const std::string& name);
   void create(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
               const std::string& unit, hid_t creation);
   void write_attribute(const std::string& object, const std::string& name, hid_t type, const void* value);
@@ -116,6 +125,7 @@ class File {
   Id file_, parents_, rows_access_, compact_, text_;
   off_t reserved_ = 0;    // bytes of the file that are allocated on the disk
   std::size_t open_ = 0;  // datasets held open
+  std::vector<std::pair<std::string, std::vector<std::string>>> unscaled_;  // new datasets and their dimensions
 };
 
 /// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. The first 2,000 datasets of a file remain

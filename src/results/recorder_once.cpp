@@ -113,6 +113,11 @@ void Recorder::tables(
   });
 }
 
+void Recorder::names(const std::string& dimension, const std::vector<std::string>& names) {
+  if (impl_ == nullptr || names.empty()) return;
+  impl_->attempt([&] { impl_->file.words(dimension, names); });
+}
+
 void Recorder::rewrite(const std::vector<Dataset>& sets) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {

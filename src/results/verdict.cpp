@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 #include "traverse/base/error.hpp"
 
@@ -69,8 +70,21 @@ void print_verdicts(const std::vector<Verdict>& verdicts, const std::vector<std:
   std::fflush(stdout);
 }
 
+void record_limits(Recorder& recorder, const std::vector<options::VerdictLimit>& limits) {
+  std::vector<std::string> names;
+  std::map<std::string, int> times;
+  for (const options::VerdictLimit& limit : limits) {
+    const int time = ++times[limit.quantity];
+    names.push_back(time == 1 ? limit.quantity : fmt::format("{}_{}", limit.quantity, time));
+  }
+  recorder.names("/criterion", names);
+}
+
 void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts) {
   if (verdicts.empty()) return;
+  std::vector<options::VerdictLimit> limits;
+  for (const Verdict& v : verdicts) limits.push_back(v.limit);
+  record_limits(recorder, limits);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::pair<std::string, std::string>> clause, quantity, verdict;
   std::vector<double> value, limit, margin, time, runs, exceeded_in;

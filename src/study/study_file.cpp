@@ -181,6 +181,7 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
         const Copy copy(place, rank == 0 && table.finished_runs() > 0);
         results::Recorder made(comm, std::move(place), layout_of(scene), attributes(comm, scene), scene.options);
         record_model(scene, notes, made);
+        results::record_limits(made, table.limits());
         if (!table.study().sweep) made.datasets(table.coordinates());
         made.datasets(results());
         copy.remove();

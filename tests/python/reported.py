@@ -1,8 +1,11 @@
 """What tests of scripts/traverse-report share: small computations, and the command itself."""
 
+import contextlib
+import io
 import pathlib
-import subprocess
 import sys
+import tempfile
+import unittest.mock
 
 import openpyxl
 
@@ -11,6 +14,8 @@ from small_runs import BINARY, BRIDGE, CROSSING, SOURCE, Computed  # noqa: E402
 
 SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
+from traverse_report import fatigue_sheet, language, main, source, title_sheet, workbook_sheets  # noqa: E402
+
 SWEEP = BRIDGE + """
 sweep: {speed: [60.0, 110.0, 5.0], hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]}
 output: {probes: [5.0, 10.0, 15.0, 22.0, 32.5, 40.0]}
@@ -37,6 +42,20 @@ LIMITS = """
 
 
 class Reported(Computed):
+    """Shares one folder of computations between all classes of a file."""
+    shared = None
+
+    @classmethod
+    def setUpClass(cls):
+        if Reported.shared is None:
+            super().setUpClass()
+            Reported.shared = cls.holder  # removed at the end of the process
+        cls.folder = pathlib.Path(Reported.shared.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        language.choose("en")
+
     @classmethod
     def prepare(cls):
         (cls.folder / "limits.yml").write_text(LIMITS, encoding="utf-8")
@@ -44,14 +63,36 @@ class Reported(Computed):
         for name, text in (("judged", SWEEP), ("study", STUDY), ("crossing", CROSSING), ("coach", COACH)):
             cls.compute(name, text, "-limits", "limits.yml")
 
-    def report(self, *words):
-        return subprocess.run([sys.executable, "-B", SCRIPTS / "traverse-report", "--program", BINARY, *map(str, words)],
-                              cwd=self.folder, capture_output=True, text=True)
+    def command(self, *words):
+        """The command within this process: (exit status, standard output, standard error)."""
+        out, error = io.StringIO(), io.StringIO()
+        given = ["traverse-report", "--program", str(BINARY), *map(str, words)]
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error), contextlib.chdir(self.folder), \
+                unittest.mock.patch.object(sys, "argv", given):
+            try:
+                status = main.main()
+            except SystemExit as ended:
+                status = ended.code
+        return status, out.getvalue(), error.getvalue()
+
+    def entries_of(self, names, *words):
+        """What the command makes of these files: the entries of its report, and its arguments."""
+        arguments = main.arguments_of([*(str(self.folder / f"{name}.h5") for name in names), "--program", str(BINARY),
+                                       *words])
+        arguments.limits = arguments.limits and str(self.folder / arguments.limits)
+        language.choose(arguments.language or "en")
+        with tempfile.TemporaryDirectory() as scratch, contextlib.chdir(self.folder):
+            folders = [pathlib.Path(scratch) / str(number) for number in range(len(names))]
+            for folder in folders:
+                folder.mkdir()
+            return [main.entry_of(source.Source(path), arguments, folder)
+                    for path, folder in zip(arguments.results, folders)], arguments
 
     def book_of(self, name, *words):
-        run = self.report(f"{name}.h5", *words)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(run.stderr, "")
+        """The workbook of a file, without the pages of the report."""
+        entries, arguments = self.entries_of([name], *words)
+        asked = fatigue_sheet.Asked(arguments.factor, arguments.line, arguments.passages)
+        workbook_sheets.write(self.folder / f"{name}.xlsx", title_sheet.Title(), [], entries, asked)
         return openpyxl.load_workbook(self.folder / f"{name}.xlsx")
 
     def columns(self, sheet):

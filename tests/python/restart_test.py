@@ -59,12 +59,15 @@ scene: {{tail: 1.0}}
 """
 
 
+LEFT_OUT = ("options", "option", "input", "input_file", "input_option")
+
+
 def content(file):
     """All that a file holds but where it came from and what tells of the work done, notes among that."""
     found = {}
 
     def take(name, item):
-        if isinstance(item, h5py.Dataset) and name.split("/")[0] not in ("options", "input") and name != "model/notes":
+        if isinstance(item, h5py.Dataset) and name.split("/")[0] not in LEFT_OUT and name != "model/notes":
             found[name] = item[()]
 
     with h5py.File(file) as results:

@@ -1,0 +1,93 @@
+"""Charts along the bridge or the track: envelopes, static effects, rail stresses, natural modes."""
+
+import numpy as np
+from engineering_units import shown
+from picture_axes import legible
+from picture_data import MOST_CURVES
+from picture_rail import CASES
+
+from .packing import Chart, Curve
+
+ENVELOPES = {"deflection": ("Deflection of the bridge, upward positive", "deflection"),
+             "acceleration": ("Vertical acceleration of the bridge, unfiltered", "acceleration"),
+             "moment": ("Bending moment, positive in sagging", "moment"), "shear": ("Shear force", "force")}
+FEWEST_STATIONS = 4  # of a chart; tables.envelope has the values at fewer stations
+# Limits that are lines in a chart of the rails: quantity, sign.
+OF_STRESS, OF_SLIP = {"rail_tension": 1.0, "rail_compression": -1.0}, {"rail_slip": 1.0}
+
+
+def along(title, quantity, x, curves, where="place along the bridge", limits=()):
+    """A chart over the position of values in SI units."""
+    unit, factor = shown(quantity)
+    unit, smaller = legible(unit, [factor * values for _, values in curves])
+    order = np.argsort(x, kind="stable")
+    scaled = [Curve(name, smaller * factor * values[order]) for name, values in curves]
+    lines = tuple((name, smaller * factor * value) for name, value in limits)
+    return Chart(title, unit, scaled, x[order], where, "m", lines)
+
+
+def envelope_charts(results):
+    group = results.file["envelope"] if "envelope" in results.file else {}
+    for name, (title, quantity) in ENVELOPES.items():
+        if name in group and len(results.probes) >= FEWEST_STATIONS:
+            curves = [("least to greatest of the run", group[name][:])]
+            if name == "deflection" and "static_deflection" in group:
+                curves.append(("largest static deflection, drawn downward", -group["static_deflection"][:]))
+            yield along(f"Envelope: {title[0].lower()}{title[1:]}", quantity, results.probes, curves)
+
+
+def rest_charts(results):
+    """The deflected bridge of a static analysis."""
+    if results.rows == 1 and "shape/x" in results.file:
+        yield along("Deflection of the bridge at rest, upward positive", "deflection", results.values("shape/x"),
+                    [("at rest", results.values("shape/deflection"))])
+
+
+def static_charts(results):
+    if "static/load" not in results.file:
+        return
+    loads, x = results.file["static/load"].asstr()[:, 0], results.values("static/x")
+    for name, (title, quantity) in ENVELOPES.items():
+        if f"static/{name}" in results.file:
+            values = results.values(f"static/{name}")
+            yield along(f"Static effects of each load over all its positions: {title[0].lower()}{title[1:]}", quantity,
+                        x, [(load, values[i]) for i, load in enumerate(loads)])
+
+
+def rail_limits(results, signs):
+    if "verdicts/limit" not in results.file:
+        return []
+    rows = zip(results.file["verdicts/quantity"].asstr()[:, 0], results.file["verdicts/clause"].asstr()[:, 0],
+               results.values("verdicts/limit"))
+    return [(f"limit, {clause}", signs[quantity] * limit) for quantity, clause, limit in rows if quantity in signs]
+
+
+def rail_charts(results):
+    for kind, quantity, at, title, signs in (
+            ("stress", "stress", "x", "Additional stress of the rails, least and greatest of all train positions",
+             OF_STRESS),
+            ("slip", "displacement", "sleeper_x",
+             "Displacement of the rail relative to deck or ground, least and greatest", OF_SLIP)):
+        sides = [f"{side}_{kind}" for side in ("least", "greatest")]
+        curves = [(words, np.column_stack([results.values(f"rail_forces/{case}/{side}") for side in sides]))
+                  for case, words in CASES.items() if f"rail_forces/{case}/{sides[0]}" in results.file]
+        if curves:
+            yield along(title, quantity, results.values(f"rail_forces/{at}"), curves, "place along the track",
+                        rail_limits(results, signs))
+
+
+def mode_charts(results):
+    shapes = results.values("modes/shape")
+    if shapes is None or "modes/x" not in results.file:
+        return
+    frequencies = results.values("modes/frequency")
+    kept = range(min(len(shapes), MOST_CURVES))
+    note = "" if len(kept) == len(shapes) else f" (the first {len(kept)} of {len(shapes)})"
+    yield Chart(f"Natural modes of the bridge, each with the largest value 1{note}", "",
+                [Curve(f"{frequencies[i]:.5g} Hz", shapes[i]) for i in kept], results.values("modes/x"),
+                "place along the bridge", "m")
+
+
+def charts(results):
+    kinds = (rail_charts, rest_charts, envelope_charts, static_charts, mode_charts)
+    return [chart for kind in kinds for chart in kind(results)]

@@ -1,0 +1,204 @@
+"""The page of the assumptions of the calculation, each with its source: an input file, the norm or the program."""
+
+import re
+
+import numpy as np
+from engineering_units import shown
+
+from .language import capital, digits, known, num, percent, t
+from .model_sheet import KINDS, draw_bridge
+from .page import table
+
+FIRST_FREQUENCIES = 6
+
+
+def origin(source, *names):
+    """The input file and line of the first of these options that was given; otherwise a default."""
+    group = source.file["input"] if "input" in source.file else {}
+    if "options" in group:
+        given = {name: place for name, place in zip(group["options"].asstr()[:, 0], group["sources"].asstr()[:])}
+        for name in names:
+            if name in given:
+                path, line = given[name]
+                path = path.replace("\\", "/").split("/")[-1]
+                return t("{file}, line {line}", file=path, line=line) if line != "0" else \
+                    t("command line") if path == "command line" else path
+    found = next((name for name in names if name in source.options), None)
+    return t("option {name}", name=found) if found else t("default of the program")
+
+
+def noted(source, pattern):
+    """The first group of a pattern in the notes of the program; empty if there is none."""
+    found = next(filter(None, (re.search(pattern, note) for note in source.model.notes)), None)
+    return found[1] if found else ""
+
+
+def in_unit(value, kind):
+    unit, factor = shown(kind)
+    return f"{digits(factor * value)} {unit}"
+
+
+def along(data, kind):
+    low, high = data[:, 1].min(), data[:, 1].max()
+    unit, factor = shown(kind)
+    return in_unit(low, kind) if low == high else t("{low} to {high}, variable along the bridge",
+                                                    low=digits(factor * low),
+                                                    high=in_unit(high, kind))
+
+
+def of_bridge(source):
+    model, options = source.model, source.options
+    rows, spans = [], np.diff(model.span_ends)
+    if len(spans):
+        lengths = " + ".join(num(span) for span in spans[:12]) + (" + …" if len(spans) > 12 else "")
+        rows.append((t("span lengths"), f"{lengths} m", origin(source, "beam_spans", "bridge_modes_file")))
+    if model.supports:
+        kinds = [t(KINDS[kind]) if kind in KINDS else kind for kind, _ in model.supports]
+        rows.append((t("supports"), ", ".join(f"{kinds.count(kind)} × {kind}" for kind in dict.fromkeys(kinds)),
+                     origin(source, "support_types")))
+    for name, words, kind in (("EI", "bending stiffness EI", "bending_stiffness"),
+                              ("GA", "shear stiffness GA", "axial_stiffness"),
+                              ("mass", "mass per length", "mass_per_length")):
+        if name in model.group:
+            varied = source.runs is not None and f"beam_{name}" in source.runs.parameters
+            rows.append((t(words), t("varied in the study") if varied else along(model.group[name][:], kind),
+                         origin(source, f"beam_{name}", f"beam_{name}_file")))
+    if "modes/frequency" in source.file:
+        shown_ones = "; ".join(num(f) for f in source.file["modes/frequency"][:FIRST_FREQUENCIES])
+        rows.append((t("natural frequencies"), f"{shown_ones} Hz", t("computed")))
+    elif "norm" in source.file:
+        rows.append((t("first natural frequency n₀"), f"{num(source.file['norm'].attrs['n0'])} Hz", t("computed")))
+    rows += [(t("foundation: {kind}", kind=t(KINDS[kind.replace("_bed", "")])), foundation(source, kind, data),
+              origin(source, f"foundation_{kind}_k")) for kind, data in model.foundation.items()]
+    if "beam_surface_height" in options:
+        rows.append((t("height of the track above the neutral axis"), f"{num(float(options['beam_surface_height']))} m",
+                     origin(source, "beam_surface_height")))
+    return rows
+
+
+def foundation(source, kind, data):
+    """The stiffness of a kind of foundation in words."""
+    rotational, bed = kind.startswith("rotational"), kind.endswith("_bed")
+    row = "rotational_stiffness" if rotational else "bed_stiffness" if bed else "spring_stiffness"
+    values = np.unique(data[:, 1])
+    said = " – ".join(in_unit(value, row) for value in (values if len(values) < 2 else values[[0, -1]]))
+    if source.runs is not None and f"foundation_{kind}_k" in source.runs.parameters:
+        said = t("varied in the study")
+    said += f"; {t('along the whole bridge')}" if bed else "; " + t("{count} stations", count=len(data))
+    if data.shape[1] > 3:
+        said += f"; {t('compression only')}" if data[:, 4].any() else ""
+        gap = in_unit(data[:, 3].max(), "rotation" if rotational else "displacement")
+        said += f"; {t('gap')} {gap}" if data[:, 3].any() else ""
+        said += f"; {t('with a cubic term')}" if data[:, 5].any() else ""
+        said += f"; {t('sliding force')} {in_unit(data[:, 6].max(), 'force')}" if data[:, 6:].any() else ""
+    return said
+
+
+def of_damping(source):
+    options = source.options
+    stated = noted(source, r"^damping ([\d.e-]+) %")
+    value = f"ζ = {num(float(stated))} %" if stated else ""
+    for name, words in (("model_damping_bound", "lower bound of EN 1991-2, Table 6.6: {value}"),
+                        ("beam_damping_ratios", "ratios of the first natural modes: {value}"),
+                        ("model_damping_ratios", "ratio of each natural mode: {value}"),
+                        ("beam_rayleigh", "Rayleigh a, b: {value}")):
+        if name in options:
+            said = options[name] if name in ("model_damping_bound", "beam_rayleigh") else \
+                "; ".join(percent(float(part)) for part in options[name].split(","))
+            said = t(words, value=known(said))
+            return [(t("damping"), "; ".join(filter(None, (value, said))), origin(source, name)),
+                    *([(t("additional damping"), t("by EN 1991-2 6.4.6.4"), origin(source, "model_additional_damping"))]
+                      if options.get("model_additional_damping") == "true" else [])]
+    return [(t("damping"), t("none"), t("default of the program"))]
+
+
+def of_loads(source):
+    options, rows = source.options, [(t("traffic load"), source.train_in_words(), origin(
+        source, "sweep_hslm_a", "load_hslm_a", "train_vehicles", "load_forces", "load_file", "uic774_train_length"))]
+    varied = source.runs.parameters if source.runs is not None else {}
+    speeds = varied.get("speed", varied.get("train_speed", varied.get("load_speed")))
+    unit, factor = shown("speed")
+    if speeds is not None:
+        each = np.unique(speeds)
+        rows.append((t("speeds"), t("{count} speeds from {low} to {high}", count=len(each), low=num(factor * each[0]),
+                                    high=f"{num(factor * each[-1])} {unit}"),
+                     origin(source, "sweep_speed", "study_vary_train_speed")))
+    elif source.results.speed():
+        rows.append((t("speed"), f"{num(factor * source.results.speed())} {unit}",
+                     origin(source, "train_speed", "load_speed")))
+    if "track_rail_EI" in options:
+        rows.append((t("track"), t("rail, pads, sleepers and ballast in layers"), origin(source, "track_rail_EI")))
+    else:
+        rows.append((t("track"), t("not modelled: the loads act on the deck"), t("default of the program")))
+    if options.get("track_profile", "none") != "none":
+        rows.append((t("track irregularities"), options["track_profile"], origin(source, "track_profile")))
+    if not source.is_rail:
+        rows.append(spread_of(source))
+    if "norm" in source.file:
+        group = source.file["norm"]
+        rows.append((t("classification factor α"), num(group.attrs["alpha"]), origin(source, "norm_alpha")))
+        lengths, phi = (np.unique(group[name][:]) for name in ("determinant_length", "phi"))
+        track = "Φ₂" if options.get("norm_track") == "careful" else "Φ₃"
+        rows.append((t("dynamic factor {name}, determinant length L_Φ", name=track),
+                     f"{'; '.join(num(value) for value in phi)}; {'; '.join(num(value) for value in lengths)} m",
+                     "EN 1991-2 6.4.5.2, 6.4.5.3"))
+    return rows
+
+
+def spread_of(source):
+    options = source.options
+    if "load_spread" not in options:
+        return (t("load distribution by rail and sleepers"), t("none: axle loads act as single forces"),
+                t("default of the program"))
+    return (t("load distribution by rail and sleepers"), t("over three sleepers, 25, 50 and 25 %, spacing {value}",
+                                                           value=f"{num(float(options['load_spread']))} m"),
+            origin(source, "load_spread"))
+
+
+def of_method(source):
+    file, options = source.file, source.options
+    group = file["sweep"] if "sweep" in file else file["study"] if "study" in file else None
+    attrs = {} if group is None else dict(group.attrs)
+    modes = int(attrs.get("modes", options.get("model_modes", 0)) or 0)
+    said = t("modal superposition, {count} natural modes", count=modes) if modes else \
+        t("direct integration of the finite element model")
+    said = t("static analysis with non-linear track resistance") if source.is_rail else said
+    elements = attrs.get("elements_per_span", noted(source, r"(\d+) elements a span")
+                         or noted(source, r"(\d+) elements"))
+    said += "; " + t("{count} beam elements", count=elements) if elements else ""
+    step = attrs.get("time_step", noted(source, r"steps of (?:at most )?([\d.e-]+) s"))
+    unit, factor = shown("loss_time")
+    said += f"; {t('time step')} {num(factor * float(step))} {unit}" if step else ""
+    rows = [(t("method"), said, origin(source, "model_modes", "beam_elements_per_span", "accuracy"))]
+    if not source.is_rail:
+        stations = source.results.probes
+        rows.append((t("stations of evaluation"),
+                     t("{count} stations from x = {low} m to {high} m", count=len(stations),
+                       low=num(stations.min()), high=num(stations.max())),
+                     origin(source, "output_probes", "output_probes_spacing")))
+        limit = source.summary.get("acceleration_lowpass_frequency") or noted(source, r"low-passed at ([\d.e+]+) Hz")
+        rows.append((t("filter of deck accelerations"), t("low-pass, cut-off frequency {value} Hz, without phase shift",
+                                                          value=num(float(limit))) if limit else t("none"),
+                     "EN 1990 A2.4.4.2.1" if limit and "output_lowpass" not in options
+                     else origin(source, "output_lowpass")))
+        given = options.get("scene_start") == "given"
+        rows.append((t("start"), t("given positions and velocities") if given
+                     else t("bridge and vehicles in static equilibrium"), origin(source, "scene_start")))
+        wanted = num(float(options["accuracy"])) if "accuracy" in options else t("none requested")
+        rows.append((t("relative error requested"), wanted, origin(source, "accuracy")))
+    return rows
+
+
+def rows_of(source):
+    """Rows (assumption, value, source)."""
+    return of_bridge(source) + ([] if source.is_rail else of_damping(source)) + of_loads(source) + of_method(source)
+
+
+def sheet(report, source):
+    page = report.page(t("Basis of calculation"))
+    report.anchor("assumptions")
+    if len(source.model.span_ends) > 1:
+        draw_bridge(page, source)
+    table(report, page, [(t("assumption"), 1.9, "left"), (t("value"), 3.1, "left"), (t("source"), 1.8, "left")],
+          [(capital(words), *rest) for words, *rest in rows_of(source)],
+          size=8)

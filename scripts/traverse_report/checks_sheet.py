@@ -1,0 +1,95 @@
+"""The scope of verification: every requirement of clauses.yml with its result, so that nobody takes a part for the
+whole."""
+
+import functools
+import pathlib
+
+import yaml
+
+from .curves import shown_limit
+from .front_sheet import COLOURS, WORDS, shown_value
+from .language import capital, t
+from .page import AMBER, GREY, INK, LEFT, Reference, table
+
+PAGES = {"rail": {"rail_tension", "rail_compression", "deck_displacement", "deck_end_displacement"}}  # others: verdicts
+MARKS = ("⁰", "¹")  # clauses that no or one public source confirms
+
+
+@functools.cache
+def clauses():
+    return yaml.safe_load(pathlib.Path(__file__).with_name("clauses.yml").read_text(encoding="utf-8"))
+
+
+def varied(source, *names):
+    return source.runs is not None and any(name in source.runs.parameters for name in names)
+
+
+def has_all_trains(source):
+    names = {name for name in source.model.forces if name != "load"}
+    return {f"A{number}" for number in range(1, 11)} <= names
+
+
+# What a requirement without a limit needs in the results: a condition, and the anchor of its page.
+COMPUTED = {
+    "norm": (lambda source: "norm" in source.file, "norm"),
+    "comfort": (lambda source: bool(source.results.vehicles), "comfort"),
+    "hslm": (has_all_trains, "loads"),
+    "real_trains": (lambda source: bool(len(source.model.train)) or "load" in source.model.forces, "loads"),
+    "speeds": (lambda source: source.runs is not None and str(source.runs.x_name).endswith("speed"), "assumptions"),
+    "damping": (lambda source: "model_damping_bound" in source.options, "assumptions"),
+    "mass": (lambda source: varied(source, "beam_mass"), "assumptions"),
+    "stiffness": (lambda source: varied(source, "beam_EI"), "assumptions"),
+    "rail": (lambda source: source.is_rail, "rail"),
+}
+
+
+def has_joints(source):
+    return any(joint in ("hinge", "separate") for _, joint in source.model.supports)
+
+
+def results_of(source, row, verdicts):
+    """(result in words, its colour, limit, value, anchor of its page) of a requirement, one for each verdict."""
+    quantities = row.get("quantities", [])
+    found = [verdict for verdict in verdicts if verdict.limit.quantity in quantities and verdict.word != "not judged"]
+    if found:
+        return [(t(WORDS[v.word]), COLOURS[v.word], shown_limit(v.limit.value, v.limit.quantity),
+                 shown_value(v.value, v.limit.quantity), "rail" if v.limit.quantity in PAGES["rail"] else "verdicts")
+                for v in found]
+    if row.get("needs") == "joints" and not has_joints(source):
+        return [(t("not applicable: no joint between two decks"), GREY, "", "", "")]
+    condition, anchor = COMPUTED.get(row.get("computed"), (None, ""))
+    remark = t(row["remark"]) if "remark" in row else ""
+    if condition is not None and condition(source):
+        return [("; ".join(filter(None, (t("computed, without a limit"), remark))), INK, "", "", anchor)]
+    if condition is None and not quantities:
+        return [("; ".join(filter(None, (t("not in this program"), remark))), GREY, "", "", "")]
+    return [(t("not verified: no limit given") if quantities else t("not verified"), AMBER, "", "", "")]
+
+
+def rows_of(source, verdicts):
+    """(requirement, clause, results) of all requirements."""
+    rows = []
+    for row in clauses()["requirements"]:
+        said = t(row["requirement"]) + (f" ({t(row['value'])})" if "value" in row else "")
+        mark = MARKS[len(row["sources"])] if row["clause"] and len(row["sources"]) < len(MARKS) else ""
+        rows.append((said, row["clause"] + mark, results_of(source, row, verdicts)))
+    return rows
+
+
+def sheet(report, source, verdicts):
+    page = report.page(t("Scope of verification"))
+    page.text(LEFT, t("All requirements of EN 1990 A2.4.4 and EN 1991-2 6.4 and 6.5.4 for railway bridges. A result "
+                      "covers only the requirements with a verdict; the others need a separate verification. Values in "
+                      "brackets are the recommended ones; the national annex may change them."))
+    page.text(LEFT, t("{one}: one public source confirms the number of the clause; {none}: no public source confirms "
+                      "it. Such numbers must be checked with the norm.", one=MARKS[1], none=MARKS[0]), size=7,
+              colour=GREY)
+    page.y -= 0.08
+    cells = []
+    for requirement, clause, results in rows_of(source, verdicts):
+        for i, (said, colour, limit, value, anchor) in enumerate(results):
+            first = [capital(requirement), clause] if i == 0 else ["", ""]
+            cells.append([*first, (said, colour), limit, value, Reference(anchor) if anchor else ""])
+    columns = [(t("requirement"), 2.3, "left"), (t("clause"), 1.25, "left"), (t("result"), 1.55, "left"),
+               (t("limit"), 0.62, "right"), (t("value"), 0.72, "right"), (t("page"), 0.36, "right")]
+    table(report, page, columns, cells, size=6.5)

@@ -1,0 +1,80 @@
+"""The comparison of several results files: the utilisation of each limit in each file, with its page."""
+
+from .curves import shown_limit
+from .front_sheet import COLOURS, WORDS, outcome, outcome_of
+from .language import capital, percent, t
+from .page import AMBER, GREEN, GREY, LEFT, RED, RIGHT, Reference, table
+from .quantities import words_of
+
+SEVERITY = (GREEN, GREY, AMBER, RED)
+FILES_A_TABLE = 4
+FIRST_COLUMN = 2.2  # inches
+
+
+def worst_of(entries):
+    """(verdict, source) with the greatest utilisation of all; None without evaluated limits. entries: (source,
+    verdicts)."""
+    judged = [(verdict, source) for source, verdicts in entries for verdict in verdicts if verdict.word != "not judged"]
+    return max(judged, key=lambda found: found[0].utilisation, default=None)
+
+
+def headline(entries):
+    """(lines of the result, colour) of the title page; the first line is the main one."""
+    worst = worst_of(entries)
+    said, colour = outcome([verdict for _, verdicts in entries for verdict in verdicts])
+    own = [outcome_of(source, verdicts) for source, verdicts in entries]
+    lines = [own[0][0] if len(entries) == 1
+             else t("Of {count} results files: {outcome}", count=len(entries), outcome=said)]
+    if worst is not None:
+        verdict, source = worst
+        place = source.title() if len(entries) == 1 else f"{source.title()} ({source.path.name})"
+        lines.append(t("Greatest utilisation: {share}, {place}: {quantity}, {result}.",
+                       share=percent(verdict.utilisation),
+                       place="; ".join(filter(None, (place, verdict.run))), result=t(WORDS[verdict.word]),
+                       quantity="; ".join(filter(None, (words_of(verdict.limit.quantity), verdict.limit.clause)))))
+    lines.append(t("The result covers only the requirements that the section Scope of verification marks as verified."))
+    return lines, max((colour for _, colour in own), key=SEVERITY.index)
+
+
+def key_of(limit):
+    return limit.clause, limit.quantity, limit.value
+
+
+def sheet(report, entries, first_pages):
+    """Adds the comparison at the end of the report, one column for each file. entries: (source, verdicts)."""
+    page = report.page(t("Comparison of the results"), numbered=False)
+    page.text(LEFT, t("Utilisation: value over limit. An empty cell: the results file does not contain the value."),
+              colour=GREY, size=8)
+    for start in range(0, len(entries), FILES_A_TABLE):
+        some = entries[start:start + FILES_A_TABLE]
+        limits = list(dict.fromkeys(key_of(verdict.limit) for _, verdicts in some for verdict in verdicts
+                                    if verdict.word != "not judged"))
+        width = (RIGHT - LEFT - FIRST_COLUMN) / len(some)
+        columns = [("", FIRST_COLUMN, "left")] + [(str(start + i), width, "left") for i in range(1, len(some) + 1)]
+        page.y -= 0.08
+        page = table(report, page, columns, rows_of(some, limits, first_pages[start:start + FILES_A_TABLE]), size=7)
+
+
+def rows_of(entries, limits, first_pages):
+    """Rows of the comparison: what the files are, then the utilisation of each limit."""
+    sources, worst = [source for source, _ in entries], [worst_of([entry]) for entry in entries]
+    rows = [[t("structure"), *(source.title() for source in sources)],
+            [t("results file"), *(source.path.name for source in sources)],
+            [t("page"), *(Reference(first) for first in first_pages)],
+            [t("traffic load"), *(source.train_in_words() for source in sources)],
+            [t("computation"), *(source.kind_in_words() for source in sources)],
+            [t("result"), *(outcome_of(*entry) for entry in entries)],
+            [t("run with the greatest utilisation"), *(found[0].run if found else "" for found in worst)],
+            [t("greatest utilisation"), *(utilisation_cell(found[0]) if found else "" for found in worst)]]
+    for key in limits:
+        clause, quantity, value = key
+        found = [next((verdict for verdict in verdicts if key_of(verdict.limit) == key
+                       and verdict.word != "not judged"), None)
+                 for _, verdicts in entries]
+        rows.append([f"{words_of(quantity)} ≤ {shown_limit(value, quantity)} ({clause})",
+                     *(utilisation_cell(verdict) if verdict else "" for verdict in found)])
+    return [[capital(row[0]), *row[1:]] for row in rows]
+
+
+def utilisation_cell(verdict):
+    return percent(verdict.utilisation), COLOURS[verdict.word]

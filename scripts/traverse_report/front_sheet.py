@@ -1,0 +1,156 @@
+"""The summary of one results file: its verdicts, its greatest values and its governing run."""
+
+import numpy as np
+
+from . import model_sheet, norm_sheet, rail_sheet
+from .curves import shown_limit
+from .language import capital, digits, known, num, percent, place_in_words, t
+from .limits import STATIC
+from .page import AMBER, GREEN, GREY, LEFT, RED, table
+from .quantities import QUANTITIES, unit_of, words_of
+
+WORDS = {"kept": "complied with", "kept alone": "complied with in the governing run", "broken": "exceeded",
+         "not judged": "not evaluated", "below": "below", "above": "above"}
+COLOURS = {"kept": GREEN, "kept alone": GREY, "broken": RED, "not judged": GREY, "below": GREEN, "above": AMBER}
+
+
+def word_cell(word):
+    return t(WORDS[word]), COLOURS[word]
+
+
+def shown_value(value, quantity):
+    """A value of the quantity of a limit as text, with the usual unit."""
+    if np.isnan(value):
+        return ""
+    if quantity.endswith("deflection_over_span"):
+        return f"L/{digits(1.0 / value)}" if value > 0.0 else "0"
+    unit, factor = unit_of(quantity)
+    return f"{digits(factor * value)} {unit}".strip()
+
+
+def outcome(verdicts):
+    """The main result in one line, and its colour."""
+    judged = [verdict for verdict in verdicts if verdict.word in ("kept", "broken")]
+    broken = sum(verdict.word == "broken" for verdict in judged)
+    alone = sum(verdict.word == "kept alone" for verdict in verdicts)
+    left = len(verdicts) - len(judged) - alone
+    if not verdicts:
+        return t("No limits were given: the results are not verified."), GREY
+    said, colour = t("None of the {count} limits could be evaluated.", count=len(verdicts)), GREY
+    if broken:
+        said, colour = t("Limits exceeded: {count} of {all} evaluated.", count=broken, all=len(judged)), RED
+    elif judged:
+        said = t("All evaluated limits are complied with: {count} of {all}.", count=len(judged), all=len(verdicts))
+        colour = AMBER if alone else GREEN
+    rest = [t("Known for the governing run only: {count}.", count=alone)] if alone else []
+    rest += [t("Not evaluated: {count}.", count=left)] if left and judged else []
+    return " ".join([said, *rest]), colour
+
+
+def outcome_of(source, verdicts):
+    """The same of a results file; red if its computation has not reached its end."""
+    said, colour = outcome(verdicts)
+    ended = source.summary.get("ended", t("it was killed"))
+    if ended == "reached its end":
+        return said, colour
+    return f"{t('The computation did not reach its end: {reason}.', reason=ended)} {said}", RED
+
+
+def verdict_table(report, page, verdicts):
+    columns = [(t("requirement"), 1.55, "left"), (t("quantity"), 1.2, "left"), (t("limit"), 0.62, "right"),
+               (t("value"), 0.72, "right"), (t("utilisation"), 0.72, "right"), (t("result"), 0.85, "left"),
+               (t("run, position, time"), 1.14, "left")]
+    rows = []
+    for v in verdicts:
+        judged = v.word != "not judged"
+        rows.append(["; ".join(filter(None, (v.limit.clause, v.limit.text))), capital(words_of(v.limit.quantity)),
+                     shown_limit(v.limit.value, v.limit.quantity), shown_value(v.value, v.limit.quantity) if judged
+                     else "",
+                     percent(v.utilisation) if judged else "", word_cell(v.word),
+                     "; ".join(filter(None, (v.run, v.where)))])
+    return table(report, page, columns, rows, size=7)
+
+
+def is_known(runs, name):
+    """Whether a quantity has values; for losses of contact, whether there are any."""
+    if name in STATIC or name not in runs.values or np.isnan(runs.of_run(name)).all():
+        return False
+    return name != "longest_loss" or np.nanmax(runs.of_run(name)) > 0.0
+
+
+def peak_rows(source):
+    """Rows (quantity, value, unit, run and place) of the greatest values, in the unit."""
+    if source.is_rail:
+        return rail_sheet.peak_rows(source)
+    return peaks_of_run(source) if source.runs is None else peaks_of_runs(source)
+
+
+def peaks_of_run(source):
+    rows, summary = [], source.summary
+    for name, quantity in (("deflection", "peak_deflection"), ("acceleration", "peak_acceleration"),
+                           ("acceleration_lowpass", "deck_acceleration"), ("moment", "peak_moment")):
+        if name in summary:
+            unit, factor = unit_of(quantity)
+            where = place_in_words(summary[f"{name}_place"], source.results.supports)
+            rows.append((words_of(quantity), factor * abs(summary[name]), unit,
+                         f"{where}, t = {num(summary[f'{name}_time'])} s"))
+    if "amplification" in summary:
+        rows.append((words_of("amplification"), summary["amplification"], "",
+                     t("relative to the greatest static deflection")))
+    if "least_wheel" in summary:
+        unit, factor = unit_of("least_wheel_force")
+        rows.append((words_of("least_wheel_force"), factor * summary["least_wheel_force"], unit,
+                     known(str(summary["least_wheel"]))))
+    return rows
+
+
+def peaks_of_runs(source):
+    rows, runs = [], source.runs
+    for name in QUANTITIES:
+        if not is_known(runs, name):
+            continue
+        unit, factor = unit_of(name)
+        values = runs.of_run(name)
+        run = int(np.nanargmin(values) if name.startswith("least") else np.nanargmax(values))
+        place = runs.place(name, run)
+        where = "" if place is None else ", " + place_in_words(place, source.results.supports)
+        rows.append((words_of(name), factor * values[run], unit, runs.run_in_words(run) + where))
+    return rows
+
+
+def sheet(report, source, verdicts, governing):
+    """The first page of a file: the scene, the verdicts and their utilisation."""
+    page = report.page(t("Summary of results"))
+    page.text(LEFT, source.title(), size=11, weight="bold")
+    several = source.runs is not None and "hslm_a" in source.runs.parameters
+    train = "" if several else f"{source.train_in_words()}; "
+    page.text(LEFT, train + source.kind_in_words(), size=9)
+    page.text(LEFT, t("Results file {name}", name=source.path.name), size=8, colour=GREY)
+    if len(source.model.span_ends) > 1:
+        model_sheet.draw_bridge(page, source)
+    page.y -= 0.05
+    said, colour = outcome_of(source, verdicts)
+    page.text(LEFT, said, size=11, colour=colour, weight="bold")
+    page.text(LEFT, t("The result covers only the requirements that the section Scope of verification marks as "
+                      "verified."), size=8,
+              colour=GREY)
+    page.y -= 0.1
+    if verdicts:
+        page = verdict_table(report, page, verdicts)
+        report.anchor("verdicts")
+    if said := norm_sheet.sentence(source):
+        page.text(LEFT, said)
+        page.y -= 0.1
+    head = t("greatest values of all runs") if source.runs is not None else t("greatest values of the run")
+    rows = [(capital(words), f"{digits(value)} {unit}".strip(), where)
+            for words, value, unit, where in peak_rows(source)]
+    page = table(report, page,
+                 [(head, 2.5, "left"), (t("value"), 1.0, "right"), (t("run, position, time"), 3.3, "left")], rows)
+    if governing is not None:
+        page = page if page.room() > 0.8 else report.page(page.heading)
+        page.text(LEFT, t("The governing run, {run}, was repeated with closer stations and stored time histories, "
+                          "because {reason}.",
+                          run=governing.words, reason=governing.why))
+        if governing.trouble:
+            page.text(LEFT, t("The governing run could not be repeated: {reason}", reason=known(governing.trouble)),
+                      colour=RED)

@@ -1,0 +1,62 @@
+"""The quantities of results and limits: the words for them and their row of engineering_units.csv. The only Python
+table."""
+
+from typing import NamedTuple
+
+from engineering_units import shown
+
+from .language import t
+
+
+class Quantity(NamedTuple):
+    words: str
+    kind: str = ""  # row of engineering_units.csv; empty for a ratio
+
+
+QUANTITIES = {
+    "peak_deflection": Quantity("greatest deflection", "deflection"),
+    "peak_acceleration": Quantity("greatest deck acceleration, unfiltered", "acceleration"),
+    "deck_acceleration": Quantity("greatest deck acceleration, low-pass filtered", "acceleration"),
+    "unfiltered_deck_acceleration": Quantity("greatest deck acceleration, unfiltered", "acceleration"),
+    "deflection_over_span": Quantity("deflection over span length"),
+    "peak_moment": Quantity("greatest bending moment", "moment"),
+    "amplification": Quantity("dynamic amplification of the greatest deflection"),
+    "least_wheel_force": Quantity("least wheel force", "force"),
+    "greatest_wheel_force": Quantity("greatest wheel force", "force"),
+    "longest_loss": Quantity("longest loss of wheel-rail contact", "loss_time"),
+    "contact_loss": Quantity("longest loss of wheel-rail contact", "loss_time"),
+    "end_rotation": Quantity("greatest rotation of the deck ends", "rotation"),
+    "joint_rotation": Quantity("greatest relative rotation of adjacent decks", "rotation"),
+    "car_acceleration": Quantity("greatest vertical acceleration of car bodies", "acceleration"),
+    "wheel_unloading": Quantity("greatest wheel unloading, unfiltered"),
+    "filtered_wheel_unloading": Quantity("greatest wheel unloading, low-pass filtered"),
+    "unloading_time": Quantity("longest time of wheel unloading, low-pass filtered", "loss_time"),
+    "lm71_deflection_over_span": Quantity("deflection over span length under LM71"),
+    "lm71_end_rotation": Quantity("rotation of the deck ends under LM71", "rotation"),
+    "lm71_joint_rotation": Quantity("relative rotation of adjacent decks under LM71", "rotation"),
+    "train_over_lm71": Quantity("effect of the trains over that of LM71"),
+    "rail_tension": Quantity("additional tensile stress of the rails", "stress"),
+    "rail_compression": Quantity("additional compressive stress of the rails", "stress"),
+    "rail_slip": Quantity("relative displacement between rail and deck", "displacement"),
+    "deck_displacement": Quantity("longitudinal displacement of the deck end under braking", "displacement"),
+    "deck_end_displacement": Quantity("longitudinal displacement of the deck end due to bending", "displacement"),
+    "rail_device_opening": Quantity("movement of the rail expansion device", "displacement"),
+}
+OF_SI = {"m": "deflection", "N m": "moment", "N": "force", "rad": "rotation", "m/s2": "acceleration", "m/s": "speed",
+         "Pa": "stress"}
+
+
+def words_of(name):
+    """A quantity in words; of an unknown one its name in the results file."""
+    return t(QUANTITIES[name].words) if name in QUANTITIES else name.replace("_", " ")
+
+
+def unit_of(name):
+    """(unit for print, factor from SI)"""
+    kind = QUANTITIES[name].kind if name in QUANTITIES else ""
+    return shown(kind) if kind else ("", 1.0)
+
+
+def unit_of_si(si):
+    """(unit for print, factor from SI) of an effect stored in this SI unit; other units remain."""
+    return shown(OF_SI[si]) if si in OF_SI else (si.replace("2", "²").replace("1", ""), 1.0)

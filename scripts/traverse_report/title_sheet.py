@@ -1,0 +1,189 @@
+"""The title page of the report with places to sign, and its table of contents."""
+
+import datetime
+import hashlib
+import pathlib
+from typing import NamedTuple
+
+import matplotlib.pyplot as plt
+from matplotlib.backends.backend_pdf import PdfPages
+from PIL import Image
+
+from .language import capital, t
+from .page import AMBER, GREEN, GREY, HEIGHT, INK, LEFT, PALE, RED, RIGHT, WIDTH, Reference, table
+from .source import ReportError
+
+FIELDS = ("project", "structure", "line", "author", "checker", "revision", "date", "note", "logo", "norm_edition",
+          "national_annex", "language")
+LARGEST_LOGO = 10_000_000  # bytes
+LOGO_WIDTH, LOGO_HEIGHT = 2.2, 0.8  # inches
+PALES = {GREEN: "#E3F2E9", GREY: "#EEEEEE", AMBER: "#FBF0DC", RED: "#F9E1E4"}
+
+
+class Title(NamedTuple):
+    """The texts of the title page; empty if they are unknown."""
+    project: str = ""
+    structure: str = ""
+    line: str = ""
+    author: str = ""
+    checker: str = ""
+    revision: str = ""
+    date: str = ""
+    note: str = ""
+    logo: object = None  # a picture
+    norm_edition: str = ""
+    national_annex: str = ""
+
+
+def day_of(source):
+    """The day on which the results file was written."""
+    return datetime.date.fromtimestamp(source.path.stat().st_mtime).isoformat()
+
+
+def digest_of(path):
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def title_of(sources, given, folder):
+    """The texts for the title page: as given on the command line, otherwise the option of the first results file that
+    has it."""
+    texts = {name: given.get(name)
+             or next(filter(None, (source.options.get(f"report_{name}") for source in sources)), "")
+             for name in FIELDS if name != "language"}
+    if given.get("structure") and len(sources) == 1:
+        sources[0].options["report_structure"] = given["structure"]
+    texts["structure"] = given.get("structure") or ", ".join(dict.fromkeys(source.title() for source in sources))
+    texts["date"] = texts["date"] or max(day_of(source) for source in sources)
+    texts["logo"] = logo_of(given["logo"], [pathlib.Path()]) if given.get("logo") else own_logo(sources, texts["logo"],
+                                                                                                folder)
+    return Title(**texts)
+
+
+def own_logo(sources, name, folder):
+    """The logo that a scene names; None with a message if it is elsewhere now."""
+    if not name:
+        return None
+    try:
+        return logo_of(name, [pathlib.Path(folder or "."), *(source.path.parent for source in sources)])
+    except ReportError as error:
+        print(f"the title page has no logo: {error}; --logo or --folder names it")
+        return None
+
+
+def logo_of(name, places):
+    """The picture of a file, PNG or JPEG, that is found in one of the places."""
+    path = next((place / name for place in places if (place / name).is_file()), None)
+    if path is None:
+        raise ReportError(f"{name}: there is no such file")
+    try:
+        if path.stat().st_size > LARGEST_LOGO:
+            raise ReportError(f"{name}: the file of the logo has more than {LARGEST_LOGO // 1_000_000} MB")
+        with Image.open(path, formats=("PNG", "JPEG")) as picture:
+            picture.thumbnail((1200, 1200))
+            return picture.convert("RGBA")
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        raise ReportError(f"{name} is no PNG or JPEG picture that can be read") from None
+
+
+def draw_logo(page, picture):
+    """Draws the logo at the top right, as large as it fits."""
+    inches = min(LOGO_WIDTH / picture.width, LOGO_HEIGHT / picture.height)
+    width, height = inches * picture.width, inches * picture.height
+    ax = page.figure.add_axes([(RIGHT - width) / WIDTH, (11.2 - height) / HEIGHT, width / WIDTH, height / HEIGHT])
+    ax.imshow(picture, aspect="auto", interpolation="lanczos")
+    ax.axis("off")
+
+
+def draw_verdict(page, lines, colour):
+    """Draws the result in a frame; its first line is the largest."""
+    top = page.y + 0.08
+    page.y -= 0.06
+    for i, line in enumerate(lines):
+        page.text(LEFT + 0.15, line, size=9 if i else 12.5, colour=INK if i else colour, width=RIGHT - LEFT - 0.3,
+                  weight="normal" if i else "bold")
+    page.paper.add_patch(plt.Rectangle((LEFT, page.y - 0.08), RIGHT - LEFT, top - page.y + 0.08, fc=PALES[colour],
+                                       ec=colour,
+                                       lw=1.0, zorder=-1))
+    page.y -= 0.4
+
+
+def draw_signatures(page, title):
+    """A row with name, date and signature for the author and for the checker."""
+    columns = [("", 1.2), (t("name"), 2.0), (t("date"), 1.2), (t("signature"), 2.4)]
+    x, top = LEFT, page.y
+    rows = [(t("prepared by"), title.author), (t("checked by"), title.checker)]
+    for i, (name, width) in enumerate(columns):
+        page.paper.text(x + 0.06, top - 0.08, capital(name), fontsize=8, color=GREY, va="top")
+        for row, cells in enumerate(rows):
+            if i < 2:
+                page.y = top - 0.42 - 0.5 * row
+                page.text(x + 0.06, cells[i] if i else capital(cells[i]), size=9, width=width - 0.12)
+        x += width
+    lines = [LEFT, *(LEFT + sum(width for _, width in columns[:i + 1]) for i in range(len(columns)))]
+    bottom = top - 0.28 - 0.5 * len(rows)
+    for at in lines:
+        page.paper.plot([at, at], [bottom, top], color=PALE, lw=0.8)
+    for y in (top, top - 0.28, *(top - 0.28 - 0.5 * (row + 1) for row in range(len(rows)))):
+        page.line(y, width=0.8)
+    page.y = bottom - 0.3
+
+
+def title_page(report, title, sources, lines, colour):
+    page = report.page(t("Verification of the bridge under moving loads")
+                       if not any(source.is_rail for source in sources)
+                       else t("Verification of track-bridge interaction") if all(source.is_rail for source in sources)
+                       else t("Verification of the bridge and of its track"), numbered=False, drop=0.55)
+    if title.logo is not None:
+        draw_logo(page, title.logo)
+    page.y -= 0.2
+    draw_verdict(page, lines, colour)
+    page.text(LEFT, title.structure, size=15, weight="bold")
+    page.y -= 0.12
+    rows = [(t("project"), title.project), (t("line and position"), title.line), (t("norm"), title.norm_edition),
+            (t("national annex"), title.national_annex), (t("revision"), title.revision), (t("date"), title.date),
+            (t("remark"), title.note)]
+    page = table(report, page, [("", 1.5, "left"), ("", 5.3, "left")],
+                 [(capital(words), said) for words, said in rows if said], size=9.5)
+    page.y = max(min(page.y - 0.2, 4.2), 1.6)
+    draw_signatures(page, title)
+    rows = [(source.path.name, day_of(source), f"traverse {source.file.attrs.get('version', '')}",
+             digest_of(source.path))
+            for source in sources]
+    table(report, page,
+          [(t("results file"), 1.4, "left"), (t("written on"), 0.75, "left"), (t("program"), 0.95, "left"),
+           (t("digest (SHA-256)"), 3.7, "left")], rows, size=6.5)
+    return page
+
+
+def contents_page(report, compared):
+    """The table of contents; compared: the pages with the comparison of several results files."""
+    entries = [("", page.heading, page) for page in compared[:1]] + report.contents
+    page = report.page(t("Contents"), numbered=False)
+    rows = [(number, heading, Reference(target)) for number, heading, target in entries]
+    table(report, page, [("", 0.6, "left"), (t("section"), 5.5, "left"), (t("page"), 0.7, "right")], rows, size=9)
+
+
+def shortened(text, most):
+    """A text with at most so many characters, cut between words."""
+    return text if len(text) <= most else text[:most].rsplit(" ", 1)[0] + " …"
+
+
+def save(report, path, title):
+    """Writes the pages with their header, their footer and their numbers."""
+    head = shortened(" · ".join(filter(None, (title.project, title.structure))), 90)
+    side = f"{t('revision')} {title.revision} · {title.date}" if title.revision else title.date
+    report.fill_references()
+    with PdfPages(path, metadata={"Title": head, "Author": title.author or None, "Creator": "traverse-report"}) as pdf:
+        for number, page in enumerate(report.pages, 1):
+            if number > 1:
+                page.paper.text(LEFT, 11.25, head, fontsize=7.5, color=GREY, va="top")
+                page.paper.text(RIGHT, 11.25, side, fontsize=7.5, color=GREY, va="top", ha="right")
+                page.line(11.08, width=0.6)
+            page.line(0.62, width=0.6)
+            page.paper.text(LEFT, 0.55, report.foot, fontsize=7, color=GREY, va="top")
+            page.paper.text(RIGHT, 0.55, t("page {number} of {count}", number=number, count=len(report.pages)),
+                            fontsize=7,
+                            color=GREY, va="top", ha="right")
+            pdf.savefig(page.figure)
+            plt.close(page.figure)

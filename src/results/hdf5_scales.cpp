@@ -1,0 +1,99 @@
+// Dimension scales of a results file as netCDF-4 has them, so that its readers find the coordinates of each dataset in
+// the dataset's group or in a parent of it. REFERENCE_LIST, the way back from a scale, is left out: no reader needs it,
+// and it would be rewritten for each of the fifty thousand datasets of a long train.
+#include <array>
+
+#include "hdf5.hpp"
+#include "results/dataset_words.hpp"
+
+namespace traverse::results::hdf5 {
+namespace {
+
+// What netCDF-4 writes for a dimension without coordinates, which its readers do not show as a variable.
+constexpr const char* without_coordinates = "This is a netCDF dimension but not a netCDF variable.";
+
+std::string folder_of(const std::string& path) { return path.substr(0, path.find_last_of('/') + 1); }
+std::string last_of(const std::string& path) { return path.substr(path.find_last_of('/') + 1); }
+
+hsize_t length_of(const File& file, const std::string& name) {
+  const Id data(file.check(H5Dopen2(file.id(), name.c_str(), H5P_DEFAULT)));
+  const Id space(file.check(H5Dget_space(data.get())));
+  std::array<hsize_t, H5S_MAX_RANK> shape{};
+  file.check(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr));
+  return shape[0];
+}
+
+}  // namespace
+
+void File::make_scale(const Id& dataset, const std::string& name) {
+  if (check(H5Aexists(dataset.get(), "CLASS")) > 0) return;
+  const auto text = [&](const char* attribute, const std::string& value) {  // of fixed length, as the library writes it
+    const Id type(check(H5Tcopy(H5T_C_S1))), space(check(H5Screate(H5S_SCALAR)));
+    check(H5Tset_size(type.get(), value.size() + 1));
+    const Id made(check(H5Acreate2(dataset.get(), attribute, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT)));
+    check(H5Awrite(made.get(), type.get(), value.c_str()));
+  };
+  text("CLASS", "DIMENSION_SCALE");
+  text("NAME", name);
+}
+
+void File::words(const std::string& name, const std::vector<std::string>& words) {
+  if (check(H5Lexists(id(), name.c_str(), H5P_DEFAULT)) > 0) return;
+  std::vector<const char*> cells;
+  for (const std::string& word : words) cells.push_back(word.c_str());
+  const hsize_t count = cells.size();
+  const Id space(check(H5Screate_simple(1, &count, nullptr)));
+  const Id data(check(H5Dcreate2(id(), name.c_str(), text_.get(), space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
+  check(H5Dwrite(data.get(), text_.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, static_cast<void*>(cells.data())));
+  set_text(data, "unit", "text");
+  make_scale(data, name_of_dimension(name));
+}
+
+// The dataset of a dimension of this length: the named one, or one without coordinates; empty if another length is
+// used.
+std::string File::scale_for(const std::string& dimension, hsize_t length) {
+  if (check(H5Lexists(id(), folder_of(dimension).c_str(), H5P_DEFAULT)) > 0 &&
+      check(H5Lexists(id(), dimension.c_str(), H5P_DEFAULT)) > 0)
+    return dimension == "/time" || length_of(*this, dimension) == length ? dimension : "";
+  const std::string name = "/" + last_of(dimension);
+  if (const std::vector<std::string> along = words_along(name); along.size() == length) {
+    words(name, along);
+    return name;
+  }
+  if (check(H5Lexists(id(), name.c_str(), H5P_DEFAULT)) > 0) return length_of(*this, name) == length ? name : "";
+  const Id space(check(H5Screate_simple(1, &length, nullptr)));
+  const Id data(
+      check(H5Dcreate2(id(), name.c_str(), H5T_IEEE_F32BE, space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
+  make_scale(data, without_coordinates);
+  return name;
+}
+
+void File::attach_scales(const std::string& dataset, const std::vector<std::string>& dimensions) {
+  const Id data(check(H5Dopen2(id(), dataset.c_str(), H5P_DEFAULT)));
+  if (dimensions == std::vector{dataset}) return make_scale(data, name_of_dimension(dataset));
+  const Id space(check(H5Dget_space(data.get())));
+  std::array<hsize_t, H5S_MAX_RANK> shape{};
+  check(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr));
+  std::vector<hobj_ref_t> references(dimensions.size());
+  std::vector<hvl_t> lists;
+  for (std::size_t i = 0; i < dimensions.size(); ++i) {
+    const std::string scale = scale_for(dimensions[i], shape[i]);
+    if (scale.empty()) return;
+    if (const std::string folder = folder_of(dataset); !folder.starts_with(folder_of(scale)))
+      if (const std::string here = folder + last_of(scale); check(H5Lexists(id(), here.c_str(), H5P_DEFAULT)) == 0)
+        check(H5Lcreate_hard(id(), scale.c_str(), id(), here.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+    make_scale(Id(check(H5Dopen2(id(), scale.c_str(), H5P_DEFAULT))), name_of_dimension(scale));
+    check(H5Rcreate(&references[i], id(), scale.c_str(), H5R_OBJECT, H5I_INVALID_HID));
+    lists.push_back({1, &references[i]});
+  }
+  const hsize_t rank = lists.size();
+  const Id type(check(H5Tvlen_create(H5T_STD_REF_OBJ))), row(check(H5Screate_simple(1, &rank, nullptr)));
+  const Id list(check(H5Acreate2(data.get(), "DIMENSION_LIST", type.get(), row.get(), H5P_DEFAULT, H5P_DEFAULT)));
+  check(H5Awrite(list.get(), type.get(), lists.data()));
+}
+
+void File::attach_scales() {
+  for (const auto& [dataset, dimensions] : std::exchange(unscaled_, {})) attach_scales(dataset, dimensions);
+}
+
+}  // namespace traverse::results::hdf5

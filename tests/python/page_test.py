@@ -1,0 +1,280 @@
+"""scripts/page.py in a real browser: what the page draws, plays and says are the numbers of the results file."""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import unittest
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from browser import Browser  # noqa: E402
+from small_runs import BINARY, CROSSING, SOURCE, Computed  # noqa: E402
+
+SCRIPTS, SCENES = SOURCE / "scripts", SOURCE / "options/scenes"
+sys.path.insert(0, str(SCRIPTS))
+import page  # noqa: E402
+from traverse_page.packing import Curve, kept_rows  # noqa: E402
+
+LIMITS = ("-limits", str(SOURCE / "options/limits/en1990.yml"))
+STUDY = CROSSING + "study: {vary: {foundation_vertical_k: [1.0e9, 4.0e9], load_speed: [30.0, 40.0, 50.0, 60.0]}}\n"
+SWEEP = CROSSING.replace("load: {forces: [2.0e5, 1.0e5], positions: [0.0, -3.0], speed: 40.0}",
+                         "sweep: {speed: [40.0, 80.0, 10.0], hslm_a: [1, 10], refine: 0}")
+RAIL = """
+scene: {analysis: rail}
+beam: {spans: 12.0, EI: 2.0e9, EA: 4.0e9, mass: 3000.0, temperature: {uniform: 30.0, expansion: 1.0e-5}}
+support: {types: [roller, roller]}
+foundation: {longitudinal: {x: [0.0, 12.0], k: [2.0e8, 1.0e7], limit: [0.0, 2.0e4]}}
+track:
+  rail: {EI: 1.28e7, EA: 3.2212e9, mass: 120.0, area: 0.0153, ends: held, temperature: 40.0}
+  spacing: 0.6
+  pad: {k: 1.0e8}
+  longitudinal: {k: 6.0e6, limit: 12000.0, loaded_k: 1.8e7, loaded_limit: 36000.0}
+  approach: 60.0
+uic774: {train_length: 30.0, fronts: [0.0, 12.0, 6.0]}
+"""
+OVER_TIME = ("forces", "cars", "mechanism", "crane")
+HOSTILE = "</script><img src=x onerror=\"document.title='broken'\"><b>'&amp;\u2028{{data}}"
+
+
+def shown(value):
+    """A number as the page shows it, with five digits."""
+    return float(f"{value:.5g}")
+
+
+class PageTest(Computed):
+    @classmethod
+    def prepare(cls):
+        cls.compute("forces", CROSSING)
+        cls.compute("study", STUDY, *LIMITS)
+        cls.compute("sweep", SWEEP, *LIMITS)
+        cls.compute("rail", RAIL, "-limits", str(SOURCE / "options/limits/uic774.yml"))
+        for name, scene, *words in (
+                ("cars", "three_span_half_car", "-ts_dt", "2e-3", "-output_interval", "0.02",
+                 "-beam_elements_per_span", "4"),
+                ("mechanism", "r9_andrews", "-ts_max_time", "0.01"),
+                ("crane", "overhead_crane", "-ts_dt", "5e-3", "-beam_elements_per_span", "4", "-ts_max_time", "4")):
+            command = [BINARY, "-options_file", SCENES / f"{scene}.yml", "-output_file", f"{name}.h5", *words]
+            run = subprocess.run(command, cwd=cls.folder, capture_output=True, text=True)
+            if run.returncode != 0:
+                raise AssertionError(run.stdout + run.stderr)
+        for name in (*OVER_TIME, "study", "sweep", "rail"):
+            page.write(cls.folder / f"{name}.h5", cls.folder / f"{name}.html")
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def open(self, name, width=1280):
+        self.browser.open(self.folder / f"{name}.html", width)
+        self.js = self.browser.evaluate
+
+    def results(self, name):
+        file = h5py.File(self.folder / f"{name}.h5")
+        self.addCleanup(file.close)
+        return file
+
+    def middle(self, words):
+        """Place on the screen of the middle of an element, after scrolling to it."""
+        left, top, width, height = self.box(words)
+        return left + 0.5 * width, top + 0.5 * height
+
+    def box(self, words):
+        """Left, top, width and height of an element on the screen, after scrolling to it."""
+        return self.js(f"(() => {{ const it = {words}; it.scrollIntoView({{block: 'end'}}); const box = "
+                       "it.getBoundingClientRect(); return [box.left, box.top, box.width, box.height]; })()")
+
+    def test_pages_open_without_complaint_and_fit(self):
+        for name in (*OVER_TIME, "study", "sweep", "rail"):
+            with self.subTest(name):
+                self.assertLess((self.folder / f"{name}.html").stat().st_size, 3_000_000)
+                self.open(name, 390)
+                self.assertTrue(self.js("page.all.length > 0 && !byId('stage').hidden"))
+                self.assertEqual(self.js("document.documentElement.scrollWidth"), 390)
+                self.browser.resize(1280)
+                self.browser.scheme("dark")
+                self.browser.frames()
+                self.assertLessEqual(self.js("document.documentElement.scrollWidth"), 1280)
+                self.assertEqual(self.js("colour('card')"), "#1d2329")
+                self.browser.scheme("light")
+                self.assertEqual(self.browser.complaints(), [])
+
+    def test_space_plays_and_arrows_step(self):
+        for name in OVER_TIME:
+            with self.subTest(name):
+                self.open(name)
+                self.browser.key(" ")
+                self.assertTrue(self.js("page.playing"))
+                self.assertEqual(self.js("byId('play').getAttribute('aria-label')"), "Pause")
+                for _ in range(300):
+                    self.browser.frames(1)
+                    if self.js("page.time") > 0.0:
+                        break
+                self.browser.key(" ")
+                self.assertFalse(self.js("page.playing"))
+                before = self.js("page.time")
+                self.assertGreater(before, 0.0)
+                self.browser.key("ArrowRight")
+                times = self.results(name)["time"][:]
+                self.assertLess(np.abs(times - self.js("page.time")).min(), 1e-6 * times[-1])
+                self.assertGreaterEqual(self.js("page.time"), min(before, times[-1]) - 1e-6)
+
+    def go_to(self, time):
+        self.js(f"byId('bar').value = {time}; byId('bar').dispatchEvent(new Event('input'))")
+
+    def test_the_time_bar_moves_vehicles_and_lines(self):
+        for name in ("cars", "crane", "mechanism"):
+            with self.subTest(name):
+                self.open(name)
+                file = self.results(name)
+                time, seen = file["time"][:], set()
+                for part in (0.0, 0.31, 0.77):
+                    self.go_to(part * time[-1])
+                    at = self.js("page.time")
+                    self.assertAlmostEqual(at / time[-1], part, 3)
+                    seen.add(self.js("byId('drawing').toDataURL()"))
+                    for k, bodies in enumerate(self.js("data.stage.vehicles.map((one) => one.bodies)")):
+                        for body, name_of_body in enumerate(bodies):
+                            drawn = self.js(f"page.stage.drawn[{k}][{body}]")
+                            stored = file[f"vehicles/{k}/{name_of_body}/position"][: len(time)]
+                            for column in (0, 1):
+                                here = np.interp(at, time, stored[:, column])
+                                near = 1e-3 * np.ptp(stored[:, column]) + 1e-6
+                                self.assertAlmostEqual(drawn[column], here, delta=near)
+                    line, plot = self.box("page.cards[0].cursor")[0], self.box("page.cards[0].plot")[0]
+                    wanted = self.js(f"page.cards[0].chart.scales.x.getPixelForValue({at})")
+                    self.assertAlmostEqual(line - plot, wanted, delta=1.5)
+                self.assertEqual(len(seen), 3)
+
+    def test_forces_and_line_are_those_of_the_file(self):
+        self.open("forces")
+        file = self.results("forces")
+        time, x = file["time"][:], file["probes/x"][:]
+        row = len(time) // 2
+        self.go_to(time[row])
+        places = self.js("[0, 1].map((i) => page.stage.mixed(data.stage.forces[0].x, 2, i))")
+        np.testing.assert_allclose(places, 40.0 * self.js("page.time") + np.array([0.0, -3.0]), atol=1e-4)
+        drawn = [self.js(f"page.stage.deflection({place})") for place in x]
+        stored = file["probes/deflection"][row]
+        np.testing.assert_allclose(drawn, stored, atol=0.01 * np.abs(file["probes/deflection"][:]).max())
+
+    def test_values_under_the_pointer(self):
+        self.open("cars")
+        file = self.results("cars")
+        time, deflection = file["time"][:], 1e3 * file["probes/deflection"][: len(file["time"])]
+        self.browser.mouse("mouseMoved", *self.middle("page.cards[0].plot"))
+        self.browser.frames()
+        points = self.js("page.cards[0].chart.tooltip.dataPoints.map((one, i) => "
+                         "[one.parsed.x, page.cards[0].chart.tooltip.body[i].lines[0]])")
+        self.assertTrue(points)
+        for at, words in points:
+            row = int(np.abs(time - at).argmin())
+            self.assertAlmostEqual(at, time[row], 5)
+            self.assertIn(" mm", words)
+            value = float(words.rsplit(": ", 1)[1].split(" ")[0])
+            self.assertIn(value, [shown(stored) for stored in deflection[row]])
+
+    def test_drag_zooms_all_charts_and_names_hide_curves(self):
+        self.open("cars")
+        x, y = self.middle("page.cards[0].plot")
+        for kind, place in (("mouseMoved", x), ("mousePressed", x), ("mouseReleased", x + 90)):
+            self.browser.mouse(kind, place, y)
+        low, high = self.js("[page.cards[1].chart.scales.x.min, page.cards[1].chart.scales.x.max]")
+        self.assertGreater(low, 0.0)
+        self.assertLess(high, self.js("page.end"))
+        self.js("byId('reset').click()")
+        self.assertEqual(self.js("page.cards[1].chart.scales.x.min"), self.js("page.start"))
+        self.js("page.cards[0].legend.querySelector('button').click()")
+        self.assertFalse(self.js("page.cards[0].chart.isDatasetVisible(0)"))
+
+    def choose(self, line, index):
+        """Clicks a point of the first chart of the runs; returns the text of the row of its run."""
+        left, top, _, _ = self.box("page.runs.charts[0].plot")
+        px, py = self.js(f"(({{x, y}}) => [x, y])(page.runs.charts[0].chart.getDatasetMeta({line}).data[{index}])")
+        self.browser.click(left + px, top + py)
+        return self.js("byId('run').innerText")
+
+    def test_a_click_in_a_sweep_shows_the_run(self):
+        self.open("sweep")
+        file = self.results("sweep")
+        speed = file["sweep/speed"][:]
+        for train, run in ((0, 1), (1, len(speed) - 1)):
+            row = self.choose(train, run)
+            self.assertIn(f"A{file['sweep/hslm_a'][train]:.0f}, {3.6 * speed[run]:.4g} km/h", row)
+            for name, factor, unit in (("peak_deflection", 1e3, "mm"), ("peak_moment", 1e-3, "kN m"),
+                                       ("peak_acceleration", 1.0, "m/s²")):
+                largest = factor * np.abs(file[f"sweep/{name}"][train, run]).max()
+                self.assertIn(f"{shown(largest):g} {unit}", row)
+            quantities = list(file["verdicts/quantity"].asstr()[:, 0])
+            value = file["sweep/judged"][train, run, quantities.index("deck_acceleration")]
+            limit = file["verdicts/limit"][quantities.index("deck_acceleration")]
+            word = "broken" if value > limit else "kept"
+            self.assertRegex(row, rf"{word}\s+[^\n]*acceleration[^\n]*\s+{shown(value):g}")
+
+    def test_a_click_in_a_study_shows_the_run(self):
+        self.open("study")
+        file = self.results("study")
+        row = self.choose(1, 2)
+        number = list(zip(file["study/foundation_vertical_k"][:], file["study/load_speed"][:])).index((4e9, 50.0))
+        self.assertIn("180 km/h", row)
+        self.assertIn(f"{shown(1e3 * np.abs(file['study/peak_deflection'][number]).max()):g} mm", row)
+        self.assertEqual(self.js("page.runs.limitsOf({name: 'deck_acceleration'}).length"), 1)
+
+    def test_rail_stresses_are_those_of_the_file(self):
+        self.open("rail")
+        file = self.results("rail")
+        np.testing.assert_allclose(self.js("Array.from(data.along[0].curves.at(-1).columns[1])"),
+                                   1e-6 * file["rail_forces/at_once/greatest_stress"][:], rtol=1e-6, atol=1e-6)
+        self.assertEqual(self.js("data.along[0].limits.map((one) => one[1])"), [72, -92])
+        said = self.js("byId('verdicts').innerText")
+        for value in file["verdicts/value"][:2]:
+            self.assertIn(f"{shown(1e-6 * value):g}", said)
+
+    def test_hostile_texts_are_texts(self):
+        path = self.folder / "hostile.h5"
+        shutil.copy(self.folder / "sweep.h5", path)
+        with h5py.File(path, "a") as file:
+            file.attrs["scene"] = HOSTILE.replace("/", "|")
+            for name in ("options", "model/notes", "verdicts/clause", "verdicts/verdict"):
+                texts = file[name][:]
+                texts[-1] = [HOSTILE, HOSTILE]
+                file[name][...] = texts
+            file["summary"].attrs["ended"] = HOSTILE
+        page.write(path, self.folder / "hostile.html")
+        self.open("hostile")
+        self.assertEqual(self.browser.complaints(), [])
+        self.assertNotEqual(self.js("document.title"), "broken")
+        self.assertEqual(self.js("document.querySelectorAll('img, main b').length"), 0)
+        self.assertEqual(self.js("data.notes.at(-1)"), HOSTILE)
+        self.assertIn(HOSTILE, self.js("byId('tables').textContent"))
+
+    def test_bad_files_end_with_one_line(self):
+        (self.folder / "text.h5").write_text("no results")
+        h5py.File(self.folder / "empty.h5", "w").close()
+        for name in ("missing", "text", "empty"):
+            run = subprocess.run([sys.executable, "-B", SCRIPTS / "page.py", f"{name}.h5", "out.html"], cwd=self.folder,
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, 1)
+            self.assertRegex(run.stderr, rf"\Apage.py: {name}.h5: [^\n]+\n\Z")
+            self.assertFalse((self.folder / "out.html").exists())
+
+    def test_a_missing_library_is_named(self):
+        with self.assertRaisesRegex(ValueError, "libjs-chart.js"):
+            page.chart_library(())
+
+
+class PackingTest(unittest.TestCase):
+    def test_fewer_samples_keep_all_extremes(self):
+        time = np.linspace(0.0, 1.0, 50_001)
+        band = np.column_stack([np.cos(9 * time), np.cos(9 * time) + 1.0])
+        curves = [Curve("a", np.sin(40 * time)), Curve("b", band)]
+        curves[0].values[[777, 31_000]] = 9.0, -9.0
+        curves[1].values[44_444, 1] = np.nan
+        rows = kept_rows(curves, 1000)
+        self.assertLessEqual(len(rows), 1002)
+        self.assertTrue({0, 777, 31_000, 50_000} <= set(rows))
+        self.assertTrue(np.all(np.diff(rows) > 0))
+
+
+if __name__ == "__main__":
+    unittest.main()
