@@ -1,17 +1,21 @@
 """scripts/compare.py: several results in common axes, with the numbers of their files."""
 
+import pathlib
+import sys
 import unittest
 from unittest import mock
 
 import h5py
 import numpy as np
-from drawn import Drawn, texts, write_run
-from small_runs import CROSSING, Computed
-import compare
-import compare_data
-import picture_page
-import picture_table
-import matplotlib.pyplot as plt
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from drawn import Drawn, texts, write_run  # noqa: E402
+from small_runs import CROSSING, Computed  # noqa: E402
+import compare  # noqa: E402
+import compare_data  # noqa: E402
+import picture_page  # noqa: E402
+import picture_table  # noqa: E402
+import matplotlib.pyplot as plt  # noqa: E402
 
 
 class CompareTest(Drawn):

@@ -1,17 +1,21 @@
 """scripts/picture.py: cranes, chains, mechanisms, and what scripts/animate.py draws of them."""
 
+import pathlib
+import sys
 import unittest
 
 import h5py
 import numpy as np
-from drawn import Drawn, texts, write_run
-import animate
-import picture_data
-import picture_hanging
-import picture_model
-import picture_motion
-import picture_vehicles
-import matplotlib.pyplot as plt
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from drawn import Drawn, texts, write_run  # noqa: E402
+import animate  # noqa: E402
+import picture_data  # noqa: E402
+import picture_hanging  # noqa: E402
+import picture_model  # noqa: E402
+import picture_motion  # noqa: E402
+import picture_vehicles  # noqa: E402
+import matplotlib.pyplot as plt  # noqa: E402
 
 
 class MechanismTest(Drawn):

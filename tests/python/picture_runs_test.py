@@ -1,17 +1,21 @@
 """scripts/picture.py on sweeps and studies: each frame has no more curves than a reader can name, and their numbers are
 those of the results file."""
 
+import pathlib
+import sys
 import unittest
 
 import h5py
 import numpy as np
-from drawn import Drawn, texts
-import picture_data
-import picture_runs
-import picture_speeds
-import picture_table
-import picture_words
-from matplotlib.collections import QuadMesh
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from drawn import Drawn, texts  # noqa: E402
+import picture_data  # noqa: E402
+import picture_runs  # noqa: E402
+import picture_speeds  # noqa: E402
+import picture_table  # noqa: E402
+import picture_words  # noqa: E402
+from matplotlib.collections import QuadMesh  # noqa: E402
 
 
 class SweepTest(Drawn):

@@ -1,17 +1,21 @@
 """scripts/picture.py on small files of single runs: whatever a file holds is drawn, whatever it lacks is left out."""
 
+import pathlib
 import struct
+import sys
 import unittest
 
 import h5py
 import numpy as np
-from drawn import Drawn, texts, write_run
-import picture_data  # noqa: I100: drawn.py makes the scripts known
-import picture_panels
-import picture_table
-import picture_vehicles
-import picture_words
-import matplotlib.pyplot as plt
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from drawn import Drawn, texts, write_run  # noqa: E402
+import picture_data  # noqa: E402
+import picture_panels  # noqa: E402
+import picture_table  # noqa: E402
+import picture_vehicles  # noqa: E402
+import picture_words  # noqa: E402
+import matplotlib.pyplot as plt  # noqa: E402
 
 
 class PictureTest(Drawn):

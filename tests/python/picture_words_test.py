@@ -1,12 +1,16 @@
 """Words, numbers and places of names in pictures."""
 
+import pathlib
+import sys
 import unittest
 
 import numpy as np
-import drawn  # noqa: F401: makes the scripts known
-import picture_axes
-import picture_data
-import picture_words
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+import drawn  # noqa: E402, F401: makes the scripts known
+import picture_axes  # noqa: E402
+import picture_data  # noqa: E402
+import picture_words  # noqa: E402
 
 
 class WordsTest(unittest.TestCase):
