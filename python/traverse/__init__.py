@@ -10,6 +10,12 @@
 doc/python.md contains examples.
 """
 
+try:
+    import h5py as _h5py  # noqa: F401
+    import xarray as _xarray  # noqa: F401
+except ImportError as missing:
+    raise ImportError(f"traverse needs h5py and xarray ({missing}): apt install python3-h5py python3-xarray") from None
+
 from .dataset import open_results as open  # noqa: A004
 from .passage import Passage
 from .places import Error

@@ -41,10 +41,11 @@ def _of_file(file):
         scale = item.attrs.get("NAME")
         if scale == _WITHOUT_COORDINATES:
             continue
+        variable = _variable(file, item, samples)
         name = name_of(path) if scale is None else scale.decode()
-        if name in variables and scale is None:
-            name += "_words"  # a table whose first column is a coordinate of this name
-        variables[name] = _variable(file, item, samples)
+        if scale is None and (name in variables or name in variable.dims):
+            name += "_words"  # a table of the things along the dimension of this name
+        variables[name] = variable
     results = with_coordinates(variables)
     results.attrs = _attributes(file)
     return _in_km_per_hour(_along_axes(results, file["study"]) if "study" in file else results)

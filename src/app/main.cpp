@@ -1,5 +1,6 @@
 // The program traverse: computes vehicles crossing flexible beams. See README.md.
 #include <slepceps.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
@@ -7,7 +8,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -43,6 +46,22 @@ bool first_rank() {
 int complain(const traverse::Error& error) {
   if (first_rank()) traverse::app::complain(error);
   return error.status();
+}
+
+/// `traverse check ...` starts traverse-check, which is beside the installed program, or in scripts of the sources
+/// beside the build folder. It returns only if there is none that can be started.
+void start_norm_check(int argc, char** argv) {
+  if (argc < 2 || std::string_view(argv[1]) != "check") return;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe"), folder = program.parent_path();
+  std::vector<char*> words(argv + 1, argv + argc);
+  words.push_back(nullptr);
+  setenv("TRAVERSE_BINARY", program.c_str(), 1);
+  for (const std::filesystem::path& script : {folder / "traverse-check", folder / "../scripts/traverse-check"}) {
+    words.front() = const_cast<char*>(script.c_str());
+    execv(script.c_str(), words.data());
+  }
+  throw traverse::FileError("traverse-check, which is installed beside the program, cannot be started: " +
+                            std::string(std::strerror(errno)));
 }
 
 /// `traverse RESULTS.h5 ...` repeats the run that wrote the results file.
@@ -83,6 +102,7 @@ int main(int argc, char** argv) {
   traverse::app::print_signals(first_rank());
   traverse::app::start_lightly();
   try {
+    start_norm_check(argc, argv);
     traverse::options::Input input = read_input(argc, argv);
     if (input.help) {
       const std::string text = traverse::app::help_about(input.help_about);

@@ -8,6 +8,7 @@
 
 #include "norm/dynamic_verdict.hpp"
 #include "norm/en1991.hpp"
+#include "results/engineering_units.hpp"
 #include "results/terminal.hpp"
 
 namespace traverse::norm {
@@ -15,10 +16,14 @@ namespace {
 
 /// "11.25 mm", "5082 kN m".
 std::string size_text(Effect effect, double value) {
-  const std::string_view si = effect_rows[static_cast<std::size_t>(effect)].unit;
-  const bool small = si == "m" || si == "rad";
-  const char* units[] = {"mm", "kN m", "kN", "kN", "mrad", "mrad"};
-  return fmt::format("{:.5g} {}", value * (small ? 1e3 : 1e-3), units[static_cast<std::size_t>(effect)]);
+  const char* quantities[] = {"deflection", "moment", "force", "force", "rotation", "rotation"};
+  return results::in_engineering_units(quantities[static_cast<std::size_t>(effect)], value, 5);
+}
+
+std::vector<std::string> first_words(const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::vector<std::string> words;
+  for (const auto& [first, second] : rows) words.push_back(first);
+  return words;
 }
 
 std::string at_text(double x) { return fmt::format(" @ {:.4g}", 1e-3 * std::round(1e3 * x)); }
@@ -87,9 +92,7 @@ void NormCheck::record(results::Recorder& recorder) const {
       values.values.insert(values.values.end(), {one.least.value, one.greatest.value});
     sets.push_back(std::move(values));
   }
-  std::vector<std::string> names;
-  for (const auto& [name, clause] : loads) names.push_back(name);
-  recorder.names("/static_load", names);
+  recorder.names("/static_load", first_words(loads));
   recorder.tables({{"/static/load", loads}});
   std::vector<results::Attribute> rules = {{"n0", n0_}};
   if (!models_.empty()) {
@@ -111,6 +114,7 @@ void NormCheck::record(results::Recorder& recorder) const {
                          effects_.loads[row.ratio() > 1.0 ? row.train : row.model].name);
   }
   if (!rows_.empty()) {
+    recorder.names("/norm_effect", first_words(effect));
     recorder.tables(
         {{"/norm/effect", effect}, {"/norm/train", train}, {"/norm/model", model}, {"/norm/governs", governs}});
     const auto column = [&](const char* name, const char* unit, auto value) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -114,7 +115,12 @@ class File {
   /// Gives the new datasets their dimension scales, as netCDF-4 has them; they are created where they are missing.
   void attach_scales();
   void attach_scales(const std::string& dataset, const std::vector<std::string>& dimensions);
-  std::string scale_for(const std::string& dimension, hsize_t length);
+  struct Scale {
+    std::string path;
+    hobj_ref_t reference = 0;
+    hsize_t length = 0;  // any length for the time, which grows
+  };
+  const Scale& scale_of(const std::string& dimension, hsize_t length);
   void make_scale(const Id& dataset, const std::string& name);
   void create(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
               const std::string& unit, hid_t creation);
@@ -126,6 +132,7 @@ class File {
   off_t reserved_ = 0;    // bytes of the file that are allocated on the disk
   std::size_t open_ = 0;  // datasets held open
   std::vector<std::pair<std::string, std::vector<std::string>>> unscaled_;  // new datasets and their dimensions
+  std::unordered_map<std::string, Scale> scales_;                           // of each dimension
 };
 
 /// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. The first 2,000 datasets of a file remain

@@ -49,23 +49,29 @@ void File::words(const std::string& name, const std::vector<std::string>& words)
   make_scale(data, name_of_dimension(name));
 }
 
-// The dataset of a dimension of this length: the named one, or one without coordinates; empty if another length is
-// used.
-std::string File::scale_for(const std::string& dimension, hsize_t length) {
-  if (check(H5Lexists(id(), folder_of(dimension).c_str(), H5P_DEFAULT)) > 0 &&
-      check(H5Lexists(id(), dimension.c_str(), H5P_DEFAULT)) > 0)
-    return dimension == "/time" || length_of(*this, dimension) == length ? dimension : "";
-  const std::string name = "/" + last_of(dimension);
-  if (const std::vector<std::string> along = words_along(name); along.size() == length) {
-    words(name, along);
-    return name;
+// The dataset of a dimension: the named one if it has this length, otherwise one without coordinates at the root.
+const File::Scale& File::scale_of(const std::string& dimension, hsize_t length) {
+  const auto known = scales_.find(dimension);
+  if (known != scales_.end()) return known->second;
+  const auto exists = [&](const std::string& path) {
+    return check(H5Lexists(id(), folder_of(path).c_str(), H5P_DEFAULT)) > 0 &&
+           check(H5Lexists(id(), path.c_str(), H5P_DEFAULT)) > 0;
+  };
+  Scale scale{exists(dimension) ? dimension : "/" + last_of(dimension)};
+  if (!exists(scale.path)) {
+    if (const std::vector<std::string> along = words_along(scale.path); along.size() == length) {
+      words(scale.path, along);
+    } else {
+      const Id space(check(H5Screate_simple(1, &length, nullptr)));
+      make_scale(Id(check(H5Dcreate2(id(), scale.path.c_str(), H5T_IEEE_F32BE, space.get(), parents(), H5P_DEFAULT,
+                                     H5P_DEFAULT))),
+                 without_coordinates);
+    }
   }
-  if (check(H5Lexists(id(), name.c_str(), H5P_DEFAULT)) > 0) return length_of(*this, name) == length ? name : "";
-  const Id space(check(H5Screate_simple(1, &length, nullptr)));
-  const Id data(
-      check(H5Dcreate2(id(), name.c_str(), H5T_IEEE_F32BE, space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
-  make_scale(data, without_coordinates);
-  return name;
+  make_scale(Id(check(H5Dopen2(id(), scale.path.c_str(), H5P_DEFAULT))), name_of_dimension(scale.path));
+  check(H5Rcreate(&scale.reference, id(), scale.path.c_str(), H5R_OBJECT, H5I_INVALID_HID));
+  scale.length = length_of(*this, scale.path);
+  return scales_.emplace(dimension, std::move(scale)).first->second;
 }
 
 void File::attach_scales(const std::string& dataset, const std::vector<std::string>& dimensions) {
@@ -77,13 +83,12 @@ void File::attach_scales(const std::string& dataset, const std::vector<std::stri
   std::vector<hobj_ref_t> references(dimensions.size());
   std::vector<hvl_t> lists;
   for (std::size_t i = 0; i < dimensions.size(); ++i) {
-    const std::string scale = scale_for(dimensions[i], shape[i]);
-    if (scale.empty()) return;
-    if (const std::string folder = folder_of(dataset); !folder.starts_with(folder_of(scale)))
-      if (const std::string here = folder + last_of(scale); check(H5Lexists(id(), here.c_str(), H5P_DEFAULT)) == 0)
-        check(H5Lcreate_hard(id(), scale.c_str(), id(), here.c_str(), H5P_DEFAULT, H5P_DEFAULT));
-    make_scale(Id(check(H5Dopen2(id(), scale.c_str(), H5P_DEFAULT))), name_of_dimension(scale));
-    check(H5Rcreate(&references[i], id(), scale.c_str(), H5R_OBJECT, H5I_INVALID_HID));
+    const Scale& scale = scale_of(dimensions[i], shape[i]);
+    if (scale.length != shape[i] && scale.path != "/time") return;
+    if (const std::string folder = folder_of(dataset); !folder.starts_with(folder_of(scale.path)))
+      if (const std::string here = folder + last_of(scale.path); check(H5Lexists(id(), here.c_str(), H5P_DEFAULT)) == 0)
+        check(H5Lcreate_hard(id(), scale.path.c_str(), id(), here.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+    references[i] = scale.reference;
     lists.push_back({1, &references[i]});
   }
   const hsize_t rank = lists.size();

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <map>
 
+#include "results/engineering_units.hpp"
+
 namespace traverse::results {
 namespace {
 
@@ -151,13 +153,13 @@ void StudyStatistics::print() const {
   fmt::print("statistics over {}: mean, deviation{}; each at the probe where it is largest\n", names,
              study.quantiles.empty() ? "" : fmt::format(", quantiles [within, with {:g} %]", 100.0 * study.confidence));
   const struct {
-    const char *label, *column, *unit;
-    double scale;
-  } rows[] = {{"deflection", "peak_deflection", "mm", 1e3},
-              {"acceleration", "peak_acceleration", "m/s2", 1.0},
-              {"moment", "peak_moment", "kN m", 1e-3},
-              {"least wheel force", "least_wheel_force", "kN", 1e-3},
-              {"greatest wheel force", "greatest_wheel_force", "kN", 1e-3}};
+    const char *label, *column;
+    const EngineeringUnit& unit;
+  } rows[] = {{"deflection", "peak_deflection", engineering_unit("deflection")},
+              {"acceleration", "peak_acceleration", engineering_unit("acceleration")},
+              {"moment", "peak_moment", engineering_unit("moment")},
+              {"least wheel force", "least_wheel_force", engineering_unit("force")},
+              {"greatest wheel force", "greatest_wheel_force", engineering_unit("force")}};
   for (std::size_t group = 0; group < std::min(groups_.size(), max_printed); ++group) {
     std::string point;
     for (const options::StudyDimension* d : dimensions_)
@@ -172,11 +174,11 @@ void StudyStatistics::print() const {
         if (Numbers numbers = of(group, *column, probe); probe == 0 || numbers.mean > largest.mean)
           largest = std::move(numbers);
       if (largest.samples == 0) continue;
-      fmt::print("  {:<22}{:.4g}, {} {}", row.label, row.scale * largest.mean,
-                 number_text(row.scale * largest.deviation), row.unit);
+      fmt::print("  {:<22}{:.4g}, {} {}", row.label, row.unit.factor * largest.mean,
+                 number_text(row.unit.factor * largest.deviation), row.unit.name);
       for (std::size_t q = 0; q < study.quantiles.size(); ++q)
         fmt::print("   {:g} %: {}", 100.0 * study.quantiles[q],
-                   with_interval(row.scale, largest.quantile[q], largest.low[q], largest.high[q]));
+                   with_interval(row.unit.factor, largest.quantile[q], largest.low[q], largest.high[q]));
       fmt::print("\n");
     }
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "results/engineering_units.hpp"
 #include "results/sweep.hpp"
 
 namespace traverse::results {
@@ -166,20 +167,21 @@ std::vector<Attribute> summary_of(const StudyTable& table) {
 void print_study(const StudyTable& table) {
   fmt::print("extremes of all runs\n");
   StudyPlace place;
-  const auto print = [&](const char* label, const char* column, bool largest, double scale, const char* unit) {
+  const auto print = [&](const char* label, const char* column, bool largest, std::string_view quantity) {
     if (!find_extreme(table, column, largest, place)) return;
-    const std::string value = fmt::format("{:.4g} {}", scale * place.value, unit);
+    const std::string value =
+        quantity.empty() ? fmt::format("{:.4g}", place.value) : in_engineering_units(quantity, place.value);
     std::string where;
     if (table.probes() > 1 && table.find(column)->what->each == StudyColumn::probe)
       where = fmt::format("x = {:.4g} m, ", table.find("probes_x")->values[place.run * table.probes() + place.probe]);
     fmt::print("  {:<22}{:<18}{}{}\n", label, value, where, point_text(table.study(), place.run));
   };
-  print("peak deflection", "peak_deflection", true, 1e3, "mm");
-  print("peak acceleration", "peak_acceleration", true, 1.0, "m/s2");
-  print("peak moment", "peak_moment", true, 1e-3, "kN m");
-  print("amplification", "amplification", true, 1.0, "");
-  print("least wheel force", "least_wheel_force", false, 1e-3, "kN");
-  print("greatest wheel force", "greatest_wheel_force", true, 1e-3, "kN");
+  print("peak deflection", "peak_deflection", true, "deflection");
+  print("peak acceleration", "peak_acceleration", true, "acceleration");
+  print("peak moment", "peak_moment", true, "moment");
+  print("amplification", "amplification", true, "");
+  print("least wheel force", "least_wheel_force", false, "force");
+  print("greatest wheel force", "greatest_wheel_force", true, "force");
 }
 
 }  // namespace traverse::results

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "results/engineering_units.hpp"
 #include "results/terminal.hpp"
 
 namespace traverse::results {
@@ -38,17 +39,17 @@ bool find_largest(const StudyTable& table, const char* column, std::size_t train
 /// The printed row of a train whose largest deflection is at `place`.
 std::vector<std::string> row_of(const StudyTable& table, std::size_t train, const StudyPlace& place) {
   StudyPlace largest;
-  const auto text = [&](const char* column, double scale, const char* unit) {
+  const auto text = [&](const char* column, std::string_view quantity) {
     if (!find_largest(table, column, train, largest)) return std::string("unknown");
-    return fmt::format("{:.5g}{}{}", scale * largest.value, unit, at_text(table, largest));
+    return in_engineering_units(quantity, largest.value, 5) + at_text(table, largest);
   };
   const double amplification = table.find("amplification")->values[place.run * table.probes() + place.probe];
   const std::string name = train_name(table.study(), train);
   return {name.empty() ? "scene" : name,
-          text("peak_deflection", 1e3, " mm"),
+          text("peak_deflection", "deflection"),
           amplification_text(amplification),
-          text("peak_acceleration", 1.0, " m/s2"),
-          text("peak_moment", 1e-3, " kN m"),
+          text("peak_acceleration", "acceleration"),
+          text("peak_moment", "moment"),
           find_largest(table, "amplification", train, largest)
               ? amplification_text(largest.value) + at_text(table, largest)
               : "unknown"};
@@ -126,7 +127,7 @@ void print_sweep(const StudyTable& table) {
   print_columns(std::move(rows));
   const auto print = [&](const char* label, const char* column, bool largest) {
     if (find_extreme(table, column, largest, place))
-      fmt::print("  {:<22}{:.4g} kN @ {:.4g}\n", label, 1e-3 * place.value, km_per_hour(table, place));
+      fmt::print("  {:<22}{} @ {:.4g}\n", label, in_engineering_units("force", place.value), km_per_hour(table, place));
   };
   print("least wheel force", "least_wheel_force", false);
   print("greatest wheel force", "greatest_wheel_force", true);

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "results/engineering_units.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results {
@@ -50,23 +51,23 @@ namespace {
 void line(const std::string& label, const std::string& text) { fmt::print("  {:<{}}{}\n", label, kLabelWidth, text); }
 
 /// "-4.213 mm", with the place and time.
-std::string extreme_text(const Extreme& extreme, double scale, const char* unit) {
-  return fmt::format("{:<18}at x = {:.6g} m, t = {:.6g} s", fmt::format("{:.4g} {}", extreme.value * scale, unit),
+std::string extreme_text(std::string_view quantity, const Extreme& extreme) {
+  return fmt::format("{:<18}at x = {:.6g} m, t = {:.6g} s", in_engineering_units(quantity, extreme.value),
                      extreme.place, extreme.time);
 }
 
 void print_beam(const Summary& summary) {
   const bool moved = summary.deflection.value != 0.0 || summary.acceleration.value != 0.0;
   if (!moved && summary.moment.value == 0.0) return;
-  line("peak deflection", extreme_text(summary.deflection, 1e3, "mm"));
-  line("peak acceleration", extreme_text(summary.acceleration, 1.0, "m/s2"));
+  line("peak deflection", extreme_text("deflection", summary.deflection));
+  line("peak acceleration", extreme_text("acceleration", summary.acceleration));
   if (summary.low_passed)
     line(fmt::format("  up to {:.4g} Hz", summary.low_passed->frequency),
-         extreme_text(summary.low_passed->extreme, 1.0, "m/s2"));
-  if (summary.moments) line("peak moment", extreme_text(summary.moment, 1e-3, "kN m"));
-  if (summary.shear) line("peak shear", extreme_text(*summary.shear, 1e-3, "kN"));
+         extreme_text("acceleration", summary.low_passed->extreme));
+  if (summary.moments) line("peak moment", extreme_text("moment", summary.moment));
+  if (summary.shear) line("peak shear", extreme_text("force", *summary.shear));
   if (summary.static_deflection > 0.0) {
-    line("static deflection", fmt::format("{:.4g} mm", 1e3 * summary.static_deflection));
+    line("static deflection", in_engineering_units("deflection", summary.static_deflection));
   }
   if (summary.amplification > 0.0) {
     line("dynamic amplification", fmt::format("{:.4g}           over static", summary.amplification));
@@ -76,9 +77,9 @@ void print_beam(const Summary& summary) {
 void print_wheels(const Summary& summary) {
   if (summary.least_wheel.empty()) return;
   line("least wheel force",
-       fmt::format("{:<18}{}, t = {:.6g} s", fmt::format("{:.4g} kN", 1e-3 * summary.least_wheel_force),
+       fmt::format("{:<18}{}, t = {:.6g} s", in_engineering_units("force", summary.least_wheel_force),
                    summary.least_wheel, summary.least_wheel_force_time));
-  line("greatest wheel force", fmt::format("{:.4g} kN", 1e-3 * summary.greatest_wheel_force));
+  line("greatest wheel force", in_engineering_units("force", summary.greatest_wheel_force));
   const auto lost = [](const Unloading& u) {
     return fmt::format("{:<18}{}, t = {:.6g} s", fmt::format("{:.4g}", u.value), u.wheel, u.time);
   };
