@@ -7,8 +7,8 @@ set(share ${CMAKE_INSTALL_DATADIR}/traverse)  # where the program looks for scen
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME traverse)
 
 install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
-install(PROGRAMS scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY scripts/traverse_report scripts/traverse_page DESTINATION ${share}/python
+install(PROGRAMS scripts/traverse-check scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_report DESTINATION ${share}/python
         FILES_MATCHING PATTERN *.py PATTERN *.csv PATTERN *.yml PATTERN *.html PATTERN *.css PATTERN *.js)
 file(GLOB pictures CONFIGURE_DEPENDS scripts/picture*.py)
 install(FILES ${pictures} scripts/animate.py scripts/comfort.py scripts/compare.py scripts/compare_data.py

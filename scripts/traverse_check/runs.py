@@ -1,0 +1,95 @@
+"""Runs of the program and of the scripts that draw and report, each in a separate process."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import h5py
+
+from .rules import CheckError
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[1]  # also the folder of the installed scripts
+
+
+def program(given):
+    """The program traverse: the given one, or that of the environment or beside this command."""
+    beside = pathlib.Path(sys.argv[0]).resolve().parent
+    usual = [os.environ.get("TRAVERSE_BINARY"), beside / "traverse", beside.parent / "build" / "traverse",
+             shutil.which("traverse")]
+    for place in [given] if given else usual:
+        if place is not None and pathlib.Path(place).is_file():
+            return str(pathlib.Path(place).resolve())
+    raise CheckError(f"--program {given}: there is no such file" if given else
+                     "the program traverse is not beside this command: --program names it", 4)
+
+
+def data_file(*names):
+    """A file of options/, in the sources or beside the installed scripts."""
+    return SCRIPTS.parent.joinpath("options", *names)
+
+
+def last_line(ended):
+    """The message of a failed process."""
+    lines = [line for line in (ended.stderr or ended.stdout).splitlines() if line.strip()]
+    return lines[-1].removeprefix("traverse: ") if lines else "it ended without a message"
+
+
+def compute(traverse, folder, scene, results, *words):
+    """Runs a scene file of a folder; all names are relative to it. Returns what the program prints."""
+    asked = [traverse, "-options_file", scene, "-output_file", results, "-output_quiet", "true", "-skip_petscrc",
+             *words]
+    own = {name: value for name, value in os.environ.items() if not name.startswith("PETSC_OPTIONS")}
+    ended = subprocess.run(asked, cwd=folder, capture_output=True, text=True, errors="replace", env=own,
+                           stdin=subprocess.DEVNULL)
+    if ended.returncode != 0:
+        status = ended.returncode if ended.returncode in (2, 3, 4) else 3
+        raise CheckError(f"the run of {scene} failed: {last_line(ended)}", status)
+    return ended.stdout + ended.stderr
+
+
+def scratch_run(traverse, text, read, *words):
+    """Runs the text of a scene in a folder of its own and returns read(results file)."""
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "scene.yml").write_text(text, encoding="utf-8")
+        compute(traverse, folder, "scene.yml", "results.h5", *words)
+        with h5py.File(pathlib.Path(folder, "results.h5"), "r", locking=False) as file:
+            return read(file)
+
+
+def start(folder, *words):
+    """Starts a Python script of this folder; `finish` waits for it."""
+    return subprocess.Popen([sys.executable, *map(str, words)], cwd=folder, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, errors="replace", stdin=subprocess.DEVNULL)
+
+
+def finish(process, what):
+    out, error = process.communicate()
+    if process.returncode != 0:
+        lines = (error or out).strip().splitlines() or ["no message"]
+        raise CheckError(f"{what} could not be written: {lines[-1]}", 4)
+
+
+def report_command():
+    """The command traverse-report, beside this command or in the sources."""
+    for place in (pathlib.Path(sys.argv[0]).resolve().parent, SCRIPTS):
+        if (place / "traverse-report").is_file():
+            return place / "traverse-report"
+    raise CheckError("traverse-report is not beside this command", 4)
+
+
+def documents(traverse, folder, files, with_report):
+    """A report of all results files, and a picture and a page of each. Returns the names of the files."""
+    report = start(folder, report_command(), *files, "-o", "report", "--program", traverse, "--folder", ".") \
+        if with_report else None
+    made = []
+    for name in files:
+        for script, ending in (("picture.py", ".png"), ("page.py", ".html")):
+            made.append(str(pathlib.Path(name).with_suffix(ending)))
+            finish(start(folder, SCRIPTS / script, name, made[-1]), made[-1])
+    if report is not None:
+        finish(report, "the report")
+        made = ["report.pdf", "report.xlsx", *made]
+    return made

@@ -1,0 +1,188 @@
+"""The scene files of a check: text that an engineer can change and run again."""
+
+import json
+import math
+from typing import NamedTuple
+
+import yaml
+
+from . import units
+from .rules import MARKS, CheckError, clause, data, requirements, rule
+
+SECTIONS = 20             # stations in each span
+MANY_SPANS = 4            # from this number of spans on, half of them: the time grows with their total number
+SPEED_STEP = 5.0 / 3.6    # m/s, before the program refines the speeds
+REFINE = 0.01             # relative accuracy of the peaks over the speed
+WORDS = {"filler_beam": "filler beams", "prestressed": "prestressed concrete", "reinforced": "reinforced concrete"}
+
+
+class Case(NamedTuple):
+    """One combination of the bounds."""
+    name: str             # of its files
+    words: str            # "lower EI, upper mass", empty without bounds
+    EI: float
+    mass: float
+
+
+def cases(question, stiffnesses):
+    """All combinations of the bounds. `stiffnesses`: EI in N m2, or those that belong to the frequencies."""
+    found = []
+    kind = "frequency" if question.frequencies else "EI"
+    for i, EI in enumerate(stiffnesses):
+        for j, mass in enumerate(question.masses):
+            parts = [(("lower", "upper")[number], what) for number, what, count in
+                     ((i, kind, len(stiffnesses)), (j, "mass", len(question.masses))) if count > 1]
+            name = "_".join(f"{bound}_{what}" for bound, what in parts) or "check"
+            found.append(Case(name, ", ".join(f"{bound} {what}" for bound, what in parts), EI, mass))
+    return found
+
+
+def spans_in_words(question):
+    count, lengths = len(question.spans), ", ".join(f"{span:g}" for span in question.spans)
+    if count == 1:
+        return f"a simply supported span of {lengths} m"
+    if len(set(question.spans)) == 1:
+        lengths = f"{question.spans[0]:g}"
+    return f"{count} {'simply supported' if question.separate else 'continuous'} spans of {lengths} m"
+
+
+def bridge_in_words(question):
+    material = WORDS.get(question.type, question.type)
+    track = "ballasted track" if question.track == "ballast" else "direct fastening"
+    speed = units.in_words("line-speed", question.line_speed)
+    return f"{spans_in_words(question)}, {material}, {track}, line speed {speed}"
+
+
+def quoted(text):
+    """A text as YAML: JSON is a part of it. Bytes that are no text become question marks."""
+    return json.dumps(text, ensure_ascii=False).encode("utf-8", "replace").decode("utf-8")
+
+
+def rows(*lines):
+    """Lines (key: value, comment) in columns."""
+    width = max(len(line) for line, _ in lines)
+    return "".join((f"  {line:<{width}}  # {comment}" if comment else f"  {line}") + "\n" for line, comment in lines)
+
+
+def beam_text(spans, case, question):
+    """The bridge of a scene."""
+    bounds_of_EI = len(question.EI or question.frequencies) > 1
+    text = "beam:\n" + rows(
+        (f"spans: [{', '.join(repr(span) for span in spans)}]", "m"),
+        (f"EI: {case.EI!r}", "N m2" + (f"; bounds: {clause('stiffness')}" if bounds_of_EI else "")),
+        (f"mass: {case.mass!r}", "kg/m, with ballast and track"
+         + (f"; bounds: {clause('mass')}" if len(question.masses) > 1 else "")))
+    if question.simply_supported and len(spans) > 1:
+        text += "  continuity: simply_supported\n"
+    return text
+
+
+def norm_text(question):
+    models = "lm71" if question.separate else "lm71, sw0"
+    return "norm:\n" + rows(
+        (f"load_models: [{models}]", "EN 1991-2 6.3"),
+        (f"alpha: {question.alpha!r}", "EN 1991-2 6.3.2"),
+        (f"track: {'careful' if question.careful else 'standard'}", "EN 1991-2 6.4.5.2: careful: Phi2; standard: Phi3"))
+
+
+def report_text(question):
+    if not question.title:
+        return ""
+    return "report:\n" + rows(*((f"{name}: {quoted(text)}", "") for name, text in question.title.items()))
+
+
+def head(question, case, what):
+    words = f"; {case.words}" if case.words else ""
+    return (f"# What: check by EN 1991-2 and EN 1990: {bridge_in_words(question)}{words}; {what}.\n"
+            f"# Source: input of traverse check; {MARKS[0]} no public source confirms the clause, {MARKS[1]} one: "
+            "check it with the norm.\n"
+            "# Expected: the verdicts of limits.yml. To change it and run it again: traverse -options_file with this "
+            "file.\n")
+
+
+def speeds(question):
+    """First speed, last speed and step in m/s."""
+    last = rule("speeds")["factor"] * question.line_speed
+    usual = float(rule("speeds")["first"])
+    first = usual if last > 1.1 * usual else 0.5 * last  # slow lines have no speed above the usual first one
+    return first, last, (last - first) / math.ceil((last - first) / SPEED_STEP)
+
+
+def dynamic_scene(question, case, modes, train):
+    """The sweep of the trains HSLM-A or HSLM-B over the speeds."""
+    first, last, step = speeds(question)
+    sweep = [(f"speed: [{first!r}, {last!r}, {step!r}]",
+              f"m/s: from, to, step; to {rule('speeds')['factor']} times the line speed, {clause('speeds')}"),
+             (f"refine: {REFINE!r}", "further speeds, until the peaks have this relative accuracy")]
+    loads = []
+    if train == "A":
+        sweep.append(("hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]", clause("short_span")))
+    else:
+        loads.append((f"hslm_b: [{question.hslm_b[0]}, {question.hslm_b[1]!r}]", f"{clause('short_span')}: N, d in m"))
+        loads.append((f"speed: {first!r}", "m/s; the sweep replaces it"))
+    if question.load_spread is not None:
+        loads.append((f"spread: {question.load_spread!r}", "m: sleeper spacing, EN 1991-2 6.3.6"))
+    damping = [(f"modes: {modes}", "all natural modes up to 1.5 times the cut-off frequency of EN 1990 A2.4.4.2.1"),
+               (f"damping_bound: {question.type}", clause("damping"))]
+    if question.additional_damping:
+        damping.append(("additional_damping: true", "EN 1991-2 6.4.6.4"))
+    spacing = min(question.spans) / (SECTIONS if len(question.spans) < MANY_SPANS else SECTIONS // 2)
+    return (head(question, case, f"trains HSLM-{train}") + beam_text(question.spans, case, question)
+            + "model:\n" + rows(*damping) + ("load:\n" + rows(*loads) if loads else "") + "sweep:\n" + rows(*sweep)
+            + "scene:\n" + rows(("tail: 1.0", "s of free vibration"))
+            + "output:\n" + rows((f"probes: {{spacing: {spacing!r}}}", "m: stations along the bridge"))
+            + norm_text(question) + report_text(question) + "limits: limits.yml\n")
+
+
+def bare_static_scene(question, case, spans):
+    """The static effects of the load models, without limits and title page."""
+    return (beam_text(spans, case, question) + "scene:\n"
+            + rows(("analysis: envelope", "largest static effects over all positions")) + norm_text(question))
+
+
+def static_scene(question, case):
+    """The static effects of the load models with Phi."""
+    return (head(question, case, "load models with Phi, static") + bare_static_scene(question, case, question.spans)
+            + report_text(question) + "limits: limits.yml\n")
+
+
+def limit_rows(question, limits_file, dynamic):
+    """The limits of the file that apply. Direct fastening replaces values of options/limits/en1991_2.yml."""
+    try:
+        found = yaml.safe_load(limits_file.read_text(encoding="utf-8"))
+        found = [{name: str(row[name]) for name in ("clause", "quantity", "value", "text") if name in row}
+                 for row in found]
+        quantities = [row["quantity"] for row in found]
+    except OSError as error:
+        raise CheckError(f"{limits_file}: {error.strerror}", 4) from None
+    except (yaml.YAMLError, ValueError, TypeError, KeyError, RecursionError):
+        raise CheckError(f"{limits_file} is no list of limits, each with quantity, value and clause") from None
+    joints = question.simply_supported and len(question.spans) > 1
+    others = data()["direct_fastening"] if question.track == "direct" and not question.limits else {}
+    kept = []
+    for row, quantity in zip(found, quantities):
+        row |= {name: str(value) for name, value in others.get(quantity, {}).items() if name != "sources"}
+        if ("joint" not in quantity or joints) and (dynamic or quantity.startswith("lm71")):
+            kept.append(row)
+    if not kept:
+        raise CheckError(f"{limits_file}: none of its limits applies to this check")
+    return kept
+
+
+def limits_text(question, limits_file, dynamic):
+    lines = ["- {" + ", ".join(f"{name}: {quoted(text)}" for name, text in row.items()) + "}\n"
+             for row in limit_rows(question, limits_file, dynamic)]
+    return ("# What: limits of this check; values are numbers in SI units, or fractions. To change and to run again.\n"
+            f"# Source: {quoted(limits_file.name)}; national annexes may change recommended values.\n"
+            "# Expected: no figure.\n" + "".join(lines))
+
+
+def sources_of(quantity):
+    """The public sources that confirm the clause of the limit of a quantity."""
+    return next((row["sources"] for row in requirements() if quantity in row.get("quantities", ())), [])
+
+
+def not_covered(judged):
+    """Requirements of EN 1990 A2.4.4 without a verdict, with their clauses."""
+    return [row for row in requirements() if row["clause"].startswith("EN 1990 A2.4.4")
+            and not set(row.get("quantities", ())) & set(judged) and row.get("needs") != "joints"]

@@ -1,0 +1,337 @@
+"""scripts/traverse-check: units, refusals, the flow chart, the scenes it writes, its verdicts and exit status."""
+
+import contextlib
+import io
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+import yaml
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from small_runs import BINARY, SOURCE  # noqa: E402
+
+SCRIPTS = SOURCE / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+from traverse_check import flow_chart, main, outcome, question, rules, scene, units  # noqa: E402
+
+BRIDGE = ("--span", "28", "--EI", "260 GN.m2", "--mass", "19 t/m", "--type", "prestressed", "--line-speed", "250 km/h")
+# A short span under HSLM-B, which is computed in half a second; its deck acceleration is far above the limit.
+SHORT = ("--span", "6 m", "--EI", "2 GN.m2", "--mass", "12 t/m", "--type", "filler", "--line-speed", "230 km/h",
+         "--hslm-b", "12,3.5", "--no-report")
+
+
+def ask(*words):
+    """The question of BRIDGE; later words replace earlier ones."""
+    return question.ask([*BRIDGE, *words])
+
+
+class Units(unittest.TestCase):
+    def test_the_same_stiffness_in_all_spellings(self):
+        for text in ("260 GN.m2", "260GN.m2", "260 GN m2", "260 GNm²", "260 GN·m^2", "260000 MN m2", "2.6e11 N.m2",
+                     "2.6e11"):
+            self.assertEqual(units.values("EI", text), [2.6e11], text)
+
+    def test_other_quantities(self):
+        self.assertEqual(units.values("mass", "19 t/m"), [19000.0])
+        self.assertEqual(units.values("mass", "19000 kg/m"), [19000.0])
+        self.assertEqual(units.values("line-speed", "250 km/h"), [250.0 / 3.6])
+        self.assertEqual(units.values("line-speed", "70 m/s"), [70.0])
+        self.assertEqual(units.values("line-speed", "250"), [250.0 / 3.6])  # 250 m/s is no line speed
+        self.assertEqual(units.values("frequency", "4.1 Hz"), [4.1])
+
+    def test_lists_share_the_unit_of_their_last_value(self):
+        self.assertEqual(units.values("span", "25,30,25 m"), [25.0, 30.0, 25.0])
+        for text in ("240, 280 GN.m2", "240 280 GN m2", "240 GN.m2, 280 GN.m2", "240 GN m2 280 GN m2"):
+            self.assertEqual(units.values("EI", text), [2.4e11, 2.8e11], text)
+
+    def test_a_number_whose_unit_is_in_doubt(self):
+        for name, text in (("line-speed", "80"), ("line-speed", "20"), ("EI", "260"), ("mass", "19")):
+            with self.assertRaisesRegex(rules.CheckError, "needs its unit"):
+                units.values(name, text)
+
+    def test_units_of_another_quantity_and_numbers_without_sense(self):
+        for name, text in (("EI", "260 kN"), ("mass", "19 t"), ("span", "28 s"), ("line-speed", "250 mph"),
+                           ("EI", "GN.m2"), ("span", "-28 m"), ("span", "0"), ("EI", "1e999 N.m2"), ("span", ""),
+                           ("span", "nan")):
+            with self.assertRaises(rules.CheckError, msg=text):
+                units.values(name, text)
+
+
+class Questions(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+        self.enterContext(contextlib.chdir(self.folder))
+
+    def file(self, text, name="bridge.yml"):
+        (self.folder / name).write_text(text, encoding="utf-8")
+        return name
+
+    def refused(self, *words):
+        with self.assertRaises(rules.CheckError) as caught:
+            question.ask(words)
+        self.assertEqual(caught.exception.status, 2)
+        self.assertEqual(len(str(caught.exception).splitlines()), 1)
+        return str(caught.exception)
+
+    def test_a_file_says_the_same_as_the_command_line(self):
+        name = self.file("span: 28\nEI: 260 GN.m2\nmass: 19 t/m\ntype: prestressed\nline-speed: 250 km/h\n"
+                         "careful: true\nreport-project: Line 4711\n")
+        expected = ask("--careful", "--report-project", "Line 4711", "--folder", "results/bridge")
+        self.assertEqual(question.ask([name]), expected)
+
+    def test_the_command_line_replaces_the_file(self):
+        name = self.file("span: [25 m, 30 m]\nEI: 260 GN.m2\nmass: 19 t/m\ntype: steel\nline-speed: 250 km/h\n")
+        asked = question.ask([name, "--line-speed", "160", "km/h", "--frequency", "4.1", "Hz"])
+        self.assertEqual((asked.spans, asked.EI, asked.frequencies), ([25.0, 30.0], [], [4.1]))
+        self.assertEqual(asked.line_speed, 160.0 / 3.6)
+
+    def test_words_that_are_missing_or_contradict_each_other(self):
+        self.assertIn("--span is missing", self.refused())
+        self.assertIn("either --EI or --frequency", self.refused(*BRIDGE, "--frequency", "4 Hz"))
+        self.assertIn("allowed: steel, composite", self.refused(*BRIDGE, "--type", "wood"))
+        self.assertIn("lower and the upper bound", self.refused(*BRIDGE, "--EI", "280,240 GN.m2"))
+        self.assertIn("--hslm-b", self.refused(*BRIDGE, "--span", "6 m"))
+        self.assertIn("leave out --hslm-b", self.refused(*BRIDGE, "--hslm-b", "12,3.5"))
+        self.assertIn("--spam", self.refused(*BRIDGE, "--spam", "3"))
+        self.assertIn("belongs to one mass", self.refused("--span", "28", "--frequency", "4 Hz", "--mass", "18,20 t/m",
+                                                          "--type", "steel", "--line-speed", "250 km/h"))
+
+    def test_files_that_are_no_question(self):
+        for text, said in (("spann: 28", "did you mean span?"), ("[28]", "no YAML file"), ("{a: [", "no YAML file"),
+                           ("span: {a: b}", "needs a value"), ("span:", "needs a value"), ("\x00\x01", "no YAML file"),
+                           ("span: !!python/object/apply:os.system ['touch bad']", "no YAML file"),
+                           ("folder: /etc", "below the working"), ("folder: ../..", "below the working")):
+            self.assertIn(said, self.refused(self.file(text)), text)
+        self.assertFalse((self.folder / "bad").exists())
+        self.assertIn("No such file", self.refused("none.yml"))
+        self.assertIn("too large", self.refused(self.file("#" * 200_000)))
+
+    def test_its_own_file_is_never_overwritten(self):
+        name = self.file("span: 28\n", "check.yml")
+        self.assertIn("might be overwritten", self.refused(name, "--folder", "."))
+
+
+class FlowChart(unittest.TestCase):
+    """EN 1991-2 figure 6.9; n0 and L of the parts are given here."""
+
+    def answer(self, length, n0, *words, separate=True):
+        found = flow_chart.answer(flow_chart.Part(length, n0, separate), ask(*words))
+        return found.needed, " ".join(f"{clause} {said}" for clause, said in found.steps)
+
+    def test_a_slow_line_within_the_limits(self):
+        self.assertFalse(self.answer(28.0, 5.0, "--line-speed", "200 km/h")[0])
+
+    def test_a_slow_line_outside_of_the_limits(self):
+        for n0 in (3.2, 7.9):
+            needed, said = self.answer(28.0, n0, "--line-speed", "160 km/h")
+            self.assertTrue(needed)
+            self.assertIn("outside 3.28 to 7.84 Hz", said)
+
+    def test_a_slow_line_on_a_continuous_bridge(self):
+        needed, said = self.answer(35.0, 9.0, "--line-speed", "160 km/h", separate=False)
+        self.assertFalse(needed)
+        self.assertIn("very good passenger comfort", said)
+
+    def test_a_fast_line(self):
+        for length, n0, words, said in ((28.0, 5.0, (), "cannot be decided without --torsional-frequency"),
+                                        (28.0, 5.0, ("--torsional-frequency", "6.1 Hz"), "tables F.1 and F.2"),
+                                        (28.0, 5.0, ("--torsional-frequency", "5.9 Hz"), "not above 1.2 n0 = 6 Hz"),
+                                        (45.0, 3.0, (), "L >= 40 m"),
+                                        (28.0, 5.0, ("--complex",), "no simple structure")):
+            needed, steps = self.answer(length, n0, *words)
+            self.assertTrue(needed)
+            self.assertIn(said, steps)
+        self.assertTrue(self.answer(35.0, 4.0, separate=False)[0])
+
+    def test_slow_but_complex(self):
+        self.assertTrue(self.answer(28.0, 5.0, "--line-speed", "160 km/h", "--complex")[0])
+
+    def test_lengths_without_limits(self):
+        for length in (3.9, 101.0):
+            self.assertIsNone(flow_chart.limits_of_n0(length))
+            self.assertTrue(self.answer(length, 5.0, "--line-speed", "160 km/h")[0])
+
+    def test_every_rule_has_a_clause_and_known_sources(self):
+        known = rules.data()["sources"]
+        for name, row in [*rules.data()["rules"].items(), *rules.data()["direct_fastening"].items()]:
+            self.assertLessEqual(set(row["sources"]), set(known), name)
+        self.assertEqual(rules.clause("frequencies"), "EN 1991-2 figure 6.10")  # confirmed by two sources
+        self.assertTrue(rules.clause("torsion").endswith("⁰"))
+
+
+class Scenes(unittest.TestCase):
+    def options(self, asked, train="A"):
+        return yaml.safe_load(scene.dynamic_scene(asked, scene.cases(asked, asked.EI)[0], 4, train))
+
+    def test_options_of_the_question(self):
+        written = self.options(ask("--careful", "--alpha", "1.21", "--load-spread", "0.6", "--additional-damping"))
+        self.assertEqual(written["beam"], {"spans": [28.0], "EI": 2.6e11, "mass": 19000.0})
+        self.assertEqual(written["model"], {"modes": 4, "damping_bound": "prestressed", "additional_damping": True})
+        self.assertEqual(written["norm"], {"load_models": ["lm71"], "alpha": 1.21, "track": "careful"})
+        self.assertEqual(written["load"], {"spread": 0.6})
+        self.assertEqual(written["sweep"]["hslm_a"], list(range(1, 11)))
+        first, last, step = written["sweep"]["speed"]
+        self.assertEqual((first, last), (40.0, 1.2 * (250.0 / 3.6)))
+        self.assertAlmostEqual((last - first) / step, round((last - first) / step), 9)
+
+    def test_a_continuous_bridge_and_separate_spans(self):
+        self.assertEqual(self.options(ask("--span", "25,30,25"))["norm"]["load_models"], ["lm71", "sw0"])
+        separate = self.options(ask("--span", "25,30,25", "--simply-supported"))
+        self.assertEqual(separate["beam"]["continuity"], "simply_supported")
+        self.assertEqual(separate["norm"]["load_models"], ["lm71"])
+
+    def test_speeds_of_a_slow_line(self):
+        first, last, _ = scene.speeds(ask("--line-speed", "100 km/h"))
+        self.assertAlmostEqual(last, 120.0 / 3.6, 12)
+        self.assertEqual(first, 0.5 * last)
+
+    def test_all_combinations_of_the_bounds(self):
+        asked = ask("--EI", "240,280 GN.m2", "--mass", "18,20 t/m")
+        self.assertEqual([(case.name, case.EI, case.mass) for case in scene.cases(asked, asked.EI)],
+                         [("lower_EI_lower_mass", 2.4e11, 18000.0), ("lower_EI_upper_mass", 2.4e11, 20000.0),
+                          ("upper_EI_lower_mass", 2.8e11, 18000.0), ("upper_EI_upper_mass", 2.8e11, 20000.0)])
+        one = ask("--mass", "18,20 t/m")
+        self.assertEqual([case.words for case in scene.cases(one, one.EI)], ["lower mass", "upper mass"])
+
+    def test_limits_of_the_track(self):
+        file = SOURCE / "options/limits/en1991_2.yml"
+        texts = [scene.limits_text(ask("--track", track), file, True) for track in ("ballast", "direct")]
+        ballast, direct = ({row["quantity"]: float(row["value"]) for row in yaml.safe_load(text)
+                            if "/" not in row["value"]} for text in texts)
+        self.assertEqual((ballast["deck_acceleration"], direct["deck_acceleration"]), (3.5, 5.0))
+        self.assertEqual((ballast["end_rotation"], direct["end_rotation"]), (6.5e-3, 5.0e-3))
+        self.assertNotIn("lm71_joint_rotation", ballast)
+        joints = scene.limits_text(ask("--span", "25,30", "--simply-supported"), file, False)
+        self.assertEqual({row["quantity"] for row in yaml.safe_load(joints)},
+                         {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation"})
+
+    def test_limits_of_the_user(self):
+        with tempfile.TemporaryDirectory() as folder:
+            own, asked = pathlib.Path(folder, "own.yml"), ask("--track", "direct", "--limits", "own.yml")
+            own.write_text('- {clause: "our rule", quantity: deck_acceleration, value: 1/3}\n', encoding="utf-8")
+            self.assertEqual(yaml.safe_load(scene.limits_text(asked, own, True)),
+                             [{"clause": "our rule", "quantity": "deck_acceleration", "value": "1/3"}])
+            with self.assertRaisesRegex(rules.CheckError, "none of its limits applies"):
+                scene.limits_text(asked, own, False)
+            for text in ("{a: [", "7", "[7]", "[{value: 3}]"):
+                own.write_text(text, encoding="utf-8")
+                with self.assertRaisesRegex(rules.CheckError, "no list of limits"):
+                    scene.limits_text(asked, own, True)
+
+    def test_texts_remain_texts(self):
+        hostile = 'x\n"y": \x1b[31m{ # -options_file /etc/passwd'
+        self.assertEqual(self.options(ask("--report-project", hostile))["report"]["project"], hostile)
+        self.assertEqual(self.options(ask("--report-note", "a\udcffb"))["report"]["note"], "a?b")
+
+
+class Commands(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def command(self, *words):
+        """The command itself: (exit status, standard output, standard error)."""
+        ended = subprocess.run([sys.executable, "-B", SCRIPTS / "traverse-check", *words, "--program", BINARY],
+                               cwd=self.folder, capture_output=True, text=True)
+        return ended.returncode, ended.stdout, ended.stderr
+
+    def inside(self, *words):
+        """The same within this process: (exit status, standard output)."""
+        out = io.StringIO()
+        with contextlib.chdir(self.folder), contextlib.redirect_stdout(out):
+            status = main.check([*words, "--program", str(BINARY)])
+        return status, out.getvalue()
+
+    def run_again(self, folder, name):
+        ended = subprocess.run([BINARY, "-options_file", f"{name}.yml", "-output_file", "again.h5"], cwd=folder,
+                               capture_output=True, text=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        return folder / "again.h5"
+
+    def test_a_limit_is_exceeded(self):
+        status, said, error = self.command(*SHORT, "--folder", "short")
+        self.assertEqual((status, error), (outcome.EXCEEDED, ""))
+        self.assertIn("Result: 1 of 4 limits is EXCEEDED; greatest utilisation", said)
+        first, again = self.folder / "short/check.h5", self.run_again(self.folder / "short", "check")
+        with h5py.File(first) as one, h5py.File(again) as other:
+            acceleration = one["verdicts/value"][0]
+            self.assertIn(f"{acceleration:.4g} m/s² of 3.5 m/s²", said)
+            self.assertGreater(acceleration, 3.5)
+            written = yaml.safe_load((self.folder / "short/check.yml").read_text(encoding="utf-8"))
+            options = dict(one["options"].asstr()[:])
+            for name, value in (("beam_EI", written["beam"]["EI"]), ("load_hslm_b", written["load"]["hslm_b"]),
+                                ("sweep_speed", written["sweep"]["speed"])):
+                np.testing.assert_array_equal(np.array(options[name].split(","), dtype=float), value)
+            for name in ("sweep/speed", "sweep/peak_deflection", "sweep/judged", "norm/train_over_model"):
+                np.testing.assert_array_equal(one[name][:], other[name][:])
+
+    def test_bounds_make_a_file_for_each_combination(self):
+        status, said = self.inside(*SHORT, "--EI", "2,2.2 GN.m2", "--mass", "11,12 t/m", "--line-speed", "150 km/h",
+                                   "--always", "--folder", "bounds")
+        results = sorted(path.stem for path in (self.folder / "bounds").glob("*.h5"))
+        self.assertEqual(results, [f"{i}_EI_{j}_mass" for i in ("lower", "upper") for j in ("lower", "upper")])
+        judged = [verdict for name in results for verdict in outcome.verdicts(self.folder / f"bounds/{name}.h5")]
+        self.assertEqual(status, outcome.status(judged))
+        self.assertEqual(said.count("Verdicts: "), 4)
+
+    def test_without_dynamic_analysis(self):
+        folder = 'a; touch pwned $(touch pwned) "x'
+        status, said = self.inside("--span", "28", "--frequency", "4.1 Hz", "--mass", "19 t/m", "--type", "prestressed",
+                                   "--line-speed", "160 km/h", "--no-report", "--folder", folder)
+        self.assertEqual(status, 0, said)
+        self.assertIn("n0 = 4.1 Hz", said)
+        self.assertIn("no dynamic analysis is necessary", said)
+        self.assertEqual([path.name for path in self.folder.iterdir()], [folder])
+        with h5py.File(self.folder / folder / "check.h5") as file:
+            self.assertAlmostEqual(file["norm"].attrs["n0"], 4.1, 9)
+            words = file["norm"].attrs["words"]
+            low, high = flow_chart.limits_of_n0(28.0)
+            self.assertIn(f"{low:.2f} to {high:.2f} Hz of figure 6.10", words)  # the program has the same limits
+            self.assertEqual([row[0] for row in file["verdicts/verdict"].asstr()[:]], ["kept", "kept"])
+            options = dict(file["options"].asstr()[:])
+            self.assertFalse([value for value in options.values() if os.path.isabs(value)])
+
+    def test_a_limit_that_cannot_be_evaluated(self):
+        (self.folder / "own.yml").write_text('- {clause: "EN 1990 A2.4.4.3", quantity: car_acceleration, value: 1.0}\n',
+                                             encoding="utf-8")
+        status, said = self.inside(*SHORT, "--limits", "own.yml")
+        self.assertEqual(status, outcome.NOT_JUDGED)
+        self.assertIn("Result: 1 of 1 limits is NOT EVALUATED.", said)
+
+    def test_one_line_for_what_fails(self):
+        for words, status, said in ((BRIDGE[2:], 2, "--span is missing"), ((*BRIDGE, "--alpha", "99"), 2, "norm_alpha"),
+                                    ((*BRIDGE, "--span", "1e9 m"), 2, "beam_spans"),
+                                    ((*BRIDGE, "--folder", "file"), 4, "file")):
+            (self.folder / "file").write_text("", encoding="utf-8")
+            ended, _, error = self.command(*words)
+            self.assertEqual((ended, len(error.splitlines())), (status, 1), error)
+            self.assertIn(said, error)
+
+    def test_everything_for_a_bridge_of_28_m(self):
+        status, said, error = self.command(*BRIDGE, "--report-project", "Line 4711")
+        self.assertEqual((status, error), (0, ""), said)
+        folder = self.folder / "results/check"
+        for name in ("report.pdf", "report.xlsx", "check.png", "check.html", "check.yml", "limits.yml", "check.txt",
+                     "summary.txt"):
+            self.assertGreater((folder / name).stat().st_size, 100, name)
+        with h5py.File(folder / "check.h5") as file:
+            self.assertEqual(sorted(file["sweep/hslm_a"][:]), list(range(1, 11)))
+            self.assertAlmostEqual(file["sweep/speed"][:].max(), 1.2 * 250.0 / 3.6, 9)
+            self.assertIn(f"n0 = {file['norm'].attrs['n0']:.4g} Hz", said)
+            self.assertIn(f"{file['norm/train_over_model'][:].max():.4g}", said)
+            worst = np.nanmax(file["verdicts/value"][:] / file["verdicts/limit"][:])
+        self.assertEqual((folder / "summary.txt").read_text(encoding="utf-8"), said)
+        self.assertIn(f"Result: all 4 limits are complied with; greatest utilisation {100 * worst:.0f} %", said)
+
+
+if __name__ == "__main__":
+    unittest.main()
