@@ -62,11 +62,12 @@ TEST(Outputs, ARowDescribesWhatItFills) {
 std::map<std::string, std::string> units_of(const std::string& path) {
   std::map<std::string, std::string> units;
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  const auto visit = [](hid_t, const char* name, const auto* info, void* data) -> herr_t {  // H5O_info_t changes
-    if (info->type == H5O_TYPE_DATASET) (*static_cast<std::map<std::string, std::string>*>(data))[name];
-    return 0;
+  const auto visit = [](hid_t group, const char* name, const H5L_info_t*, void* data) -> herr_t {
+    const hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+    if (H5Iget_type(object) == H5I_DATASET) (*static_cast<std::map<std::string, std::string>*>(data))[name];
+    return H5Oclose(object);
   };
-  H5Ovisit1(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &units);
+  H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &units);
   H5Fclose(file);
   const results::testing::Reader reader(path);
   for (auto& [name, unit] : units) unit = reader.text("/" + name, "unit");
