@@ -124,13 +124,14 @@ def print_verdicts(asked, done):
     return everything
 
 
-def print_remarks(judged, dynamic):
-    """What the check does not contain."""
-    left = [row["requirement"] for row in scene.not_covered([verdict.quantity for verdict in judged])]
-    left += ["real trains of the line, EN 1991-2 6.4.6.1.1"] if dynamic else []
-    for said in (f"Not part of this check: {'; '.join(left)}.",
+def print_remarks(asked, judged, dynamic):
+    """What the check does not contain, and what its result depends on."""
+    left = [row["requirement"] for row in scene.not_covered(asked, [verdict.quantity for verdict in judged])]
+    for said in filter(None, (
+                 scene.conditions(asked, dynamic),
+                 f"Not part of this check: {'; '.join(left)}.",
                  f"{MARKS[0]} no public source confirms the rule or its clause, {MARKS[1]} one public source confirms "
-                 "it: check it with the norm. National annexes may change values."):
+                 "it: check it with the norm. National annexes may change values.")):
         print(textwrap.fill(said, WIDTH, subsequent_indent="  "))
 
 
@@ -171,13 +172,14 @@ def status_of(asked, traverse):
               f"damping by {clause('damping')}", flush=True)
     done = run_all(asked, cases, dynamic, traverse)
     judged = print_verdicts(asked, done)
-    print_remarks(judged, dynamic)
+    print_remarks(asked, judged, dynamic)
     print(outcome.conclusion(judged), flush=True)
     names = [name for name, *_ in done]
     made = runs.documents(traverse, asked.folder, names, dynamic) if asked.report else []
     if asked.report and not dynamic:
         print("There is no report, because reports contain runs of trains: --always adds them.")
-    print(f"Files in {printable(asked.folder)}: {', '.join([*made, *names, 'limits.yml', 'summary.txt'])}")
+    scenes = [pathlib.Path(name).with_suffix(".yml").name for name in names]
+    print(f"Files in {printable(asked.folder)}: {', '.join([*made, *names, *scenes, 'limits.yml', 'summary.txt'])}")
     return outcome.status(judged)
 
 

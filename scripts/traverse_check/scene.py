@@ -85,10 +85,8 @@ def norm_text(question):
         (f"track: {'careful' if question.careful else 'standard'}", "EN 1991-2 6.4.5.2: careful: Phi2; standard: Phi3"))
 
 
-def report_text(question):
-    if not question.title:
-        return ""
-    return "report:\n" + rows(*((f"{name}: {quoted(text)}", "") for name, text in question.title.items()))
+def report_text(question, dynamic):
+    return "report:\n" + rows(*((f"{name}: {quoted(text)}", "") for name, text in title_page(question, dynamic).items()))
 
 
 def head(question, case, what):
@@ -131,7 +129,7 @@ def dynamic_scene(question, case, modes, train):
             + "model:\n" + rows(*damping) + ("load:\n" + rows(*loads) if loads else "") + "sweep:\n" + rows(*sweep)
             + "scene:\n" + rows(("tail: 1.0", "s of free vibration"))
             + "output:\n" + rows((f"probes: {{spacing: {spacing!r}}}", "m: stations along the bridge"))
-            + norm_text(question) + report_text(question) + "limits: limits.yml\n")
+            + norm_text(question) + report_text(question, True) + "limits: limits.yml\n")
 
 
 def bare_static_scene(question, case, spans):
@@ -143,7 +141,7 @@ def bare_static_scene(question, case, spans):
 def static_scene(question, case):
     """The static effects of the load models with Phi."""
     return (head(question, case, "load models with Phi, static") + bare_static_scene(question, case, question.spans)
-            + report_text(question) + "limits: limits.yml\n")
+            + report_text(question, False) + "limits: limits.yml\n")
 
 
 def limit_rows(question, limits_file, dynamic):
@@ -182,7 +180,36 @@ def sources_of(quantity):
     return next((row["sources"] for row in requirements() if quantity in row.get("quantities", ())), [])
 
 
-def not_covered(judged):
-    """Requirements of EN 1990 A2.4.4 without a verdict, with their clauses."""
-    return [row for row in requirements() if row["clause"].startswith("EN 1990 A2.4.4")
-            and not set(row.get("quantities", ())) & set(judged) and row.get("needs") != "joints"]
+def single_bounds(question):
+    """The quantities of which one value was given, so that their bounds are not examined."""
+    return [name for name, values in (("stiffness", question.EI or question.frequencies), ("mass", question.masses))
+            if len(values) == 1]
+
+
+def not_covered(question, judged):
+    """Requirements of EN 1990 A2.4.4 and EN 1991-2 6.4 without a verdict, which the check does not compute either."""
+    covered = {"norm", "hslm", "speeds", "damping", "mass", "stiffness"} - set(single_bounds(question))
+    return [row for row in requirements() if not set(row.get("quantities", ())) & set(judged)
+            and row.get("needs") != "joints" and row.get("computed") not in covered
+            and row["requirement"] != "need for a dynamic analysis"]
+
+
+def title_page(question, dynamic):
+    """The texts of the title page: those given, the bridge, and the conditions of the result."""
+    single = [f"the bounds of the {name} ({clause(name)})" for name in single_bounds(question)]
+    note = (f"Need for a dynamic analysis by {clause('line_speed')}: {'yes' if dynamic else 'no'}, at a line speed of "
+            f"{units.in_words('line-speed', question.line_speed)}.")
+    if single:
+        note += f" Not examined, as one value was given: {' and '.join(single)}."
+    words = f"{spans_in_words(question)}, {WORDS.get(question.type, question.type)}"
+    return {"structure": words[0].upper() + words[1:], "note": note} | question.title
+
+
+def conditions(question, dynamic):
+    """What the result depends on, beside the limits."""
+    single = single_bounds(question)
+    if not dynamic or not single:
+        return ""
+    words = " and ".join("--EI" if name == "stiffness" else "--mass" for name in single)
+    return (f"Condition: the given {' and '.join(single)} do not scatter; their lower and upper bounds, two values of {words}, "
+            "were not examined.")

@@ -27,11 +27,16 @@ Place place_of(const beam::BeamModel& model, double x) {
 std::vector<Place> sections_of(const beam::BeamModel& model, double spacing,
                                const std::vector<double>& given_stations) {
   std::vector<double> x = given_stations;
+  const auto add = [&](double station, double slack) {  // unless it is one of the given stations, but for rounding
+    if (std::none_of(given_stations.begin(), given_stations.end(),
+                     [&](double given) { return std::abs(given - station) < slack; }))
+      x.push_back(station);
+  };
   double start = 0.0;
   for (const double span : model.spans) {
     const double parts = spacing > 0.0 ? std::max(1.0, std::ceil(span / spacing - support_offset)) : parts_of_span;
     for (double i = 0.0; i <= parts; ++i)
-      x.push_back(start + span * std::clamp(i / parts, support_offset, 1.0 - support_offset));
+      add(start + span * std::clamp(i / parts, support_offset, 1.0 - support_offset), 0.1 * support_offset * span);
     start += span;
   }
   std::sort(x.begin(), x.end());

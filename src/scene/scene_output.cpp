@@ -45,14 +45,18 @@ bool limits_largest_deck_response(const Scene& scene) {
 }
 
 /// Adds evenly spaced probes in each span for limits of the largest response of the deck.
-void add_probes_for_limits(bool middles, Scene& scene) {
+void add_probes_for_limits(Scene& scene) {
   const std::vector<double>& spans = scene.beam->spans;
+  std::vector<double>& probes = scene.output.probes;
   const int parts = std::min(static_cast<int>(most_default_probes / spans.size()), parts_of_a_span);
   if (parts < 2 || !limits_largest_deck_response(scene)) return;
   double left = 0.0;
   for (const double span : spans) {
-    for (int i = 1; i < parts; ++i)
-      if (!middles || 2 * i != parts) scene.output.probes.push_back(left + span * i / parts);
+    for (int i = 1; i < parts; ++i) {
+      const double x = left + span * i / parts;
+      if (std::none_of(probes.begin(), probes.end(), [x](double p) { return std::abs(p - x) < same_station; }))
+        probes.push_back(x);
+    }
     left += span;
   }
   scene.notes.push_back(fmt::format(
@@ -83,7 +87,7 @@ void read_probes(const Options& o, Scene& scene) {
       o.refuse("output_probes", fmt::format("{:g} is outside the beam; allowed: from 0 to {:g} m", x, length));
     x = std::min(x, length);
   }
-  if (!even) return add_probes_for_limits(!named, scene);
+  if (!even) return add_probes_for_limits(scene);
   add_even_probes(o, spans, probes);
   std::sort(probes.begin(), probes.end());
   const auto same = [](double a, double b) { return b - a < same_station; };
