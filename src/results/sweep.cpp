@@ -23,7 +23,7 @@ double km_per_hour(const StudyTable& table, const StudyPlace& place) {
 
 /// " @ 230", with the station if there are several.
 std::string at_text(const StudyTable& table, const StudyPlace& place) {
-  const std::string speed = fmt::format(" @ {:.4g}", km_per_hour(table, place));
+  std::string speed = fmt::format(" @ {:.4g}", km_per_hour(table, place));
   if (table.probes() == 1) return speed;
   return speed + fmt::format(", {:.4g}", table.find("probes_x")->values[place.run * table.probes() + place.probe]);
 }
