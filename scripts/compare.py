@@ -148,14 +148,16 @@ def difference(value, first):
 
 
 def peak_rows(cases):
-    """Head and rows of the table of peaks, in words."""
+    """Head and rows of the table of peaks, in words. Values at different places have these instead of differences."""
     rows = []
-    for words, unit, values in peaks(cases):
+    for words, unit, values, places in peaks(cases):
         texts = ["" if np.isnan(value) else digits(value).replace("-", "−") for value in values]
         changes = ["", *(difference(value, values[0]) for value in values[1:])]
+        if len({round(place, 3) for place in places if not np.isnan(place)}) > 1:
+            changes = ["" if np.isnan(place) else f"at {place:.5g} m" for place in places]
         rows.append([f"{words} ({unit})" if unit else words,
                      *(f"{text} ({change})" if change else text for text, change in zip(texts, changes))])
-    return ["peak (difference from the first)", *(case.name for case in cases)], rows
+    return ["peak (difference from the first, or place)", *(case.name for case in cases)], rows
 
 
 def option_rows(cases):

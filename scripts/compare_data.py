@@ -65,21 +65,25 @@ def names_of(paths, results):
 
 
 def peaks(cases):
-    """[(words, unit, [value of each case])] of the peaks that at least two cases have, signed as in /summary."""
-    found = []
+    """[(words, unit, [value of each case], [its place in m])] of the peaks that at least two cases have, signed as in
+    /summary."""
+    found, nowhere = [], [np.nan] * len(cases)
     for attribute, words, kind in PEAKS:
+        of = "deflection" if attribute in ("static_deflection", "amplification") else attribute
+        places = [float(case.results.summary.get(f"{of}_place", np.nan)) for case in cases]
         unit, factor = engineering(kind)
         values = [factor * float(case.results.summary.get(attribute, np.nan)) for case in cases]
         if np.count_nonzero(~np.isnan(values)) > 1 and np.any(np.nan_to_num(values)):
-            found.append((words, unit, values))
+            found.append((words, unit, values, places))
     for name, words, kind in RAIL_PEAKS:
         unit, factor = shown(kind)
         tables = [case.results.values(f"rail_forces/in_sequence/{name}") for case in cases]
         if sum(table is not None for table in tables) > 1:
-            found.append((words, unit, [np.nan if table is None else factor * float(table[0]) for table in tables]))
+            values = [np.nan if table is None else factor * float(table[0]) for table in tables]
+            found.append((words, unit, values, nowhere))
     frequencies = [case.results.values("modes/frequency") for case in cases]
     if all(one is not None and len(one) for one in frequencies):
-        found.append(("first natural frequency", "Hz", [float(one[0]) for one in frequencies]))
+        found.append(("first natural frequency", "Hz", [float(one[0]) for one in frequencies], nowhere))
     return found
 
 

@@ -146,11 +146,15 @@ study: {vary: {load_speed: {from: 20.0, to: 80.0, step: 10.0}, beam_mass: [1.6e4
     def test_peaks_of_runs_are_those_of_the_summary(self):
         cases = self.cases("run")
         first, second = (case.results.file["summary"].attrs["deflection"] for case in cases)
-        (words, unit, values), *_ = compare_data.peaks(cases)
+        (words, unit, values, _), *_ = compare_data.peaks(cases)
         self.assertEqual((words, unit, values), ("greatest deflection", "mm", [1e3 * first, 1e3 * second]))
         head, rows = compare.peak_rows(cases)
         self.assertEqual(head[1:], ["model_damping_ratios 0.01", "model_damping_ratios 0.02"])
         self.assertIn(f"({100.0 * (second / first - 1.0):+.3g} %)".replace("-", "−"), rows[0][2])
+        places = [case.results.file["summary"].attrs for case in cases]
+        with mock.patch.dict(cases[1].results.summary, deflection_place=places[0]["deflection_place"] + 1.0):
+            _, (row, *_) = compare.peak_rows(cases)
+        self.assertTrue(row[2].endswith(f"(at {places[0]['deflection_place'] + 1.0:.5g} m)"), row)
         curves = next(iter(self.kept(cases).values()))
         deflection = 1e3 * cases[1].results.file["probes/deflection"][:]
         self.assertIn(list(curves["model_damping_ratios 0.02"]), [list(column) for column in deflection.T])
