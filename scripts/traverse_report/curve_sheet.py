@@ -79,8 +79,8 @@ def notes_on_curves(source):
                       "shaded: range.",
                       names=", ".join(runs.words(name)[0] for name in runs.over)))
     if "resonances/speed" in file:
-        ratio = "v = f₁ · d" if len(runs.lines()) > 3 else "v = f₁ · d / i"
-        said.append(t("Light lines: resonance speeds {formula}.", formula=ratio))
+        said.append(t("Light lines: resonance speeds v = f₁ · d; dashed: v = f₁ · d / 2.") if len(runs.lines()) > 3 else
+                    t("Light lines: resonance speeds {formula}.", formula="v = f₁ · d / i"))
     if "cancellations/speed" in file:
         said.append(t("Dotted lines: cancellation speeds {formula}.", formula="v = 2 f₁ · L / (2k + 1)"))
     return said

@@ -90,9 +90,10 @@ def draw_resonances(ax, source, lines):
         place = [i for i, (line, _) in enumerate(lines) if name in (line, None)]
         own = (group["mode"] == 1.0) & (group["hslm_a"] == train if train is not None else True)
         for speed, order in zip(kmh * group["speed"][own], group["order"][own]):
-            if not place or not low < speed < high or (len(lines) > 3 and order > 1.0):
+            if not place or not low < speed < high or (len(lines) > 3 and order > 2.0):
                 continue
-            ax.axvline(speed, color=look(place[0])[0], lw=1.0, alpha=0.35, zorder=0.5)
+            dashed = (0, (4.0, 2.0)) if len(lines) > 3 and order == 2.0 else "-"
+            ax.axvline(speed, color=look(place[0])[0], lw=1.0, alpha=0.35, zorder=0.5, ls=dashed)
             if len(lines) <= 3:
                 ax.text(speed, 0.99, f" i = {order:.0f}", transform=ax.get_xaxis_transform(), fontsize=6.5, va="top",
                         ha="left", color=GREY)
