@@ -5,7 +5,7 @@ import re
 from typing import NamedTuple
 
 import h5py
-from traverse_report.quantities import unit_of, words_of
+from traverse_report.quantities import over_span, unit_of, words_of
 
 from . import scene
 from .rules import marked, printable
@@ -36,10 +36,8 @@ def shown(value, quantity):
     """A value of a limit in its usual unit; deflections over the span as L/600."""
     if math.isnan(value):
         return "-"
-    if quantity.endswith("deflection_over_span"):
-        return f"L/{1.0 / value:.0f}" if value > 0.0 else "0"
     unit, factor = unit_of(quantity)
-    return f"{value * factor:.4g} {unit}".strip()
+    return over_span(quantity, value) or f"{value * factor:.4g} {unit}".strip()
 
 
 def place(text):

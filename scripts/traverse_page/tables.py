@@ -4,7 +4,7 @@ import numpy as np
 from engineering_units import shown
 from picture_rail import CASES
 from picture_vehicles import wheels_of
-from traverse_report.quantities import QUANTITIES, unit_of, unit_of_si, words_of
+from traverse_report.quantities import QUANTITIES, over_span, unit_of, unit_of_si, words_of
 
 from .along import ENVELOPES, FEWEST_STATIONS
 from .histories import named
@@ -40,8 +40,10 @@ def verdicts(results, limits_of_file):
     for limit, (word, where), value, margin, time, runs, broken in zip(limits_of_file, *columns):
         when = f", t = {time:.5g} s" if np.isfinite(time) else ""
         runs_in_words = [f"{broken:.0f} of {runs:.0f}" if runs > 1 else ""] if many else []
+        shown_value, shown_limit = ([number(one), limit["unit"]] for one in (limit["factor"] * value, limit["limit"]))
         rows.append([word, limit["clause"], ": ".join(filter(None, (limit["words"], limit["text"]))),
-                     [number(limit["factor"] * value), limit["unit"]], [limit["limit"], limit["unit"]],
+                     over_span(limit["quantity"], value) or shown_value,
+                     over_span(limit["quantity"], limit["limit"]) or shown_limit,
                      None if np.isnan(margin) else f"{100.0 * margin:.1f} %", where + when, *runs_in_words])
     head = ["verdict", "clause", "limit of", "value", "limit", "margin", "place, or reason of a missing value"]
     return {"title": "Verdicts", "first": True, "head": head + (["runs that break it"] if many else []), "rows": rows}

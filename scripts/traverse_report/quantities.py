@@ -51,6 +51,13 @@ def words_of(name):
     return t(QUANTITIES[name].words) if name in QUANTITIES else name.replace("_", " ")
 
 
+def over_span(name, value):
+    """A deflection over the span length as engineers write it, L/600; empty for other quantities."""
+    if not name.endswith("deflection_over_span"):
+        return ""
+    return f"L/{1.0 / value:.0f}" if value > 0.0 else "0"
+
+
 def unit_of(name):
     """(unit for print, factor from SI)"""
     kind = QUANTITIES[name].kind if name in QUANTITIES else ""
