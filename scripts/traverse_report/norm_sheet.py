@@ -23,6 +23,11 @@ def verdict_rows(source):
             for i, (effect, train, model, governs) in enumerate(names)]
 
 
+def trains_govern(source):
+    """Whether the trains govern over the load models in an effect."""
+    return any(row["governs"] == "train" for row in verdict_rows(source))
+
+
 def sentence(source):
     """The governing load in one line; empty without a comparison."""
     rows = verdict_rows(source)

@@ -9,6 +9,7 @@ import matplotlib.pyplot as plt
 from matplotlib.backends.backend_pdf import PdfPages
 from PIL import Image
 
+from . import norm_sheet
 from .language import capital, t
 from .page import AMBER, GREEN, GREY, HEIGHT, INK, LEFT, PALE, RED, RIGHT, WIDTH, Reference, table
 from .source import ReportError
@@ -137,7 +138,7 @@ def title_page(report, title, sources, lines, colour):
     if title.logo is not None:
         draw_logo(page, title.logo)
     page.y -= 0.2
-    draw_verdict(page, lines, colour)
+    draw_verdict(page, [*lines, *map(norm_sheet.sentence, filter(norm_sheet.trains_govern, sources))], colour)
     page.text(LEFT, title.structure, size=15, weight="bold")
     page.y -= 0.12
     rows = [(t("project"), title.project), (t("line and position"), title.line), (t("norm"), title.norm_edition),
