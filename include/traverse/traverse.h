@@ -40,7 +40,7 @@ typedef struct {
   size_t dimensions;
   size_t shape[2];   /* one entry per dimension; their product is the number of values */
   int varies;        /* 1: with time; 0: stations of other quantities */
-  const char* names; /* the names of the dimensions, separated by blanks: "x", "supports_x component"; as name */
+  const char* names; /* the names of the dimensions, separated by blanks: "x", "supports_x component" */
 } traverse_quantity;
 /* NOLINTEND(modernize-use-using) */
 

@@ -48,8 +48,8 @@ int complain(const traverse::Error& error) {
   return error.status();
 }
 
-/// `traverse check ...` starts traverse-check, which is beside the installed program, or in scripts of the sources
-/// beside the build folder. It returns only if there is none that can be started.
+/// `traverse check ...` becomes traverse-check, which is beside the installed program, or in the folder scripts beside
+/// the build folder. Throws FileError if it cannot be started; returns for all other words.
 void start_norm_check(int argc, char** argv) {
   if (argc < 2 || std::string_view(argv[1]) != "check") return;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe"), folder = program.parent_path();

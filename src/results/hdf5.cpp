@@ -14,7 +14,6 @@
 #include <numeric>
 #include <unordered_set>
 
-#include "results/dataset_words.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results::hdf5 {
@@ -229,23 +228,6 @@ void File::attribute(const std::string& object, const std::string& name, const s
   const std::string valid = printable(text);  // readers reject invalid UTF-8
   const char* value = valid.c_str();
   write_attribute(object, name, text_.get(), &value);
-}
-
-void File::set_text(const Id& object, const char* name, const std::string& text) {
-  const std::string valid = printable(text);
-  const char* value = valid.c_str();
-  const Id space(check(H5Screate(H5S_SCALAR)));
-  const Id attribute(check(H5Acreate2(object.get(), name, text_.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT)));
-  check(H5Awrite(attribute.get(), text_.get(), &value));
-}
-
-void File::label(const Id& dataset, const std::string& name, const std::string& unit) {
-  const Id space(check(H5Dget_space(dataset.get())));
-  DatasetWords words = words_of(name, static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.get()))));
-  set_text(dataset, "unit", unit);
-  set_text(dataset, "units", unit);
-  set_text(dataset, "long_name", words.long_name);
-  if (!words.dimensions.empty()) unscaled_.emplace_back(name, std::move(words.dimensions));
 }
 
 void File::attribute(const std::string& object, const std::string& name, double value) {

@@ -1,7 +1,8 @@
-// Dimension scales of a results file as netCDF-4 has them, so that its readers find the coordinates of each dataset in
-// the dataset's group or in a parent of it. REFERENCE_LIST, the way back from a scale, is left out: no reader needs it,
-// and it would be rewritten for each of the fifty thousand datasets of a long train.
+// Unit, long name and dimension scales of each dataset as netCDF-4 has them. Its readers look for the coordinates of a
+// dataset in the dataset's group and in the parents of it. REFERENCE_LIST, the way back from a scale, is left out: no
+// reader needs it, and it would be rewritten for each of the fifty thousand datasets of a long train.
 #include <array>
+#include <utility>
 
 #include "hdf5.hpp"
 #include "results/dataset_words.hpp"
@@ -24,6 +25,23 @@ hsize_t length_of(const File& file, const std::string& name) {
 }
 
 }  // namespace
+
+void File::set_text(const Id& object, const char* name, const std::string& text) {
+  const std::string valid = printable(text);
+  const char* value = valid.c_str();
+  const Id space(check(H5Screate(H5S_SCALAR)));
+  const Id attribute(check(H5Acreate2(object.get(), name, text_.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT)));
+  check(H5Awrite(attribute.get(), text_.get(), &value));
+}
+
+void File::label(const Id& dataset, const std::string& name, const std::string& unit) {
+  const Id space(check(H5Dget_space(dataset.get())));
+  DatasetWords words = words_of(name, static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.get()))));
+  set_text(dataset, "unit", unit);
+  set_text(dataset, "units", unit);
+  set_text(dataset, "long_name", words.long_name);
+  if (!words.dimensions.empty()) unscaled_.emplace_back(name, std::move(words.dimensions));
+}
 
 void File::make_scale(const Id& dataset, const std::string& name) {
   if (check(H5Aexists(dataset.get(), "CLASS")) > 0) return;

@@ -183,7 +183,7 @@ class Recorder {
   void datasets(const std::vector<Dataset>& sets);
   /// Texts in two columns, each with its path in the file.
   void tables(const std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::string>>>>& tables);
-  /// The dimension of all datasets with the limits of a run: the name of each limit's quantity.
+  /// Coordinates of a dimension in words, such as the quantity of each limit; nothing if they are there already.
   void names(const std::string& dimension, const std::vector<std::string>& names);
   /// Overwrites existing datasets in the given order; after a kill each value is either the old or the new one.
   void rewrite(const std::vector<Dataset>& sets);
