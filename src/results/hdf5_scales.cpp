@@ -6,6 +6,7 @@
 
 #include "hdf5.hpp"
 #include "results/dataset_words.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::results::hdf5 {
 namespace {
