@@ -3,7 +3,7 @@
 import numpy as np
 from picture_axes import COLOURS, GREY, RED, End, label_at_ends, note_beside
 from picture_runs import in_words
-from picture_speeds import draw_limits, draw_list, finish, label_values
+from picture_speeds import above_in_words, draw_limits, draw_list, finish, label_values
 from picture_table import draw_curve, keep
 
 BAND = (0.05, 0.95)  # quantiles of the drawn band
@@ -32,13 +32,14 @@ def draw_statistics(ax, axis, values, unit, limits, names=True):
     ax.set_xlabel(axis.label())
     label_values(ax, unit)
     finish(ax, x, worst)
-    said = draw_limits(ax, x, worst, limits, axis.unit)
+    draw_limits(ax, x, worst, limits)
     if names:
         ends = [(worst, f"greatest of {values.shape[-1]} draws", COLOURS[1]), (middle, "median", COLOURS[0]),
                 (0.5 * (low + high), f"band: {band_in_words()}", GREY)]
         label_at_ends(ax, [End(curve[-1], words, colour) for curve, words, colour in ends if not np.isnan(curve[-1])])
-        if said:
-            note_beside(ax, "; ".join(said), colour=RED)
+        said = [above_in_words(limit, x, [("the greatest", worst)], axis.unit) for limit in limits]
+        if any(said):
+            note_beside(ax, "; ".join(filter(None, said)), colour=RED)
 
 
 def draw_distribution(ax, values, words, unit, limits):

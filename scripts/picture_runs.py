@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import engineering_units
 import numpy as np
+from option_words import option_in_words
 
 # Quantities with one value for each run: words for a title, and the row of engineering_units.csv ('' for a ratio). The
 # quantities of limits have the names of doc/guide/limits.md.
@@ -61,22 +62,27 @@ class Axis(NamedTuple):
     random: bool = False
     others: tuple = ()  # options that change together with this one
 
+    @property
+    def said(self):
+        """The option, or the random ones, in words."""
+        return " and ".join(map(option_in_words, self.name.split(" and ")))
+
     def label(self):
-        name = " with ".join(["speed" if self.name.endswith("speed") else self.name, *self.others])
+        name = " with ".join([self.said, *map(option_in_words, self.others)])
         return f"{name} ({self.unit})" if self.unit else name
 
     def words(self, i):
-        """The name of the i-th value: 'A3', '100 MN/m' or 'track_seed 7'."""
+        """The name of the i-th value: 'A3', '100 MN/m' or 'seed 7'."""
         if self.name == "train":
             return f"A{self.values[i]:.0f}"
-        return f"{digits(self.values[i])} {self.unit}" if self.unit else f"{self.name} {digits(self.values[i])}"
+        return f"{digits(self.values[i])} {self.unit}" if self.unit else f"{self.said} {digits(self.values[i])}"
 
     def full_words(self, i):
-        """The same with the name of the option, which a speed does not need; of several random options the draw."""
+        """The same with the option in words, which a speed does not need; of several random options the draw."""
         if self.random and " and " in self.name:
             return f"draw {i + 1}"
         named = self.unit and not self.name.endswith("speed")
-        return f"{self.name} {self.words(i)}" if named else self.words(i)
+        return f"{self.said} {self.words(i)}" if named else self.words(i)
 
 
 class Limit(NamedTuple):
@@ -135,7 +141,7 @@ class Runs:
         return found
 
     def run_in_words(self, row):
-        """The values of the varied options in a run: 'foundation_vertical_k 100 MN/m, 280 km/h'."""
+        """The values of the varied options in a run: 'bending stiffness EI 100 MN m², 280 km/h'."""
         places = zip(self.all_axes, np.unravel_index(row, self.shape))
         return ", ".join(axis.full_words(i) for axis, i in places if len(axis.values) > 1)
 

@@ -33,9 +33,26 @@ def intervals(x, where):
     return list(zip(x[starts], x[ends]))
 
 
-def draw_limits(ax, x, worst, limits, unit):
-    """Draws limits as lines, and the area above them; returns lines of text about each limit that is exceeded."""
-    high, said, far = ax.get_ylim()[1], [], []
+def ranges_in_words(x, where):
+    """The places where it is true: '306 to 342, 387 to 414'; of many the first three."""
+    parts = intervals(x, where)
+    places = [digits(low) if low == high else f"{digits(low)} to {digits(high)}" for low, high in parts[:3]]
+    return ", ".join(places) + (f" and {len(parts) - 3} more ranges" if len(parts) > 3 else "")
+
+
+def above_in_words(limit, x, lines, unit):
+    """Where lines (name, values) are above a limit, the greatest line first; empty if they are nowhere above it."""
+    broken = [(name, values) for name, values in lines if np.any(np.nan_to_num(values) > limit.value)]
+    broken.sort(key=lambda line: -np.nanmax(line[1]))
+    said = [": ".join(filter(None, (name, f"{ranges_in_words(x, np.nan_to_num(values) > limit.value)} {unit}".strip())))
+            for name, values in broken[:MOST_NAMED]]
+    said += [f"and {len(broken) - MOST_NAMED} more"] if len(broken) > MOST_NAMED else []
+    return f"above {limit.words}: {'; '.join(said)}" if said else ""
+
+
+def draw_limits(ax, x, worst, limits):
+    """Draws limits as lines, and the area above them."""
+    high, far = ax.get_ylim()[1], []
     near = [limit for limit in limits if limit.value <= 2.5 * high]
     if near:
         ax.set_ylim(top=max(high, 1.14 * max(limit.value for limit in near)))
@@ -49,14 +66,8 @@ def draw_limits(ax, x, worst, limits, unit):
                 transform=ax.get_yaxis_transform(), bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6})
         ax.fill_between(x, limit.value, worst, where=np.nan_to_num(worst) > limit.value, interpolate=True, color=RED,
                         alpha=0.12, lw=0, zorder=1)
-        parts = intervals(x, np.nan_to_num(worst) > limit.value)
-        if parts:
-            places = [digits(low) if low == high else f"{digits(low)} to {digits(high)}" for low, high in parts[:3]]
-            more = f" and {len(parts) - 3} more ranges" if len(parts) > 3 else ""
-            said.append(f"above {limit.words}: {', '.join(places)} {unit}{more}".replace("  ", " "))
     if far:
         ax.text(0.008, 0.985, "far above: " + "; ".join(far), color=RED, fontsize=8, va="top", transform=ax.transAxes)
-    return said
 
 
 def draw_peak_names(ax, points):
@@ -147,7 +158,8 @@ def draw_lines(ax, x_axis, names, values, unit, limits, sign, looks):
     finish(ax, x, worst)
     if x_axis.name == "train":
         ax.set_xticks(x, [x_axis.words(i) for i in range(len(x))])
-    rows = [(words, RED) for words in draw_limits(ax, x, worst, limits, x_axis.unit)]
+    draw_limits(ax, x, worst, limits)
+    rows = [(words, RED) for limit in limits if (words := above_in_words(limit, x, zip(names, values), x_axis.unit))]
     peaks = [(i, int(np.nanargmax(sign * line))) for i, line in enumerate(values) if not np.isnan(line).all()]
     peaks.sort(key=lambda peak: (peak[0] not in front, -sign * values[peak]))
     if len(names) > 1 and sign > 0.0:

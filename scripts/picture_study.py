@@ -49,7 +49,7 @@ def arranged(runs, name):
         shortest = min((i for i, axis in enumerate(axes) if not axis.random), key=lambda i: len(axes[i].values))
         moved = np.moveaxis(values, shortest, 0)
         values = worst_of(moved, sign)
-        over.append(axes.pop(shortest).name)
+        over.append(axes.pop(shortest).said)
     x = next((i for i, axis in enumerate(axes) if axis.name.endswith("speed")), None)
     x = max(range(len(axes)), key=lambda i: (not axes[i].random, len(axes[i].values)), default=0) if x is None else x
     rest = sorted((i for i in range(len(axes)) if i != x and not axes[i].random), key=lambda i: len(axes[i].values))
@@ -70,11 +70,11 @@ def draw(ax, runs, name, values, axes, left_out, looks):
         draw_single(ax, values, unit, limits)
     elif not listed:
         draw_distribution(ax, values, what, unit, limits)
-        what += f": {len(values):,} draws of {axes[0].name}"
+        what += f": {len(values):,} draws of {axes[0].said}"
     elif framed(listed, values):
         draw_frames(ax, listed, values, unit, limits, sign_of(name))
         count, drawn = len(listed[0].values), len(choose_frames(listed[0]))
-        what += f" for {'each' if drawn == count else f'{drawn} of {count} values of'} {listed[0].name}"
+        what += f" for {'each' if drawn == count else f'{drawn} of {count} values of'} {listed[0].said}"
         what += "" if len(listed) > 2 else f"; thick: median, band: {band_in_words()}, orange: greatest"
     else:
         draw_frame(ax, listed, values, unit, limits, sign_of(name), looks)
@@ -90,7 +90,7 @@ def draw_single(ax, value, unit, limits):
     keep(ax, "value", np.ones(1), np.atleast_1d(value))
     ax.bar([1.0], [value], width=0.3, color=COLOURS[0])
     ax.set_xlim(0.0, 2.0)
-    draw_limits(ax, np.array([0.0, 2.0]), np.full(2, value), limits, "")
+    draw_limits(ax, np.array([0.0, 2.0]), np.full(2, value), limits)
     draw_list(ax, [(in_words(float(value), unit), COLOURS[0])])
 
 
@@ -160,7 +160,7 @@ def draw_named(ax, x_axis, names, values, unit, limits, sign):
     label_values(ax, unit)
     worst = worst_of(values, sign)
     finish(ax, x_axis.values, worst)
-    draw_limits(ax, x_axis.values, worst, limits, x_axis.unit)
+    draw_limits(ax, x_axis.values, worst, limits)
 
 
 def draw_frames(ax, listed, values, unit, limits, sign):

@@ -5,6 +5,7 @@ import pathlib
 import h5py
 import numpy as np
 from engineering_units import printed, shown
+from option_words import WORDS, option_in_words
 from picture_data import Results
 from picture_model import Model
 
@@ -16,13 +17,6 @@ OF_OPTION = {"N m2": "bending_stiffness", "kg/m": "mass_per_length", "N/m": "spr
              "N m/rad": "rotational_stiffness", "N s/m": "damping", "kg": "mass"}
 
 
-OPTIONS = {"foundation_vertical_k": "stiffness of the vertical springs",
-           "foundation_rotational_k": "stiffness of the rotational springs",
-           "foundation_longitudinal_k": "stiffness of the longitudinal springs", "beam_EI": "bending stiffness EI",
-           "beam_mass": "mass per length", "model_damping_ratios": "damping ratio",
-           "beam_damping_ratios": "damping ratio"}
-
-
 class ReportError(Exception):
     """The reason why the report fails, in one line."""
 
@@ -31,7 +25,7 @@ def parameter_words(name, unit=""):
     """The name of a varied option, its unit for print and the factor from the unit of the file to this one."""
     if name.endswith("speed"):
         return (t("speed") if name in ("train_speed", "load_speed", "speed") else name, *shown("speed"))
-    said = t(OPTIONS[name]) if name in OPTIONS else t("seed") if name.endswith("seed") else name
+    said = t(WORDS[name]) if name in WORDS else t("seed") if name.endswith("seed") else option_in_words(name)
     return (said, *shown(OF_OPTION[unit])) if unit in OF_OPTION else (said, printed(unit) if unit != "1" else "", 1.0)
 
 

@@ -34,7 +34,7 @@ def literals(path):
 def of_tables():
     """The texts of the tables of the report."""
     yield from (row.words for row in quantities.QUANTITIES.values())
-    for table in (model_sheet.KINDS, front_sheet.WORDS, rail_sheet.CASES, annex_sheet.ESTIMATED, source.OPTIONS):
+    for table in (model_sheet.KINDS, front_sheet.WORDS, rail_sheet.CASES, annex_sheet.ESTIMATED, source.WORDS):
         yield from table.values()
     yield from (words for words, *_ in (*rail_sheet.PEAKS.values(), *rail_sheet.FORCES.values()))
     yield from (words for *_, words in run_sheet.EFFECTS)
