@@ -149,6 +149,7 @@ void NormCheck::find(std::vector<results::Verdict>& verdicts) const {
                     : name == "lm71_end_rotation"   ? of_lm71(Effect::end_rotation, false)
                     : name == "lm71_joint_rotation" ? of_lm71(Effect::joint_rotation, false)
                                                     : of_lm71(Effect::deflection, true);
+    verdict.found.value *= verdict.limit.factor;
     verdict.runs = 1;
     verdict.exceeded_in = 0;
   }

@@ -26,7 +26,8 @@ class LimitReader {
   explicit LimitReader(const std::string& file) : file_(file) {}
 
   VerdictLimit read(const YAML::Node& entry) const {
-    if (!entry.IsMap()) refuse(entry, "expected an entry {clause: ..., quantity: ..., value: ..., text: ...}");
+    if (!entry.IsMap())
+      refuse(entry, "expected an entry {clause: ..., quantity: ..., value: ..., factor: ..., text: ...}");
     VerdictLimit limit;
     std::vector<std::string> seen;
     for (const auto& item : entry) {
@@ -43,8 +44,11 @@ class LimitReader {
         limit.quantity = quantity(item.second);
       } else if (key == "value") {
         limit.value = number(item.second);
+      } else if (key == "factor") {
+        limit.factor = number(item.second);
       } else {
-        refuse(item.first, fmt::format("'{}' is not a key of a limit; allowed: clause, quantity, value, text", key));
+        refuse(item.first,
+               fmt::format("'{}' is not a key of a limit; allowed: clause, quantity, value, factor, text", key));
       }
     }
     for (const char* key : {"clause", "quantity", "value"})
@@ -79,7 +83,7 @@ class LimitReader {
     const bool fits = parse_number(word.substr(0, bar), numerator) &&
                       (bar == std::string::npos || parse_number(word.substr(bar + 1), denominator));
     if (!fits || !(numerator > 0.0 && denominator > 0.0) || !is_quantity(numerator / denominator))
-      refuse(node, fmt::format("value '{}'; allowed: a number above 0, or a fraction such as 1/600", word));
+      refuse(node, fmt::format("'{}'; allowed: a number above 0, or a fraction such as 1/600", word));
     return numerator / denominator;
   }
 
@@ -94,7 +98,8 @@ std::vector<VerdictLimit> parse_verdict_limits(const std::string& text, const st
   try {
     const YAML::Node list = one_document(text, name, "limits: ");
     if (!list.IsSequence() || list.size() == 0)
-      reader.refuse(list, "expected a list of entries {clause: ..., quantity: ..., value: ..., text: ...}");
+      reader.refuse(list,
+                    "expected a list of entries {clause: ..., quantity: ..., value: ..., factor: ..., text: ...}");
     if (list.size() > most_limits)
       reader.refuse(list, fmt::format("{} entries; allowed: at most {}", list.size(), most_limits));
     for (const auto& entry : list) limits.push_back(reader.read(entry));

@@ -167,7 +167,7 @@ void RailForces::find(std::vector<results::Verdict>& verdicts) const {
                       : quantity == "deck_displacement"   ? larger(cases_[braking].end, cases_[traction].end)
                       : quantity == "rail_device_opening" ? cases_[in_sequence].opening
                                                           : cases_[bending].end;
-    verdict.found = {std::abs(peak.value), results::EvaluatedQuantity::unknown, peak.x, "", ""};
+    verdict.found = {verdict.limit.factor * std::abs(peak.value), results::EvaluatedQuantity::unknown, peak.x, "", ""};
   }
 }
 

@@ -23,7 +23,8 @@ std::string verdict_line(const Verdict& v) {
   if (!v.evaluated()) {
     line += ": " + v.found.why;
   } else {
-    line += fmt::format(", found {}, margin {:.3g} %", with_unit(v.found.value, v.unit), 100.0 * v.margin());
+    const std::string factor = v.limit.factor == 1.0 ? "" : fmt::format(" (with the factor {:.4g})", v.limit.factor);
+    line += fmt::format(", found {}{}, margin {:.3g} %", with_unit(v.found.value, v.unit), factor, 100.0 * v.margin());
     if (const std::string place = v.found.place(); !place.empty()) line += ", " + place;
     if (std::isfinite(v.found.time)) line += fmt::format(", t = {:.6g} s", v.found.time);
     if (v.exceeded_in > 0) line += fmt::format(", broken in {} of {} runs", v.exceeded_in, v.runs);
@@ -87,13 +88,14 @@ void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts) {
   record_limits(recorder, limits);
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::pair<std::string, std::string>> clause, quantity, verdict;
-  std::vector<double> value, limit, margin, time, runs, exceeded_in;
+  std::vector<double> value, limit, factor, margin, time, runs, exceeded_in;
   for (const Verdict& v : verdicts) {
     clause.emplace_back(v.limit.clause, v.limit.text);
     quantity.emplace_back(v.limit.quantity, v.unit);
     verdict.emplace_back(v.word(), v.evaluated() ? v.found.place() : v.found.why);
     value.push_back(v.found.value);
     limit.push_back(v.limit.value);
+    factor.push_back(v.limit.factor);
     margin.push_back(v.evaluated() ? v.margin() : unknown);
     time.push_back(v.found.time);
     runs.push_back(static_cast<double>(v.runs));
@@ -103,6 +105,7 @@ void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts) {
   const std::vector<std::size_t> shape = {verdicts.size()};
   recorder.datasets({{"/verdicts/value", shape, value, "as /verdicts/quantity"},
                      {"/verdicts/limit", shape, limit, "as /verdicts/quantity"},
+                     {"/verdicts/factor", shape, factor, "1"},
                      {"/verdicts/margin", shape, margin, "1"},
                      {"/verdicts/time", shape, time, "s"},
                      {"/verdicts/runs", shape, runs, "1"},

@@ -182,9 +182,11 @@ std::vector<results::Verdict> LimitCheck::verdicts(const results::Summary& summa
                                                    std::span<const Extreme> deflections) const {
   const Quantities quantities{*this, summary, deflections};
   std::vector<results::Verdict> list;
-  for (const options::VerdictLimit& limit : scene_.limits)
-    list.push_back({limit, std::string(options::limit_quantity(limit.quantity)->unit),
-                    (quantities.*row_of(limit.quantity)->evaluate)(), 1, 0});
+  for (const options::VerdictLimit& limit : scene_.limits) {
+    EvaluatedQuantity found = (quantities.*row_of(limit.quantity)->evaluate)();
+    found.value *= limit.factor;
+    list.push_back({limit, std::string(options::limit_quantity(limit.quantity)->unit), std::move(found), 1, 0});
+  }
   return list;
 }
 

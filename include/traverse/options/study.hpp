@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +23,25 @@ struct StudyDimension {
   const std::string& name() const { return options.front(); }
 };
 
+/// The question for which values of one option the runs of a study keep their limits, or have a given value of a
+/// quantity. Runs are added between the least and the greatest value until the ends of all intervals are known.
+struct Find {
+  std::size_t dimension = 0;          // the option
+  std::vector<std::size_t> for_each;  // axes with a separate answer for each of their values, such as trains
+  std::string quantity;               // a limited quantity, or peaks of the study; empty: all limits
+  std::optional<double> value;        // of the quantity; empty: its limit
+  double accuracy = 1e-3;             // of the ends of the intervals, relative to the value of the option
+};
+
+/// A sensitivity analysis: the varied options with a distribution take the values of a design of experiments.
+struct Sensitivity {
+  enum class Method { local, morris, sobol };
+  Method method = Method::sobol;
+  std::size_t axis = 0;          // the axis of the points of the design
+  std::size_t base_samples = 0;  // points of each matrix of Sobol's design, or trajectories of Morris' design
+  std::uint64_t seed = 1;        // of the design and of the bootstrap
+};
+
 /// The runs are all combinations of the axes, numbered with the last axis varying fastest. Dimensions of the same axis
 /// vary together.
 struct Study {
@@ -37,7 +58,9 @@ struct Study {
       0.0;  // relative accuracy of the peaks over the speed, for which speeds are added; 0: no speeds are added
   std::size_t speeds = 0;  // the dimension to which speeds are added
   bool resume = false;     // finished runs in the results file are used again
-  bool sweep = false;      // its axes are the trains and the speeds of a sweep (results/sweep.hpp)
+  std::optional<Find> find;
+  std::optional<Sensitivity> sensitivity;
+  bool sweep = false;  // its axes are the trains and the speeds of a sweep (results/sweep.hpp)
 
   /// The product of the axes' lengths.
   std::size_t runs() const {

@@ -6,12 +6,13 @@
 
 namespace traverse::options {
 
-/// A limit is satisfied if the quantity does not exceed `value`.
+/// A limit is satisfied if `factor` times the computed quantity does not exceed `value`.
 struct VerdictLimit {
   std::string clause;    // the source, e.g. "EN 1990 A2.4.4.2.1"
   std::string quantity;  // one of limit_quantities
   double value = 0.0;    // in the unit of its quantity
   std::string text;      // the user's description
+  double factor = 1.0;   // of effects that the computation neglects, such as track defects by EN 1991-2 6.4.6.4
 };
 
 /// The computation that evaluates a quantity: a transient run, the static effects of EN 1991-2, or scene_analysis rail.
