@@ -18,6 +18,7 @@ import tempfile
 
 import h5py
 from PIL import Image
+from picture_words import weighs
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = ["scenes/three_span_train", "scenes/fifty_metre_train", "scenes/r2_sprung_mass", "scenes/r8_ballasted_bridge",
@@ -119,7 +120,8 @@ def figures(results):
     # Where forces drive a vehicle from rest, the static deflection is that of the start.
     from_rest = options.get("train_drive") == "free" and re.fullmatch(r"0(\.0*)?\D*", options.get("train_speed", "0"))
     left_out = ("static_deflection", "amplification") if from_rest else ()
-    found = [(float(summary[key]), words, unit, factor) for key, words, unit, factor, peak in FIGURES
+    weight = {"amplification": ", of deflections with the weight of the bridge"} if weighs(options) else {}
+    found = [(float(summary[key]), words + weight.get(key, ""), unit, factor) for key, words, unit, factor, peak in FIGURES
              if summary.get(key) and (not known or peak in known) and key not in left_out]
     rows = [f"| {words} | {in_figures(factor * abs(value))} {unit} |".replace("  |", " |")
             for value, words, unit, factor in found + exits]

@@ -21,6 +21,11 @@ def from_rest(options):
     return options.get("train_drive") == "free" and speed_of(options.get("train_speed", "0")) == 0.0
 
 
+def weighs(options):
+    """Whether the deflections contain the weight of the bridge."""
+    return options.get("beam_self_weight", "false").lower() in ("", "true", "yes", "on", "1")
+
+
 def run_in_words(results, name):
     """Train and speed of a peak in a sweep: ' by train A10 at 344 km/h'; the run of one in a study; otherwise empty."""
     summary = results.summary
@@ -41,7 +46,8 @@ def summary_in_words(results):
                     f"{place_in_words(summary['deflection_place'], results.supports)}"
                     f"{run_in_words(results, 'deflection')}")
     if summary.get("amplification") and not from_rest(results.options):
-        said.append(f"{summary['amplification']:.3g} times the static one")
+        weight = ", both with the weight of the bridge" if weighs(results.options) else ""
+        said.append(f"{summary['amplification']:.3g} times the static one{weight}")
     if summary.get("least_wheel_force") is not None:
         wheels = "least_wheel" in summary or "least_wheel_force_speed" in summary
         force = f"least wheel force {shown('force')[1] * summary['least_wheel_force']:.3g} kN"

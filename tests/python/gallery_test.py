@@ -12,6 +12,7 @@ import unittest
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2])).resolve()
 SCRIPT = SOURCE / "scripts" / "gallery.py"
 LARGEST = 1_500_000  # bytes, all pictures together
+sys.path.insert(0, str(SCRIPT.parent))
 specification = importlib.util.spec_from_file_location("gallery", SCRIPT)
 gallery = importlib.util.module_from_spec(specification)
 specification.loader.exec_module(gallery)

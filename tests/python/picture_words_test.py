@@ -4,6 +4,7 @@ import pathlib
 import sys
 import unittest
 
+import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -32,6 +33,15 @@ class WordsTest(unittest.TestCase):
         self.assertEqual(picture_data.place_in_words(30.0, supports), "span 2, at 30 m")
         self.assertEqual(picture_data.place_in_words(10.0, np.array([0.0, 20.0])), "middle of the span (10 m)")
         self.assertEqual(picture_data.place_in_words(3.0, None), "at 3 m")
+
+    def test_an_amplification_of_weights_is_said_to_be_one(self):
+        with h5py.File("run.h5", "w", driver="core", backing_store=False) as file:
+            file.create_group("summary").attrs["amplification"] = 1.01
+            results = picture_data.Results(file)
+            self.assertEqual(picture_words.summary_in_words(results), ["1.01 times the static one"])
+            results.options["beam_self_weight"] = "true"
+            self.assertEqual(picture_words.summary_in_words(results),
+                             ["1.01 times the static one, both with the weight of the bridge"])
 
     def test_labels_do_not_overlap(self):
         for wanted in ([0.5] * 6, [0.99, 0.98, 0.02], [0.1, 0.9]):
