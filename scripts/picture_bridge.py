@@ -20,7 +20,7 @@ QUANTITIES = {"deflection": ("Deflection of the bridge, upward positive", "defle
 STATIC = {"deflection": "Static deflection over all positions of the load, upward positive",
           "moment": "Bending moment, positive in sagging", "shear": "Shear force"}
 SHORT = 0.2  # of the duration of a run
-STRIP = 0.16  # share of the height of the shape for a layered track
+STRIP, ABOVE = 0.16, 0.24  # shares of the height of the shape for a layered track, and for what moves above it
 
 
 def draw_probes(ax, results, name, worst=None, group="probes"):
@@ -131,6 +131,16 @@ def shown_part(results, x, shape):
     return min(places), max(places), ""
 
 
+def scale_of_shape(ax, shape, share):
+    """Gives the shape the lower part of the axes, this share of their height, and the scale to this part only."""
+    deepest, highest = min(shape.min(), 0.0), max(shape.max(), 0.0)
+    reach = max(highest - deepest, 1e-9)
+    low, top = deepest - 0.35 * reach, highest + 0.1 * reach
+    ax.set_ylim(low, low + (top + 0.1 * reach - low) / share)
+    ax.set_yticks([tick for tick in ax.get_yticks() if low <= tick <= top])
+    ax.spines["left"].set_bounds(low, top)
+
+
 def draw_shape(ax, results):
     """Draws the bridge at its largest deflection with its supports, track and train; returns the instant."""
     unit, factor = shown("deflection")
@@ -144,16 +154,14 @@ def draw_shape(ax, results):
     ax.set_ylabel(unit)
     ax.set_xlabel("place along the track (m)")
     draw_curve(ax, x[inside], shape[inside], "bridge", color=COLOURS[0], lw=3.2, solid_capstyle="round")
-    deepest, highest = min(shape.min(), 0.0), max(shape.max(), 0.0)
-    height = max(deepest * -1.0, highest, 1e-9)
     moves, track = results.vehicles or Model(results).forces, track_of(results)
-    share = STRIP if track else 0.0
-    ax.set_ylim(deepest - 0.35 * height, highest + ((0.75 if moves else 0.3) + 2.6 * share) * height)
+    foot, strip = 1.0 - (ABOVE if moves else 0.0), STRIP if track else 0.0
+    scale_of_shape(ax, shape, foot - strip)
     ax.set_xlim(low - 0.02 * (high - low), high + 0.02 * (high - low))
     symbols = draw_symbols(ax, results, low, high)
-    foot = 0.76
     if track:
-        symbols += draw_track(ax, track, foot - share, share)
+        symbols += draw_track(ax, track, foot - strip, strip)
+    symbols += ["Above the bridge: symbols,\nnot to this scale."] if moves or track else []
     draw_train(ax, results, time, foot)
     worst = int(np.argmax(np.abs(shape)))
     if np.any(shape):

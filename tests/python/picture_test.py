@@ -216,6 +216,18 @@ class TrackTest(Drawn):
         np.testing.assert_allclose(table["Wheel forces over the place of the wheel: place along the track (m)"], x)
         self.assertLess(figure.axes[0].get_xlim()[0], -3.0)  # the hanging sleepers before the bridge are in the picture
 
+    def test_the_scale_of_the_deflection_ends_below_the_symbols(self):
+        """Track and train must not look as if they had a place on the axis of the deflection."""
+        for sign in (1.0, -1.0):
+            self.write_track()
+            with h5py.File(self.file, "a") as file:
+                file["shape/deflection"][...] = sign * np.abs(file["shape/deflection"][:])
+            shape = self.assert_readable(self.figure(), "Above the bridge: symbols").axes[0]
+            track = min(patch.get_window_extent().y0 for patch in [*shape.patches, *shape.collections])
+            drawn = np.concatenate([values for _, _, values, _ in shape.kept_curves])
+            for value in (*shape.get_yticks(), shape.spines["left"].get_bounds()[1], drawn.max()):
+                self.assertLess(shape.transData.transform((0.0, value))[1], track)
+
     def test_a_spring_below_a_gap(self):
         write_run(self.file)
         with h5py.File(self.file, "a") as file:
