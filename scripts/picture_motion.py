@@ -47,6 +47,13 @@ def spline_matrix(knots, x, flat=(False, False)):
     return result + beyond[0] * slopes[0] + beyond[1] * slopes[-1]
 
 
+def within(ascending, edges, open_ends=False):
+    """The slices of ascending values between neighbouring edges, with those at the edges or, with open ends, without."""
+    first, last = (np.searchsorted(ascending, edges, side=side) for side in ("left", "right"))
+    starts, stops = (last[:-1], first[1:]) if open_ends else (first[:-1], last[1:])
+    return [slice(int(start), max(int(start), int(stop))) for start, stop in zip(starts, stops)]
+
+
 class Motion:
     """A run over time; ValueError if the file has no deflections of a bridge over time."""
 
@@ -64,40 +71,43 @@ class Motion:
         self.x = np.unique(np.concatenate([np.linspace(self.low, self.high, points), ends, self.stations]))
         self.settled = np.zeros(len(self.x))  # m, displacement of the line due to settlements
         self.matrix = self.between_stations()
+        self.at_start = np.nan_to_num(self.deflection(0))
         self.bodies = [self.body(k, name, results.over_time(vehicle[name]["position"]))
                        for k, vehicle in enumerate(results.vehicles) for name in vehicle if "position" in vehicle[name]]
 
     def body(self, vehicle, name, position):
         on_bridge = self.low <= position[0, 0] <= self.high
-        sunk = np.interp(position[0, 0], self.x, np.nan_to_num(self.deflection(0))) if on_bridge else 0.0
+        sunk = np.interp(position[0, 0], self.x, self.at_start) if on_bridge else 0.0
         return Body(vehicle, name, position, float(position[0, 1] - sunk))
 
     def between_stations(self):
         """[points, stations]: cubic splines through stations and supports, one between two joints; NaN in a span
         without a station."""
         ends, kinds = self.model.span_ends, self.model.supports
-        held = [x for x, (kind, _) in zip(ends, kinds) if kind in HOLDS_HEIGHT]
+        held = np.array([i for i, (kind, _) in enumerate(kinds) if kind in HOLDS_HEIGHT], dtype=int)
         flat = [x for x, (kind, _) in zip(ends, kinds) if kind in HOLDS_SLOPE]
         breaks = [x for x, (_, joint) in zip(ends, kinds) if joint in ("hinge", "separate")]
         cuts = np.unique(np.concatenate([[self.low, self.high], breaks, self.model.hinges, self.model.cracks]))
         matrix = np.zeros((len(self.x), len(self.stations)))
-        lies = dict(zip(ends, self.model.settlement))
-        for left, right in zip(cuts, cuts[1:]):
-            inside = (self.x >= left) & (self.x <= right)
-            own = np.flatnonzero((self.stations >= left) & (self.stations <= right))
-            fixed = [x for x in held if left <= x <= right and not np.any(np.abs(self.stations[own] - x) < 1e-9)]
-            knots = np.concatenate([self.stations[own], fixed])
-            if len(knots):
-                order = np.argsort(knots)
-                piece = spline_matrix(knots[order], self.x[inside],
-                                      [np.any(np.isclose(flat, knots[order][end])) for end in (0, -1)])
-                back = np.empty(len(knots), dtype=int)
-                back[order] = np.arange(len(knots))
-                matrix[np.ix_(inside, own)] = piece[:, back[:len(own)]]
-                self.settled[inside] = piece[:, back[len(own):]] @ np.array([lies[x] for x in fixed])
-        for left, right in [*zip(ends, ends[1:]), *zip(cuts, cuts[1:])]:
-            if not np.any((self.stations >= left) & (self.stations <= right) & ~np.isin(self.stations, held)):
-                matrix[(self.x > left) & (self.x < right)] = np.nan
+        order = np.argsort(self.stations, kind="stable")
+        pieces = zip(within(self.x, cuts), within(self.stations[order], cuts), within(ends[held], cuts))
+        for inside, own, fixed in pieces:
+            own, fixed = order[own], held[fixed]
+            fixed = fixed[[not np.any(np.abs(self.stations[own] - x) < 1e-9) for x in ends[fixed]]]
+            if len(own) or np.any(self.model.settlement[fixed]):
+                matrix[inside] = 0.0  # the joint to the piece before
+                knots = np.concatenate([self.stations[own], ends[fixed]])
+                ascending = np.argsort(knots)
+                clamped = [np.any(np.isclose(flat, knots[ascending][end])) for end in (0, -1)]
+                piece = np.empty((inside.stop - inside.start, len(knots)))
+                piece[:, ascending] = spline_matrix(knots[ascending], self.x[inside], clamped)
+                matrix[inside, own] = piece[:, :len(own)]
+                self.settled[inside] = piece[:, len(own):] @ self.model.settlement[fixed]
+        free = np.sort(self.stations[~np.isin(self.stations, ends[held])])
+        for edges in (ends, cuts):
+            for inside, stations in zip(within(self.x, edges, open_ends=True), within(free, edges)):
+                if stations.start == stations.stop:
+                    matrix[inside] = np.nan
         return matrix
 
     def deflection(self, row):

@@ -97,14 +97,17 @@ class Line:
         shown = np.union1d(np.arange(0, len(motion.x), gap), np.searchsorted(motion.x, motion.model.span_ends))
         shown = shown[shown < len(motion.x)]
         self.x = motion.x[shown]
-        values = motion.matrix[shown] @ motion.at_stations[rows].T + motion.settled[shown][:, None]
-        values[~known(motion)[shown]] = np.nan
         left = np.clip(middles - 0.5 * view["width"], view["left"], max(view["right"] - view["width"], view["left"]))
         first = np.clip(np.searchsorted(self.x, left) - 1, 0, len(self.x) - 1)
         last = np.clip(np.searchsorted(self.x, left + view["width"]) + 1, 0, len(self.x))
         self.count = int((last - first).max())
         self.first = np.clip(first, 0, len(self.x) - self.count)
-        self.values = values[self.first[:, None] + np.arange(self.count), np.arange(len(rows))[:, None]]
+        unknown = ~known(motion)[shown]
+        self.values = np.empty((len(rows), self.count))
+        for values, first, row in zip(self.values, self.first, rows):
+            part = shown[first:first + self.count]
+            values[:] = motion.matrix[part] @ motion.at_stations[row] + motion.settled[part]
+            values[unknown[first:first + self.count]] = np.nan
 
     def packed(self):
         return {"x": packed(self.x), "count": self.count, "first": packed(self.first), "values": packed(self.values)}

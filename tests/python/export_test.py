@@ -244,6 +244,16 @@ class Spline(Files):
         right = motion.x > 20.0  # the left span's stations say nothing about a span that is separate
         self.assertFalse(motion.matrix[right][:, :2].any())
 
+    def test_the_line_at_a_free_joint_is_that_of_one_span(self):
+        """Where no support holds the ends of two spans, the point between them belongs to the right one."""
+        with h5py.File(self.folder / "run.h5", "a") as file:
+            del file["model/supports"]
+            put(file, "model/supports", [["pinned", "end"], ["free", "hinge"], ["roller", "end"]], "text")
+        motion = self.motion()
+        joint, after = np.searchsorted(motion.x, [20.0, 20.0], side="left") + [0, 1]
+        np.testing.assert_allclose(motion.matrix[joint], motion.matrix[after], atol=0.1)
+        self.assertFalse(motion.matrix[joint, :2].any())
+
     def test_a_span_without_a_station_is_not_known(self):
         with h5py.File(self.folder / "run.h5", "a") as file:
             del file["probes"]
