@@ -50,7 +50,8 @@ def page(data):
     script = "".join((PARTS / name).read_text(encoding="utf-8") for name in SCRIPTS)
     policy = (f"default-src 'none'; script-src {fingerprint(library)} {fingerprint(script)}; "
               f"style-src {fingerprint(style)}; base-uri 'none'; form-action 'none'")
-    parts = {"title": html.escape(data["title"]), "policy": policy, "style": style, "library": library,
+    words = {name: html.escape(text) for name, text in data["words"].items()}
+    parts = {**words, "title": html.escape(data["title"]), "policy": policy, "style": style, "library": library,
              "script": script, "data": as_json(data)}
     template = (PARTS / "page.html").read_text(encoding="utf-8")
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)

@@ -4,26 +4,34 @@ import numpy as np
 from engineering_units import shown
 from picture_axes import legible
 from picture_data import MOST_CURVES
-from picture_rail import CASES
+from traverse_report.language import Chosen, known, t
+from traverse_report.rail_sheet import CASES
 
 from .packing import Chart, Curve
 
 ENVELOPES = {"deflection": ("Deflection of the bridge, upward positive", "deflection"),
              "acceleration": ("Vertical acceleration of the bridge, unfiltered", "acceleration"),
-             "moment": ("Bending moment, positive in sagging", "moment"), "shear": ("Shear force", "force")}
+             "moment": ("Bending moment of the bridge, positive in sagging", "moment"),
+             "shear": ("Shear force of the bridge", "force")}
 FEWEST_STATIONS = 4  # of a chart; tables.envelope has the values at fewer stations
 # Limits that are lines in a chart of the rails: quantity, sign.
 OF_STRESS, OF_SLIP = {"rail_tension": 1.0, "rail_compression": -1.0}, {"rail_slip": 1.0}
 
 
-def along(title, quantity, x, curves, where="place along the bridge", limits=()):
+def along(title, quantity, x, curves, where="", limits=()):
     """A chart over the position of values in SI units."""
     unit, factor = shown(quantity)
     unit, smaller = legible(unit, [factor * values for _, values in curves])
     order = np.argsort(x, kind="stable")
     scaled = [Curve(name, smaller * factor * values[order]) for name, values in curves]
     lines = tuple((name, smaller * factor * value) for name, value in limits)
-    return Chart(title, unit, scaled, x[order], where, "m", lines)
+    return Chart(title, unit, scaled, x[order], where or t("position along the bridge"), "m", lines)
+
+
+def inside(title):
+    """A title within another one; German nouns keep their capital letters."""
+    said = known(title)
+    return said if Chosen.language == "de" else f"{said[0].lower()}{said[1:]}"
 
 
 def envelope_charts(results):
@@ -33,13 +41,13 @@ def envelope_charts(results):
             curves = [("least to greatest of the run", group[name][:])]
             if name == "deflection" and "static_deflection" in group:
                 curves.append(("largest static deflection, drawn downward", -group["static_deflection"][:]))
-            yield along(f"Envelope: {title[0].lower()}{title[1:]}", quantity, results.probes, curves)
+            yield along(t("Envelope: {effect}", effect=inside(title)), quantity, results.probes, curves)
 
 
 def rest_charts(results):
     """The deflected bridge of a static analysis."""
     if results.rows == 1 and "shape/x" in results.file:
-        yield along("Deflection of the bridge at rest, upward positive", "deflection", results.values("shape/x"),
+        yield along(t("Deflection of the bridge at rest, upward positive"), "deflection", results.values("shape/x"),
                     [("at rest", results.values("shape/deflection"))])
 
 
@@ -50,8 +58,8 @@ def static_charts(results):
     for name, (title, quantity) in ENVELOPES.items():
         if f"static/{name}" in results.file:
             values = results.values(f"static/{name}")
-            yield along(f"Static effects of each load over all its positions: {title[0].lower()}{title[1:]}", quantity,
-                        x, [(load, values[i]) for i, load in enumerate(loads)])
+            yield along(t("Static effects of each load over all its positions: {effect}", effect=inside(title)),
+                        quantity, x, [(load, values[i]) for i, load in enumerate(loads)])
 
 
 def rail_limits(results, signs):
@@ -69,10 +77,10 @@ def rail_charts(results):
             ("slip", "displacement", "sleeper_x",
              "Displacement of the rail relative to deck or ground, least and greatest", OF_SLIP)):
         sides = [f"{side}_{kind}" for side in ("least", "greatest")]
-        curves = [(words, np.column_stack([results.values(f"rail_forces/{case}/{side}") for side in sides]))
+        curves = [(t(words), np.column_stack([results.values(f"rail_forces/{case}/{side}") for side in sides]))
                   for case, words in CASES.items() if f"rail_forces/{case}/{sides[0]}" in results.file]
         if curves:
-            yield along(title, quantity, results.values(f"rail_forces/{at}"), curves, "place along the track",
+            yield along(known(title), quantity, results.values(f"rail_forces/{at}"), curves, t("position along the track"),
                         rail_limits(results, signs))
 
 
@@ -82,10 +90,10 @@ def mode_charts(results):
         return
     frequencies = results.values("modes/frequency")
     kept = range(min(len(shapes), MOST_CURVES))
-    note = "" if len(kept) == len(shapes) else f" (the first {len(kept)} of {len(shapes)})"
-    yield Chart(f"Natural modes of the bridge, each with the largest value 1{note}", "",
+    note = "" if len(kept) == len(shapes) else f" ({t('{count} of {all}', count=len(kept), all=len(shapes))})"
+    yield Chart(t("Natural modes of the bridge, each with the largest value 1") + note, "",
                 [Curve(f"{frequencies[i]:.5g} Hz", shapes[i]) for i in kept], results.values("modes/x"),
-                "place along the bridge", "m")
+                t("position along the bridge"), "m")
 
 
 def charts(results):

@@ -2,6 +2,7 @@
 
 const DASHES = [[], [7, 4], [2, 3]];
 const NAMES = ["", "dashed", "dotted"];
+const FAR = 2.5; // times the greatest value: limits above it are named at the edge
 
 // The points under the pointer: of each visible curve the one with the nearest x.
 Chart.Interaction.modes.nearestX = (chart, event) => {
@@ -21,7 +22,7 @@ class ChartCard {
     this.root = element("figure", "card");
     this.root.style.margin = "0";
     const title = element("div", "row-head");
-    this.reset = element("button", "", "Reset zoom");
+    this.reset = element("button", "", said("reset"));
     this.reset.type = "button";
     this.reset.hidden = true;
     this.reset.addEventListener("click", () => this.zoom(null));
@@ -29,7 +30,7 @@ class ChartCard {
     this.plot = element("div", "plot");
     this.canvas = element("canvas");
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", `${spec.title}, ${spec.curves.length} curves over ${spec.xName}`);
+    this.canvas.setAttribute("aria-label", `${spec.title}, ${spec.xName}`);
     this.cursor = element("div", "cursor");
     this.chosen = element("div", "chosen");
     this.cursor.hidden = this.chosen.hidden = true;
@@ -37,11 +38,12 @@ class ChartCard {
     this.legend = element("div", "legend");
     this.root.append(title, this.plot, this.legend);
     if (spec.samples && spec.samples[0] < spec.samples[1]) {
-      const words = `drawn: ${spec.samples[0]} of ${spec.samples[1]} samples, with the extremes of each interval`;
-      this.root.append(element("div", "chart-foot", words));
+      const [count, all] = spec.samples;
+      this.root.append(element("div", "chart-foot", said("samples", { count, all })));
     }
     parent.append(this.root);
     this.chart = new Chart(this.canvas, this.config());
+    this.addEdges();
     this.addLegend();
     addGestures(this);
   }
@@ -66,22 +68,44 @@ class ChartCard {
     const x = this.spec.x || this.spec.curves.flatMap((curve) => Array.from(curve.x));
     const ends = [x.reduce((a, b) => Math.min(a, b), Infinity), x.reduce((a, b) => Math.max(a, b), -Infinity)];
     this.ends = this.spec.range || (ends[0] < ends[1] ? ends : [ends[0] - 0.5, ends[0] + 0.5]);
-    for (const [name, value] of this.spec.limits || []) {
+    this.beyond = (this.spec.limits || []).filter(([, value]) => this.isFar(value, found));
+    for (const [name, value] of (this.spec.limits || []).filter((limit) => !this.beyond.includes(limit))) {
       found.push({
         label: name, limit: true, silent: true, xs: this.ends, data: this.ends.map((at) => ({ x: at, y: value })),
         borderDash: [8, 4], borderWidth: 1.6, pointRadius: 0,
       });
     }
     this.mark = {
-      label: "chosen run", silent: true, xs: [], data: [], showLine: false, pointRadius: 7, pointBorderWidth: 2.5,
+      label: said("chosen"), silent: true, xs: [], data: [], showLine: false, pointRadius: 7, pointBorderWidth: 2.5,
     };
     found.push(this.mark);
     return found;
   }
 
+  // Whether a limit is so far from all values that its line would flatten the curves.
+  isFar(limit, datasets) {
+    const values = datasets.flatMap((one) => one.data.map(({ y }) => y)).filter(Number.isFinite);
+    const side = values.reduce((most, value) => Math.max(most, Math.sign(limit) * value), 0);
+    return Math.abs(limit) > FAR * side;
+  }
+
+  // Names the limits beyond the axis at the edge where they are.
+  addEdges() {
+    for (const [name, value] of this.beyond) {
+      const words = said("beyond", { limits: `${name}: ${ofQuantity(this.spec.quantity, value, this.spec.unit)}` });
+      this.plot.append(element("div", value > 0 ? "edge" : "edge low", `${value > 0 ? "↑" : "↓"} ${words}`));
+    }
+  }
+
+  // The values of deflections over the span are written at the axis as L/600.
+  ticks() {
+    const overSpan = ofQuantity(this.spec.quantity, 1, "").startsWith("L/");
+    return { maxTicksLimit: 7, ...(overSpan && { callback: (value) => ofQuantity(this.spec.quantity, value, "") }) };
+  }
+
   config() {
     const { spec } = this;
-    const words = (item) => `${item.dataset.label}: ${withUnit(item.parsed.y, spec.unit)}`;
+    const words = (item) => `${item.dataset.label}: ${ofQuantity(spec.quantity, item.parsed.y, spec.unit)}`;
     return {
       type: "line",
       data: { datasets: this.datasets() },
@@ -95,7 +119,7 @@ class ChartCard {
             ticks: { maxRotation: 0, autoSkipPadding: 16, includeBounds: false },
             title: { display: true, text: spec.xUnit ? `${spec.xName} (${spec.xUnit})` : spec.xName, padding: 0 },
           },
-          y: { grace: "4%", ticks: { maxTicksLimit: 7 }, beginAtZero: Boolean(spec.fromZero) },
+          y: { grace: "4%", ticks: this.ticks(), beginAtZero: Boolean(spec.fromZero) },
         },
         plugins: {
           legend: { display: false },
@@ -131,7 +155,7 @@ class ChartCard {
 
   // Colours by the light or dark scheme of the browser.
   paint() {
-    const limits = (this.spec.limits || []).length;
+    const limits = (this.spec.limits || []).length - this.beyond.length;
     this.chart.data.datasets.forEach((dataset) => {
       const name = dataset.limit ? "broken" : dataset === this.mark ? "text" : `curve${dataset.curve % 6}`;
       const own = colour(name);
@@ -147,7 +171,7 @@ class ChartCard {
     });
     if (limits && !this.limitSwatch) {
       this.limitSwatch = element("span", "chart-foot");
-      this.limitSwatch.append(element("span", "swatch dashed"), document.createTextNode("limit"));
+      this.limitSwatch.append(element("span", "swatch dashed"), document.createTextNode(said("limit")));
       this.legend.append(this.limitSwatch);
     }
     if (limits) this.limitSwatch.firstChild.style.borderColor = colour("broken");

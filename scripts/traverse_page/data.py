@@ -4,10 +4,15 @@ from numpy.linalg import LinAlgError
 from picture_data import Results, opened
 from picture_model import Model
 from picture_words import speed_in_words, summary_in_words
+from traverse_report import language
+from traverse_report.front_sheet import outcome
+from traverse_report.language import decimal, num, t
+from traverse_report.limits import stored
 from traverse_report.source import ReportError, Source
 
 from . import along, histories, runs, stage, tables
 from .packing import packed_chart, packed_charts
+from .words import words
 
 
 def kind_in_words(results):
@@ -16,12 +21,12 @@ def kind_in_words(results):
     if "sweep/speed" in results.file or "study/finished" in results.file or "rail_forces/x" in results.file:
         return Source(results.file.filename).kind_in_words()
     if analysis == "modes":
-        return f"{len(results.values('modes/frequency'))} natural modes"
+        return t("{count} natural modes", count=len(results.values("modes/frequency")))
     if results.rows > 1:
         speed = results.speed()
-        return ("one run" + (f" at {speed_in_words(speed)}" if speed else "") + f", {results.time[-1]:.5g} s, "
-                f"{results.rows:,} samples")
-    return {"static": "at rest", "envelope": "largest static effects"}.get(analysis, "one run")
+        run = t("one run at {speed}", speed=decimal(speed_in_words(speed))) if speed else t("one run")
+        return t("{run}, {time} s, {count} samples", run=run, time=num(results.time[-1], ".5g"), count=results.rows)
+    return {"static": t("at rest"), "envelope": t("largest static effects")}.get(analysis, t("one run"))
 
 
 def about(results):
@@ -50,16 +55,20 @@ def collect(path):
 
 
 def collected(results):
-    limits = tables.limits(results)
-    verdicts = tables.verdicts(results, limits)
-    shown = [verdicts, *(table(results) for table in (tables.norm, tables.rail, tables.rest, tables.envelope)),
+    asked = results.options.get("report_language", "en")
+    language.choose(asked if asked in language.LANGUAGES else "en")
+    limits, verdicts = tables.limits(results), stored(results.file)
+    shown = [tables.verdicts(results, limits, verdicts), *(table(results) for table in (tables.norm, tables.rail, tables.rest, tables.envelope)),
              *tables.pairs(results)]
+    of_runs = runs.packed_runs(results, limits)
+    travels = of_runs is not None and of_runs["speeds"] is not None
     return {"title": results.scene(), "kind": kind_in_words(results), "about": about(results),
             "said": unfinished(results) or "; ".join(summary_in_words(results)), "verdict": overall(verdicts),
-            "stage": stage.moving(results) if results.rows > 1 else stage.still(results),
+            "words": words(),
+            "stage": stage.moving(results) if results.rows > 1 else stage.still(results, travels),
             "charts": packed_charts(histories.charts(results), results.time),
             "along": [packed_chart(chart, None) for chart in along.charts(results)],
-            "runs": runs.packed_runs(results, limits), "limits": limits, "notes": Model(results).notes,
+            "runs": of_runs, "limits": limits, "notes": Model(results).notes,
             "tables": [table for table in shown if table]}
 
 
@@ -71,11 +80,6 @@ def unfinished(results):
 
 def overall(verdicts):
     """The verdict on all limits together: its word and a sentence; empty without limits."""
-    words = [row[0] for row in verdicts["rows"]] if verdicts else []
-    kept, broken = words.count("kept"), words.count("broken")
-    open_ones = f", {len(words) - kept - broken} not judged" if kept + broken < len(words) else ""
-    if broken:
-        return ["broken", f"{broken} of {len(words)} limits broken{open_ones}"]
-    if kept:
-        return ["kept", f"{kept} of {len(words)} limits kept{open_ones}"]
-    return ["not judged", "no limit is judged"] if words else ["", ""]
+    words = [verdict.word for verdict in verdicts]
+    word = next((word for word in ("broken", "kept", "not judged") if word in words), "")
+    return [word, outcome(verdicts)[0] if word else ""]

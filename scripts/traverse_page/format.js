@@ -10,17 +10,29 @@ function decoded(key, value) {
 
 const data = JSON.parse(document.getElementById("data").textContent, decoded);
 
+// A text of the page in its language; {name} stands for a part of it.
+function said(name, parts = {}) {
+  return data.words[name].replace(/\{(\w+)\}/g, (all, part) => parts[part] ?? all);
+}
+
 // A number with five significant digits, a whole number with all; an empty text for an unknown one.
 function digits(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "";
   if (Number.isSafeInteger(value)) return String(value);
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-4 || size >= 1e7)) return value.toExponential(DIGITS - 1).replace(/\.?0+e\+?/, "e");
-  return String(Number(value.toPrecision(DIGITS)));
+  const exponential = size !== 0 && (size < 1e-4 || size >= 1e7);
+  const text = exponential ? value.toExponential(DIGITS - 1).replace(/\.?0+e\+?/, "e") : String(Number(value.toPrecision(DIGITS)));
+  return text.replace(".", data.words.decimal);
 }
 
 function withUnit(value, unit) {
   return `${digits(value)}${unit && digits(value) ? ` ${unit}` : ""}`;
+}
+
+// A value of a quantity as text, a deflection over the span as L/600.
+function ofQuantity(name, value, unit) {
+  const overSpan = name && name.endsWith("deflection_over_span") && value > 0;
+  return overSpan ? `L/${Math.round(1 / value)}` : withUnit(value, unit);
 }
 
 function element(name, className, text) {

@@ -4,9 +4,10 @@ import numpy as np
 from engineering_units import shown
 from picture_axes import legible
 from picture_data import (
-    CALLED_CAR, MOST_CURVES, MOST_WHEELS, bodies_of, choose, choose_probes, envelope, ordinal, place_in_words, spaced)
+    CALLED_CAR, MOST_CURVES, MOST_WHEELS, bodies_of, choose, choose_probes, envelope, spaced)
 from picture_hanging import hanging_of
 from picture_vehicles import SIGNALS, cars_of, chains_of, drives_of, sensors_of, wheels_of
+from traverse_report.language import known, num, place_in_words, t
 
 from .packing import Chart, Curve
 
@@ -43,11 +44,15 @@ def scaled(title, quantity, curves):
     return Chart(title, unit, [Curve(name, smaller * factor * values) for name, values in curves])
 
 
+def part_of(kept, every):
+    """A note that a title has if a chart has a part of all curves only."""
+    return "" if len(kept) == len(every) else f" ({t('{count} of {all}', count=len(kept), all=len(every))})"
+
+
 def some(title, quantity, curves):
     """A chart of at most MOST_CURVES curves, among them the one with the largest value."""
     kept = choose(len(curves), MOST_CURVES, np.array([np.nanmax(np.abs(values), initial=0.0) for _, values in curves]))
-    note = "" if len(kept) == len(curves) else f" ({len(kept)} of {len(curves)})"
-    return scaled(title + note, quantity, [curves[i] for i in kept])
+    return scaled(known(title) + part_of(kept, curves), quantity, [curves[i] for i in kept])
 
 
 def column_charts(results):
@@ -61,35 +66,36 @@ def column_charts(results):
             yield some(title, quantity, [(f"{noun} at {place:.6g} m", values[:, i]) for i, place in enumerate(x)])
             continue
         kept = choose_probes(results, np.nanmax(np.abs(values), axis=0))
-        note = "" if len(kept) == len(x) else f" ({len(kept)} of {len(x)} places)"
-        yield scaled(title + note, quantity, [(place_in_words(x[i], results.supports), values[:, i]) for i in kept])
+        yield scaled(known(title) + part_of(kept, x), quantity, [(place_in_words(x[i], results.supports), values[:, i]) for i in kept])
 
 
 def support_charts(results):
     if "supports/reaction" in results.file:
         forces = results.over_time(results.file["supports/reaction"])[:, :, 1]
-        curves = [(f"support at {x:.6g} m", forces[:, i]) for i, x in enumerate(results.supports) if forces[:, i].any()]
+        curves = [(t("support at x = {x} m", x=num(x, ".6g")), forces[:, i]) for i, x in enumerate(results.supports) if forces[:, i].any()]
         if curves:
-            yield some("Support reactions on the bridge, upward positive", "force", curves)
+            yield some(t("Support reactions on the bridge, upward positive"), "force", curves)
 
 
 def named(results, vehicle, part):
-    """The name of a part of a vehicle."""
-    return f"{ordinal(vehicle, len(results.vehicles), 'vehicle')}, {spaced(part)}"
+    """The name of a part of a vehicle, with the number of the vehicle if there are several."""
+    return spaced(part) if len(results.vehicles) == 1 else \
+        t("vehicle {number}, {part}", number=vehicle + 1, part=spaced(part))
 
 
-def band_of(results, series, noun):
-    return f"all {len(series)} {noun}, least to greatest", np.column_stack(envelope(results, series))
+def band_of(results, series, words):
+    return words, np.column_stack(envelope(results, series))
 
 
 def vehicle_charts(results):
     wheels = [(k, name, results.over_time(force)) for k, name, force in wheels_of(results)]
     if wheels:
         many = len(wheels) > MOST_WHEELS
-        curves = [band_of(results, [force for *_, force in wheels], "wheels")] if many else []
+        curves = [band_of(results, [force for *_, force in wheels], t(
+            "all {count} wheels, least to greatest", count=len(wheels)))] if many else []
         for k, name, force in ((wheels[0], wheels[-1]) if many else wheels):
             curves.append((named(results, k, name), force))
-        yield scaled("Wheel forces", "force", curves)
+        yield scaled(t("Wheel forces"), "force", curves)
     sensors = sensors_of(results)
     for signal, (title, unit) in SIGNALS.items() if sensors else ():
         yield Chart(title, unit, [Curve(named(results, k, name), results.over_time(group[signal]))
@@ -98,9 +104,11 @@ def vehicle_charts(results):
     if cars and (wheels or results.probes is not None):
         series = [(named(results, k, name), values) for k, (name, values) in enumerate(cars)]
         if len(series) > MOST_CURVES:
-            series = [band_of(results, [values for _, values in series], "bodies"), series[0], series[-1]]
-        which = "car bodies" if all(CALLED_CAR.search(spaced(name)) for name, _ in cars) else "highest bodies"
-        yield scaled(f"Vertical acceleration of the {which}", "acceleration", series)
+            words = t("all {count} bodies, least to greatest", count=len(series))
+            series = [band_of(results, [values for _, values in series], words), series[0], series[-1]]
+        called_cars = all(CALLED_CAR.search(spaced(name)) for name, _ in cars)
+        yield scaled(t("Vertical acceleration of the car bodies" if called_cars else
+                       "Vertical acceleration of the highest bodies"), "acceleration", series)
     couplers = results.file["couplers"] if "couplers" in results.file else {}
     for name, group in couplers.items():
         data = group.get("force", group.get("fx"))
@@ -131,8 +139,7 @@ def mechanism_charts(results):
     for column, title in enumerate(("Centres of the bodies: x", "Centres of the bodies: y", "Angles of the bodies")):
         curves = [(named(results, k, name), values[:, column]) for k, name, values in bodies]
         kept = choose(len(curves), MOST_CURVES, np.array([np.ptp(values) for _, values in curves]))
-        note = "" if len(kept) == len(curves) else f" ({len(kept)} of {len(curves)})"
-        yield Chart(title + note, "rad" if column == 2 else "m", [Curve(*curves[i]) for i in kept])
+        yield Chart(title + part_of(kept, curves), "rad" if column == 2 else "m", [Curve(*curves[i]) for i in kept])
     for dataset, title in (("reaction", "Forces of the joints"), ("force", "Forces of the springs, tension positive")):
         found = [(named(results, k, name), results.over_time(vehicle[name][dataset]))
                  for k, vehicle in enumerate(results.vehicles) for name in vehicle if dataset in vehicle[name]]

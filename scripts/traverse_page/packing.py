@@ -5,6 +5,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from traverse_report.language import t
 
 MOST_POINTS = 4000     # of one curve
 MOST_VALUES = 160_000  # of all curves over time: about 0.9 MB
@@ -22,7 +23,7 @@ class Chart(NamedTuple):
     unit: str
     curves: list
     x: np.ndarray = None    # over time if it is left out
-    x_name: str = "time"
+    x_name: str = ""
     x_unit: str = "s"
     limits: tuple = ()      # (name, value)
 
@@ -57,7 +58,7 @@ def packed_chart(chart, time, most=MOST_POINTS):
     """The chart for the page. `samples`: how many of the file's samples it contains, and how many there are."""
     x = time if chart.x is None else chart.x
     rows = kept_rows(chart.curves, most)
-    return {"title": chart.title, "unit": chart.unit, "xName": chart.x_name, "xUnit": chart.x_unit,
+    return {"title": chart.title, "unit": chart.unit, "xName": chart.x_name or t("time"), "xUnit": chart.x_unit,
             "time": chart.x is None, "x": packed(np.asarray(x)[rows]), "samples": [len(rows), len(x)],
             "limits": [[name, number(value)] for name, value in chart.limits],
             "curves": [{"name": curve.name, "columns": [packed(column) for column in

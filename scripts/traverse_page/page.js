@@ -9,7 +9,7 @@ function showHeading() {
   byId("about").textContent = data.about;
   const verdict = byId("verdict");
   [verdict.className, verdict.textContent] = data.verdict;
-  verdict.hidden = !verdict.textContent;
+  verdict.hidden = byId("caveat").hidden = !verdict.textContent;
 }
 
 // Goes to an instant: drawing, lines in the charts, values, time bar.
@@ -21,7 +21,7 @@ function seek(time, writes = true) {
     if (writes) card.writeValues(page.time);
   });
   byId("bar").value = page.time;
-  byId("clock").textContent = `${page.time.toFixed(page.decimals)} s`;
+  byId("clock").textContent = `${page.time.toFixed(page.decimals).replace(".", data.words.decimal)} s`;
   if (writes) byId("bar").setAttribute("aria-valuetext", byId("clock").textContent);
 }
 
@@ -29,7 +29,7 @@ function play(on) {
   if (!page.stage || page.end <= page.start) return;
   page.playing = on;
   byId("play").classList.toggle("playing", on);
-  byId("play").setAttribute("aria-label", on ? "Pause" : "Play");
+  byId("play").setAttribute("aria-label", said(on ? "pause" : "play"));
   if (!on) {
     seek(page.time);
     return;
@@ -71,35 +71,48 @@ function zoomBy(factor) {
 
 // Speeds such that the whole run takes a quarter of a minute at first, as 1, 2, 5 times a power of ten.
 function addSpeeds() {
+  byId("speed").textContent = "";
   const wanted = (page.end - page.start) / 12;
   const power = 10 ** Math.floor(Math.log10(wanted));
   const base = Math.min(power * [1, 2, 5].findLast((one) => one * power <= wanted * 1.0001), 1);
   page.rate = base;
   for (const times of [0.1, 0.2, 0.5, 1, 2, 5]) {
-    const option = element("option", "", `${digits(base * times)} × real time`);
+    const option = element("option", "", said("realTime", { factor: digits(base * times) }));
     option.value = base * times;
     option.selected = times === 1;
     byId("speed").append(option);
   }
-  byId("speed").addEventListener("change", (event) => {
-    page.rate = Number(event.target.value);
-  });
+}
+
+// Gives the time bar and the speeds of playing the range of the drawing's time.
+function showTime() {
+  const { frames, time } = data.stage;
+  [page.start, page.end] = [time[0], time[frames - 1]];
+  page.decimals = clamp(Math.ceil(-Math.log10((page.end - page.start) / 2000)), 0, 6);
+  [byId("bar").min, byId("bar").max] = [page.start, page.end];
+  addSpeeds();
+}
+
+// Shows the passage of another run of a sweep at an instant.
+function showPassage(time) {
+  play(false);
+  showTime();
+  seek(time);
 }
 
 function showStage() {
   if (!data.stage) return;
   byId("stage").hidden = false;
   page.stage = new Stage(byId("drawing"), data.stage);
-  const { frames, of, words, time } = data.stage;
-  const fewer = frames < of ? ` Drawn: ${frames} of ${of} samples, straight lines between them.` : "";
+  const { frames, of, words, travels } = data.stage;
+  const fewer = frames < of ? ` ${said("frames", { count: frames, all: of })}` : "";
   byId("drawn").textContent = words + fewer;
-  byId("drawing").setAttribute("aria-label", `Drawing of the model. ${words}`);
-  [page.start, page.end] = [time[0], time[frames - 1]];
+  byId("drawing").setAttribute("aria-label", `${said("drawing")}: ${words}`);
+  showTime();
   if (frames < 2) return;
-  page.decimals = clamp(Math.ceil(-Math.log10((page.end - page.start) / 2000)), 0, 6);
   byId("controls").hidden = false;
+  byId("back").hidden = byId("forth").hidden = travels;
   const bar = byId("bar");
-  [bar.min, bar.max] = [page.start, page.end];
   bar.addEventListener("input", () => {
     if (page.playing) play(false);
     seek(Number(bar.value));
@@ -107,7 +120,9 @@ function showStage() {
   byId("play").addEventListener("click", () => play(!page.playing));
   byId("back").addEventListener("click", () => step(-1));
   byId("forth").addEventListener("click", () => step(1));
-  addSpeeds();
+  byId("speed").addEventListener("change", (event) => {
+    page.rate = Number(event.target.value);
+  });
 }
 
 function showCharts() {
@@ -116,7 +131,7 @@ function showCharts() {
   byId("histories").hidden = !page.cards.length;
   const ofBridge = data.stage && data.stage.low !== null ? [data.stage.low, data.stage.high] : null;
   const along = data.along.map((spec) =>
-    new ChartCard(byId("along-charts"), { ...spec, range: spec.xName === "place along the bridge" ? ofBridge : null }));
+    new ChartCard(byId("along-charts"), { ...spec, range: spec.xName === said("bridge") ? ofBridge : null }));
   byId("along").hidden = !along.length;
   byId("reset").addEventListener("click", () => zoom(null));
   if (data.runs) page.runs = new Runs(data.runs, page.stage);
@@ -133,7 +148,7 @@ function onKey(event) {
   if (event.key === " " && (name === "BUTTON" || name === "SUMMARY")) return;
   if (event.key.startsWith("Arrow") && event.target.closest(".wide")) return; // scrolls the table
   const walks = page.stage && data.stage.frames > 1;
-  const arrows = (by) => (walks ? step(by) : page.runs && page.runs.step(by));
+  const arrows = (by) => (page.runs ? page.runs.step(by) : walks && step(by));
   const keys = {
     " ": () => play(!page.playing), ArrowLeft: () => arrows(-1), ArrowRight: () => arrows(1),
     "+": () => walks && zoomBy(0.5), "-": () => walks && zoomBy(2), 0: () => zoom(null),
@@ -143,11 +158,12 @@ function onKey(event) {
   keys[event.key]();
 }
 
+Chart.defaults.locale = data.words.language;
 showHeading();
 showStage();
 showCharts();
 showTables();
-if (page.stage && data.stage.frames > 1) seek(page.start);
+if (page.stage && data.stage.frames > 1 && !data.stage.travels) seek(page.start);
 document.addEventListener("keydown", onKey);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (page.stage) page.stage.draw(page.stage.time);

@@ -6,6 +6,7 @@ class Places {
     this.stage = stage;
     this.time = stage.time[0];
     this.train = 0; // which of several trains of moving forces
+    this.width = stage.view.width;
   }
 
   // Scale and size of the canvas for the present width of the page.
@@ -28,7 +29,7 @@ class Places {
     this.canvas.style.height = `${this.high}px`;
     this.zero = this.above + Math.max(tall * this.scale, 60) + view.bottom * this.scale;
     const room = this.high + 70 < 0.5 * window.innerHeight && wide > 860;
-    this.canvas.parentElement.classList.toggle("pinned", room && this.stage.frames > 1);
+    this.canvas.parentElement.classList.toggle("pinned", room && this.stage.frames > 1 && !this.stage.travels);
     this.draw(this.time);
   }
 
@@ -41,6 +42,26 @@ class Places {
     this.first = first;
     this.second = second;
     this.part = gap > 0 ? clamp((time - times[first]) / gap, 0, 1) : 0;
+  }
+
+  // Lets the train of a sweep pass at a constant speed, m/s, from its start until it has left the bridge. Returns the
+  // instant at which its front reaches the end of the bridge, s.
+  travel(speed) {
+    const { stage } = this;
+    const { low, high, vehicles, middles } = stage;
+    const load = stage.forces[this.train];
+    const count = load ? load.sizes.length : 0;
+    const starts = load ? Array.from(load.x.subarray(0, count)) : [];
+    for (const { frames } of vehicles) for (let i = 0; i < frames.length; i += 6) starts.push(frames[i]);
+    const [back, front] = [Math.min(...starts), Math.max(...starts)];
+    const way = speed > 0 ? Math.max(high - back, 0) : Math.min(low - front, 0);
+    for (let i = 0; i < count; ++i) load.x[count + i] = load.x[i] + way;
+    for (const { frames } of vehicles) for (let i = 0; i < frames.length; i += 6) frames[i + 3] = frames[i] + way;
+    const first = speed > 0 ? front : back;
+    middles[0] = front - back > this.width ? first : 0.5 * (front + back);
+    middles[1] = middles[0] + way;
+    stage.time = Float32Array.of(0, way / speed);
+    return clamp(((speed > 0 ? high : low) - first) / speed, 0, stage.time[1]);
   }
 
   mixed(values, stride, offset) {

@@ -5,11 +5,9 @@ class Runs {
     this.runs = runs;
     this.stage = stage;
     byId("runs").hidden = false;
-    const parts = [`${runs.finished} of ${runs.count} runs have ended.`];
-    parts.push("Click a point to see its run; drag across a chart to zoom.");
-    if (runs.lines.length > 1 && runs.lineNames) parts.push(`The curves differ in: ${runs.lineNames}.`);
-    const fewer = `Drawn: ${runs.kept} of ${runs.count} runs, with the extremes of each interval.`;
-    if (runs.kept < runs.count) parts.push(fewer);
+    const parts = [said("ended", { count: runs.finished, all: runs.count }), said("choose")];
+    if (runs.lines.length > 1 && runs.lineNames) parts.push(said("differ", { names: runs.lineNames }));
+    if (runs.kept < runs.count) parts.push(said("someRuns", { count: runs.kept, all: runs.count }));
     byId("runs-note").textContent = parts.join(" ");
     this.charts = runs.quantities.map((quantity) => this.chartOf(quantity));
     this.profiles = runs.profiles.map((profile) => this.profileOf(profile));
@@ -23,7 +21,7 @@ class Runs {
   }
 
   limitsOf(quantity) {
-    return data.limits.filter((one) => one.quantity === quantity.name).map((one) => [`limit, ${one.clause}`, one.limit]);
+    return data.limits.filter((one) => one.quantity === quantity.name).map((one) => [`${said("limit")}, ${one.clause}`, one.limit]);
   }
 
   chartOf(quantity) {
@@ -39,7 +37,7 @@ class Runs {
     });
     const spec = {
       title: quantity.words, unit: quantity.unit, xName, xUnit: xUnit || "", curves, limits: this.limitsOf(quantity),
-      fromZero: true,
+      fromZero: true, quantity: quantity.name,
     };
     return new ChartCard(byId("run-charts"), spec, {
       click: (card, x, y) => {
@@ -50,10 +48,10 @@ class Runs {
   }
 
   profileOf(profile) {
-    const curves = [{ name: "largest of all runs", columns: [profile.largest] }];
-    if (profile.runs) curves.push({ name: "chosen run", columns: [new Float32Array(profile.x.length)] });
+    const curves = [{ name: said("largest"), columns: [profile.largest] }];
+    if (profile.runs) curves.push({ name: said("chosen"), columns: [new Float32Array(profile.x.length)] });
     return new ChartCard(byId("run-charts"), {
-      title: profile.title, unit: profile.unit, xName: "place along the bridge", xUnit: "m", x: profile.x, curves,
+      title: profile.title, unit: profile.unit, xName: said("bridge"), xUnit: "m", x: profile.x, curves,
       fromZero: true,
     });
   }
@@ -87,17 +85,20 @@ class Runs {
     const { runs } = this;
     if (!runs.kept) return;
     this.run = run;
-    byId("run-name").textContent = `Chosen run: ${runs.names ? runs.names[run] : `number ${run + 1}`}`;
+    const name = runs.names ? runs.names[run] : said("numbered", { number: run + 1 });
+    byId("run-name").textContent = said("chosenRun", { run: name });
     const row = byId("run-row");
     row.textContent = "";
-    const options = runs.parameters.map((one) => [one.name, withUnit(one.values[run], one.unit)]);
+    const options = runs.parameters.map(({ name, unit, train, values }) =>
+      [name, train ? `A${values[run]}` : withUnit(values[run], unit)]);
     const results = runs.quantities.map((one) => {
       const place = one.places[run];
-      return [one.words, withUnit(one.values[run], one.unit), Number.isFinite(place) ? `${digits(place)} m` : ""];
+      return [one.words, ofQuantity(one.name, one.values[run], one.unit), Number.isFinite(place) ? `${digits(place)} m` : ""];
     });
-    row.append(tableOf(["varied option", "value"], options), tableOf(["result", "value", "at x"], results));
+    row.append(tableOf([said("variedOption"), said("value")], options));
+    row.append(tableOf([said("result"), said("value"), said("at")], results));
     const verdicts = data.limits.map((one, i) => this.verdictOf(run, one, i)).filter(Boolean);
-    if (verdicts.length) row.append(tableOf(["verdict", "limit of", "value", "limit"], verdicts));
+    if (verdicts.length) row.append(tableOf([said("result"), said("requirement"), said("value"), said("limit")], verdicts));
     this.charts.forEach((card, i) => this.mark(card, runs.quantities[i].values[run]));
     this.profiles.forEach((card, i) => this.showProfile(card, runs.profiles[i]));
     this.showTrain();
@@ -107,7 +108,8 @@ class Runs {
     const value = this.judged(run, i);
     if (!Number.isFinite(value)) return null;
     const word = value > limit.limit ? "broken" : "kept";
-    return [word, `${limit.words}, ${limit.clause}`, withUnit(value, limit.unit), withUnit(limit.limit, limit.unit)];
+    return [word, `${limit.words}, ${limit.clause}`, ofQuantity(limit.quantity, value, limit.unit),
+      ofQuantity(limit.quantity, limit.limit, limit.unit)];
   }
 
   mark(card, value) {
@@ -125,14 +127,14 @@ class Runs {
     card.chart.update("none");
   }
 
-  // The drawing shows the train of the chosen run, if the file has several.
+  // The drawing shows the train of the chosen run, if the file has several, and its passage, if the file has its speed.
   showTrain() {
-    const train = this.runs.parameters.find((one) => one.name === "train of HSLM-A");
-    if (!train || !this.stage) return;
-    const at = this.stage.stage.forces.findIndex((one) => one.name === `A${train.values[this.run]}`);
-    if (at >= 0) {
-      this.stage.train = at;
-      this.stage.draw(this.stage.time);
-    }
+    const { stage, runs } = this;
+    if (!stage) return;
+    const train = runs.parameters.find((one) => one.train);
+    const at = train ? stage.stage.forces.findIndex((one) => one.name === `A${train.values[this.run]}`) : -1;
+    if (at >= 0) stage.train = at;
+    if (runs.speeds) showPassage(stage.travel(runs.speeds[this.run]));
+    else stage.draw(stage.time);
   }
 }

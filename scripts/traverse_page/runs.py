@@ -1,6 +1,8 @@
 """The runs of a sweep or a study: varied options, results of each run with its place, values with limits."""
 
 import numpy as np
+from picture_model import Model
+from traverse_report.language import t
 from traverse_report.quantities import QUANTITIES, unit_of, words_of
 from traverse_report.source import Source
 
@@ -8,6 +10,8 @@ from .packing import Curve, kept_rows, number, packed
 from .tables import unit_of_limit
 
 MOST_VALUES = 120_000  # of all runs: about 0.65 MB
+# Options that change what moves or where it moves; the file has the loads and the bridge of the first run only.
+OF_PLACES = ("beam_spans", "load_", "train_", "vehicle_")
 PROFILES = ("peak_deflection", "peak_acceleration", "peak_moment")
 
 
@@ -32,8 +36,9 @@ def parameters_of(runs):
     found = []
     for name, column in runs.parameters.items():
         words, unit, factor = runs.words(name)
-        words = "train of HSLM-A" if name.endswith("hslm_a") else words.replace("_", " ")
-        found.append({"name": words, "unit": unit, "values": factor * column})
+        train = name.endswith("hslm_a")
+        found.append({"name": t("train of HSLM-A") if train else words.replace("_", " "), "unit": unit, "train": train,
+                      "values": factor * column})
     return found
 
 
@@ -57,9 +62,24 @@ def profiles(runs, kept):
             unit, factor = unit_of(name)
             largest = np.where(np.isfinite(values), values, -np.inf).max(axis=0)
             of_runs = packed(factor * values[kept][:, order]) if few else None
-            found.append({"title": f"Along the bridge: {words_of(name)}", "unit": unit, "x": packed(runs.probes[order]),
+            found.append({"title": t("Along the bridge: {effect}", effect=words_of(name)), "unit": unit, "x": packed(runs.probes[order]),
                           "largest": packed(factor * largest[order]), "runs": of_runs})
     return found
+
+
+def speeds_of(results, runs):
+    """The constant speed of the train of each run, m/s; None if a run moves in another way than the model in the file."""
+    model, varied = Model(results), [name for name, column in runs.parameters.items() if len(np.unique(column)) > 1]
+    groups = len(np.unique(model.trains[:, 0])) + len(np.unique(model.loads[:, 0]))
+    tabled = any(name.endswith("_speed_file") for name in results.options)
+    names = [name for name in runs.parameters if name.endswith("speed")]
+    others = [name for name in varied if name not in names and name.startswith(OF_PLACES)]
+    trains = {f"A{number:.0f}" for number in np.unique(runs.parameters.get("hslm_a", ()))}
+    both = len(model.train) > 0 and len(model.forces) > 0
+    if tabled or others or both or groups > 1 or len(names) > 1 or not (len(model.train) or trains <= set(model.forces)):
+        return None
+    speed = runs.parameters[names[0]] if names else np.full(runs.count, results.speed() or 0.0)
+    return speed if np.all(speed != 0.0) else None
 
 
 def packed_runs(results, limits):
@@ -75,6 +95,7 @@ def packed_runs(results, limits):
         np.arange(runs.count)
     order = np.full(runs.count, -1)
     order[kept] = np.arange(len(kept))
+    speeds = speeds_of(results, runs)
     x, label = runs.x() if runs.x_name else (np.arange(1.0, runs.count + 1.0), "number of the run")
     lines = [{"name": name, "runs": [int(order[run]) for run in line if order[run] >= 0]}
              for name, line in runs.lines()]
@@ -85,5 +106,6 @@ def packed_runs(results, limits):
         "parameters": [{**one, "values": [number(value) for value in one["values"][kept]]} for one in parameters],
         "quantities": [{"name": name, "words": words, "unit": unit, "values": packed(columns[name][kept]),
                         "places": packed(places(runs, name)[kept])} for name, words, unit, _ in found],
+        "speeds": None if speeds is None else packed(speeds[kept]),
         "judged": packed(values_with_limits[kept]), "profiles": profiles(runs, kept),
         "names": [runs.run_in_words(int(run)) for run in kept] if len(kept) <= 5000 else None}

@@ -10,6 +10,7 @@ from .vehicles import attached, is_free, numbers, parts_of
 
 MOST_FRAMES, MOST_VALUES = 800, 190_000  # of drawn samples; of their numbers together, about 1 MB
 SWAY = 0.02  # of the ends of a body, as a share of the width
+TRAVELS = "The train moves at the speed of the chosen run; the file has no deflections over time."
 POINTS = 160  # of the deflected line in the width of the drawing
 
 
@@ -189,8 +190,9 @@ def exaggeration_in_words(factor, bodies):
         (" Bodies with large motions are to scale." if free else "")
 
 
-def still(results):
-    """The drawing of a file without a run over time. A train that is nowhere at rest is in the middle of the bridge."""
+def still(results, travels=False):
+    """The drawing of a file without a run over time. A train that is nowhere at rest is in the middle of the bridge or, if
+    it travels, where it starts: the page then moves it at the speed of the chosen run."""
     model = Model(results)
     if not len(model.span_ends):
         return None
@@ -199,14 +201,19 @@ def still(results):
     bodies = bodies_without_bridge(results) if at_rest else standing(model)
     _, bottom, _, top = extents(results, model, bodies) if bodies else (0.0, 0.0, 0.0, 0.0)
     middle = 0.5 * (low + high)
-    if bodies and not at_rest:
+    stays = at_rest or travels
+    if bodies and not stays:
         shift = middle - middles_of(bodies, np.zeros((1, 0)), zero, np.inf)[0]
         bodies = [body._replace(position=body.position + [shift, 0.0, 0.0]) for body in bodies]
-    types, vehicles = packed_vehicles(results, model, bodies, zero, True)
-    forces = [{"name": name, "x": packed(rows[:, 0] + (0.0 if at_rest else middle - rows[[0, -1], 0].mean())),
-               "sizes": packed(rows[:, 1])} for name, rows in model.forces.items()]
-    placed = "" if at_rest or not (bodies or forces) else " For the picture, the train is in the middle of the bridge."
+    frames = 2 if travels else 1
+    types, vehicles = packed_vehicles(results, model, bodies, np.repeat(zero, frames), True)
+    forces = [{"name": name, "sizes": packed(rows[:, 1]), "x": packed(np.tile(
+        rows[:, 0] + (0.0 if stays else middle - rows[[0, -1], 0].mean()), frames))}
+              for name, rows in model.forces.items()]
+    placed = "" if at_rest or not (bodies or forces) else f" {TRAVELS}" if travels else \
+        " For the picture, the train is in the middle of the bridge."
     return {"low": low, "high": high, "factor": 1.0, "line": None, **symbols(model),
-            "view": view_of(low, high, bottom, top), "words": f"The model to scale, undeflected.{placed}", "frames": 1,
-            "of": 1, "time": packed([0.0]), "middles": packed([middle]), "types": types, "vehicles": vehicles,
+            "view": view_of(low, high, bottom, top), "words": f"The model to scale, undeflected.{placed}",
+            "travels": travels, "frames": frames, "of": frames, "time": packed(np.arange(frames)),
+            "middles": packed(np.full(frames, middle)), "types": types, "vehicles": vehicles,
             "rail": "rail" in results.file or "rail_forces" in results.file, "ground": True, "forces": forces}

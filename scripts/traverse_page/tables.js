@@ -6,11 +6,11 @@ const TAGS = ["kept", "broken", "not judged"];
 // on narrow screens.
 function cell(value, head) {
   const words = Array.isArray(value) ? withUnit(...value) : typeof value === "number" ? digits(value) : value ?? "";
-  const made = element("td", /^-?[\d.]+(e-?\d+)?( \S{1,7}| kN m| N m)?$/.test(words) ? "number" : "", words);
+  const made = element("td", /^-?[\d.,]+(e-?\d+)?( \S{1,7}| kN m| N m)?$/.test(words) ? "number" : "", words);
   if (head) made.dataset.head = head;
   if (TAGS.includes(value)) {
     made.textContent = "";
-    made.append(element("span", `tag ${value}`, value));
+    made.append(element("span", `tag ${value}`, said(value)));
   }
   return made;
 }
@@ -19,8 +19,8 @@ function tableOf(head, rows) {
   const wide = element("div", "wide");
   wide.tabIndex = 0;
   wide.setAttribute("role", "region");
-  wide.setAttribute("aria-label", "Table");
-  const table = element("table", head && head.length > 4 ? "many" : "");
+  wide.setAttribute("aria-label", said("result"));
+  const table = element("table", head && head.length > 3 ? "many" : "");
   if (head) {
     const row = table.createTHead().insertRow();
     head.forEach((words) => {
@@ -43,8 +43,8 @@ function closedTable({ title, head, rows }) {
   if (rows.length > 15) {
     const field = element("input");
     field.type = "search";
-    field.placeholder = "find";
-    field.setAttribute("aria-label", `Find in: ${title}`);
+    field.placeholder = said("find");
+    field.setAttribute("aria-label", `${said("find")}: ${title}`);
     field.addEventListener("input", () => {
       const wanted = field.value.toLowerCase();
       table.querySelectorAll("tbody tr").forEach((row) => {
@@ -71,7 +71,7 @@ function showTables() {
   open.forEach((one) => (one.first ? byId("verdicts") : place).append(openTable(one)));
   if (data.notes.length) {
     const part = element("details");
-    part.append(element("summary", "", `Notes of the program on the model (${data.notes.length})`));
+    part.append(element("summary", "", `${said("notes")} (${data.notes.length})`));
     const list = element("ol");
     data.notes.forEach((note) => list.append(element("li", "", note)));
     part.append(list);

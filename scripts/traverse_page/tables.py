@@ -2,9 +2,10 @@
 
 import numpy as np
 from engineering_units import shown
-from picture_rail import CASES
 from picture_vehicles import wheels_of
-from traverse_report.quantities import QUANTITIES, over_span, unit_of, unit_of_si, words_of
+from traverse_report.language import capital, known, num, percent, t
+from traverse_report.quantities import QUANTITIES, shown_value, unit_of, unit_of_si, words_of
+from traverse_report.rail_sheet import CASES, PEAKS
 
 from .along import ENVELOPES, FEWEST_STATIONS
 from .histories import named
@@ -29,24 +30,28 @@ def limits(results):
     return found
 
 
-def verdicts(results, limits_of_file):
-    """The table of verdicts; None without limits."""
+def valued(limit, value):
+    """A value in SI units of a quantity with a limit: a text as L/600, or number and unit."""
+    if limit["quantity"].endswith("deflection_over_span"):
+        return shown_value(value, limit["quantity"])
+    return [number(limit["factor"] * value), limit["unit"]]
+
+
+def verdicts(results, limits_of_file, found):
+    """The table of the verdicts `found`; None without limits."""
     if not limits_of_file:
         return None
     group, rows = results.file["verdicts"], []
-    columns = (group["verdict"].asstr()[:], group["value"][:], group["margin"][:], group["time"][:], group["runs"][:],
-               group["broken_in"][:])
     many = bool(np.any(group["runs"][:] > 1))
-    for limit, (word, where), value, margin, time, runs, broken in zip(limits_of_file, *columns):
-        when = f", t = {time:.5g} s" if np.isfinite(time) else ""
-        runs_in_words = [f"{broken:.0f} of {runs:.0f}" if runs > 1 else ""] if many else []
-        shown_value, shown_limit = ([number(one), limit["unit"]] for one in (limit["factor"] * value, limit["limit"]))
-        rows.append([word, limit["clause"], ": ".join(filter(None, (limit["words"], limit["text"]))),
-                     over_span(limit["quantity"], value) or shown_value,
-                     over_span(limit["quantity"], limit["limit"]) or shown_limit,
-                     None if np.isnan(margin) else f"{100.0 * margin:.1f} %", where + when, *runs_in_words])
-    head = ["verdict", "clause", "limit of", "value", "limit", "margin", "place, or reason of a missing value"]
-    return {"title": "Verdicts", "first": True, "head": head + (["runs that break it"] if many else []), "rows": rows}
+    for limit, verdict, runs, broken in zip(limits_of_file, found, group["runs"][:], group["broken_in"][:]):
+        of_runs = [t("{count} of {all}", count=f"{broken:.0f}", all=f"{runs:.0f}") if runs > 1 else ""] if many else []
+        rows.append([verdict.word, limit["clause"], ": ".join(filter(None, (limit["words"], known(limit["text"])))),
+                     valued(limit, verdict.value), valued(limit, verdict.limit.value),
+                     None if np.isnan(verdict.value) else percent(verdict.utilisation), verdict.where, *of_runs])
+    head = [t("result"), t("clause"), t("requirement"), t("value"), t("limit"), t("utilisation"),
+            t("position and time, or reason of a missing value")]
+    return {"title": capital(t("verdicts")), "first": True, "head": head + ([t("exceeded in")] if many else []),
+            "rows": rows}
 
 
 def norm(results):
@@ -61,11 +66,11 @@ def norm(results):
         shown_unit, factor = unit_of_si(unit)
         dynamic, *forces, ratio = of_row
         static, with_dynamic, of_model, with_phi = ([number(factor * value), shown_unit] for value in forces)
-        rows.append([effect.replace("_", " "), governs, train, number(dynamic), static, with_dynamic, model, of_model,
+        rows.append([known(effect.replace("_", " ")), known(governs), train, number(dynamic), static, with_dynamic, model, of_model,
                      with_phi, number(ratio)])
-    return {"title": "Trains and load models, EN 1991-2 6.4.6.5", "rows": rows,
-            "head": ["effect", "governs", "train", "φ'dyn", "static", "with 1 + φ'dyn + φ''/2", "load model",
-                     "static", "with α and Φ", "train over model"], "note": str(group.attrs.get("words", ""))}
+    return {"title": t("Dynamic verdict by EN 1991-2, 6.4.6.5"), "rows": rows,
+            "head": [t("effect"), t("governs"), t("train"), "φ′dyn", t("static"), "1 + φ′dyn + φ″/2", t("load model"),
+                     t("static"), t("with α and Φ"), t("train over load model")], "note": str(group.attrs.get("words", ""))}
 
 
 def rail(results):
@@ -74,21 +79,20 @@ def rail(results):
         return None
     group, rows = results.file["rail_forces"], []
     stress, length = shown("stress"), shown("displacement")
-    for case, words in [*CASES.items(), ("separate", "the cases alone, added")]:
+    for case, words in CASES.items():
         if case in group:
-            row = [words]
+            row = [t(words)]
             for name, (_, factor) in (("tension", stress), ("compression", stress), ("slip", length), ("end", length)):
                 value, place, _ = group[case][name][:]
                 row += [number(factor * value), number(round(place, 6))]
             rows.append(row)
-    head = ["case"]
-    for words, (unit, _) in (("tension", stress), ("compression", stress), ("relative displacement", length),
-                             ("displacement of a deck end", length)):
-        head += [f"{words} ({unit})", "at x (m)"]
+    head = [t("case")]
+    for (words, _), (unit, _) in zip(PEAKS.values(), (stress, stress, length, length)):
+        head += [f"{t(words)} ({unit})", t("at x (m)")]
     fronts = group["front"][:]
-    return {"title": "Largest effects on rails and bridge, UIC 774-3", "head": head, "rows": rows,
-            "note": f"Of {len(fronts)} positions of the train, its front {fronts.min():.6g} to {fronts.max():.6g} m "
-                    "behind the end of the bridge from which it comes."}
+    return {"title": t("Track-bridge interaction by UIC 774-3"), "head": head, "rows": rows,
+            "note": t("Of {count} positions of the train, its front {low} to {high} m behind the end of the bridge from "
+                      "which it comes.", count=len(fronts), low=num(fronts.min(), ".6g"), high=num(fronts.max(), ".6g"))}
 
 
 def envelope(results):
@@ -101,9 +105,9 @@ def envelope(results):
         for i, x in enumerate(results.probes) if name in group else ():
             least, greatest = (number(factor * value) for value in group[name][i])
             first, second = (number(time) for time in group[f"{name}_time"][i])
-            rows.append([title, number(x), [least, unit], first, [greatest, unit], second])
-    return {"title": "Least and greatest values of the run", "rows": rows,
-            "head": ["quantity", "at x (m)", "least", "at t (s)", "greatest", "at t (s)"]}
+            rows.append([known(title), number(x), [least, unit], first, [greatest, unit], second])
+    return {"title": t("Least and greatest values of the run"), "rows": rows,
+            "head": [t("quantity"), t("at x (m)"), t("least"), t("at t (s)"), t("greatest"), t("at t (s)")]}
 
 
 def rest(results):
@@ -113,9 +117,9 @@ def rest(results):
     unit, factor = shown("force")
     rows = [[named(results, k, name), [number(factor * force[0]), unit]] for k, name, force in wheels_of(results)]
     if "supports/reaction" in results.file:
-        rows += [[f"support at {x:.6g} m, upward positive", [number(factor * force), unit]]
+        rows += [[t("support at x = {x} m", x=num(x, ".6g")), [number(factor * force), unit]]
                  for x, force in zip(results.supports, results.file["supports/reaction"][0, :, 1])]
-    return {"title": "Forces at rest", "head": ["wheel or support", "force"], "rows": rows} if rows else None
+    return {"title": t("Forces at rest"), "head": [t("wheel or support"), t("force")], "rows": rows} if rows else None
 
 
 def plain(value):
@@ -126,7 +130,7 @@ def plain(value):
 
 def pairs(results):
     """Tables of two columns, closed at first: summary, options."""
-    found = [{"title": "Summary of the run, in SI units", "rows": [[name, plain(value)] for name, value in
+    found = [{"title": t("Summary of the run, in SI units"), "rows": [[name, plain(value)] for name, value in
                                                                    sorted(results.summary.items())]},
-             {"title": "Options of the scene", "rows": [list(row) for row in results.options.items()]}]
-    return [{**one, "head": ["name", "value"], "closed": True} for one in found if one["rows"]]
+             {"title": t("Options of the scene"), "rows": [list(row) for row in results.options.items()]}]
+    return [{**one, "head": [t("name"), t("value")], "closed": True} for one in found if one["rows"]]

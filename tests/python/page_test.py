@@ -44,6 +44,15 @@ def shown(value):
     return float(f"{value:.5g}")
 
 
+def with_language(path, out, language):
+    """A copy of a results file of a scene with this language of the report."""
+    shutil.copy(path, out)
+    with h5py.File(out, "a") as file:
+        options = [*file["options"].asstr()[:].tolist(), ["-report_language", language]]
+        del file["options"]
+        file.create_dataset("options", data=np.array(options, dtype=object), dtype=h5py.string_dtype())
+
+
 class PageTest(Computed):
     @classmethod
     def prepare(cls):
@@ -60,7 +69,8 @@ class PageTest(Computed):
             run = subprocess.run(command, cwd=cls.folder, capture_output=True, text=True)
             if run.returncode != 0:
                 raise AssertionError(run.stdout + run.stderr)
-        for name in (*OVER_TIME, "study", "sweep", "rail"):
+        with_language(cls.folder / "sweep.h5", cls.folder / "german.h5", "de")
+        for name in (*OVER_TIME, "study", "sweep", "rail", "german"):
             page.write(cls.folder / f"{name}.h5", cls.folder / f"{name}.html")
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.close)
@@ -90,7 +100,10 @@ class PageTest(Computed):
                 self.assertLess((self.folder / f"{name}.html").stat().st_size, 3_000_000)
                 self.open(name, 390)
                 self.assertTrue(self.js("page.all.length > 0 && !byId('stage').hidden"))
+                self.js("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
                 self.assertEqual(self.js("document.documentElement.scrollWidth"), 390)
+                cut = "(one) => one.scrollWidth > one.clientWidth && one.closest('#run, #verdicts')"
+                self.assertEqual(self.js(f"[...document.querySelectorAll('.wide')].filter({cut}).length"), 0)
                 self.browser.resize(1280)
                 self.browser.scheme("dark")
                 self.browser.frames()
@@ -208,8 +221,69 @@ class PageTest(Computed):
             quantities = list(file["verdicts/quantity"].asstr()[:, 0])
             value = file["sweep/judged"][train, run, quantities.index("deck_acceleration")]
             limit = file["verdicts/limit"][quantities.index("deck_acceleration")]
-            word = "broken" if value > limit else "kept"
+            word = "exceeded" if value > limit else "complied with"
             self.assertRegex(row, rf"{word}\s+[^\n]*acceleration[^\n]*\s+{shown(value):g}")
+
+    def test_the_train_of_the_chosen_run_passes_at_its_speed(self):
+        self.open("sweep")
+        file = self.results("sweep")
+        for train, run in ((0, 1), (1, 2)):
+            self.choose(train, run)
+            speed, start = file["sweep/speed"][run], file[f"model/forces/A{file['sweep/hslm_a'][train]:.0f}"][:, 0]
+            self.assertAlmostEqual(self.js("page.end"), (45.0 - start.min()) / speed, 4)
+            for part in (0.2, 0.7):
+                self.go_to(part * self.js("page.end"))
+                drawn = self.js("data.stage.forces[page.stage.train].sizes.reduce((found, _, i, all) => [...found, "
+                                "page.stage.mixed(data.stage.forces[page.stage.train].x, all.length, i)], [])")
+                np.testing.assert_allclose(list(drawn.values()) if isinstance(drawn, dict) else drawn,
+                                           start + speed * self.js("page.time"), atol=1e-3)
+        before = self.js("page.time")
+        self.browser.key(" ")
+        for _ in range(300):
+            self.browser.frames(1)
+            if self.js("page.time") > before:
+                break
+        self.browser.key(" ")
+        self.assertGreater(self.js("page.time"), before)
+
+    def test_a_train_without_a_constant_speed_stays(self):
+        shutil.copy(self.folder / "sweep.h5", self.folder / "tabled.h5")
+        with_language(self.folder / "sweep.h5", self.folder / "tabled.h5", "en")
+        with h5py.File(self.folder / "tabled.h5", "a") as file:
+            texts = file["options"][:]
+            texts[-1] = ["-load_speed_file", "speed.csv"]
+            file["options"][...] = texts
+        page.write(self.folder / "tabled.h5", self.folder / "tabled.html")
+        self.open("tabled")
+        self.assertEqual(self.js("data.stage.frames"), 1)
+        self.assertTrue(self.js("byId('controls').hidden"))
+
+    def test_verdicts_have_the_words_and_the_utilisation_of_the_report(self):
+        for name, words in (("sweep", ("complied with", "exceeded", "not evaluated", "utilisation", "Only the limits")),
+                            ("german", ("eingehalten", "überschritten", "nicht ausgewertet", "Ausnutzung", "Nur die"))):
+            self.open(name)
+            group = self.results(name)["verdicts"]
+            kinds = ("kept", "broken", "not judged")
+            found = [words[kinds.index(word)] for word in group["verdict"].asstr()[:, 0]]
+            drawn = self.js("[...document.querySelectorAll('#verdicts tbody tr')].map((row) => "
+                            "[...row.cells].map((cell) => cell.innerText))")
+            self.assertEqual([row[0] for row in drawn], found)
+            for row, margin in zip(drawn, group["margin"][:]):
+                percent = f"{100.0 * (1.0 - margin):.1f} %" if np.isfinite(margin) else ""
+                self.assertEqual(row[5], percent if name == "sweep" else percent.replace(".", ","))
+            self.assertIn(words[3], self.js("byId('verdicts').innerText"))
+            self.assertIn(words[4], self.js("byId('caveat').innerText"))
+            self.assertEqual(self.js("document.documentElement.lang"), "en" if name == "sweep" else "de")
+
+    def test_a_limit_far_above_is_named_at_the_edge(self):
+        self.open("sweep")
+        group = self.results("sweep")["verdicts"]
+        limit = float(group["limit"][list(group["quantity"].asstr()[:, 0]).index("end_rotation")])
+        chart = "page.runs.charts[data.runs.quantities.findIndex((one) => one.name === 'end_rotation')]"
+        greatest = self.js(f"Math.max(...{chart}.spec.curves.flatMap((one) => [...one.columns[0]]))")
+        self.assertGreater(1e3 * limit, 2.5 * greatest)
+        self.assertLess(self.js(f"{chart}.chart.scales.y.max"), 1.5 * greatest)
+        self.assertIn(f"{shown(1e3 * limit):g} mrad", self.js(f"{chart}.plot.querySelector('.edge').textContent"))
 
     def test_a_click_in_a_study_shows_the_run(self):
         self.open("study")

@@ -9,12 +9,14 @@ import unittest.mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from reported import SCRIPTS, Reported  # noqa: E402
+from traverse_page import along, histories  # noqa: E402
 from traverse_report import (  # noqa: E402
     annex_sheet, checks_sheet, comparison_sheet, fatigue_sheet, front_sheet, language, main, model_sheet, quantities,
                              rail_sheet,
     run_sheet, source, title_sheet)
 
 RAIL = f"options_file: {SCRIPTS.parent}/options/scenes/uic774_e13.yml\nuic774: {{fronts: [0.0, 60.0, 60.0]}}\n"
+SOURCES = [path for folder in ("traverse_report", "traverse_page") for path in (SCRIPTS / folder).glob("*.py")]
 WORD = re.compile(r"[A-Za-zÄÖÜäöüßéèêàç]{4,}")
 # Names and symbols that are the same in every language.
 SAME = set("traverse HSLM Sperling factor line report limits".split())
@@ -38,13 +40,15 @@ def of_tables():
         yield from table.values()
     yield from (words for words, *_ in (*rail_sheet.PEAKS.values(), *rail_sheet.FORCES.values()))
     yield from (words for *_, words in run_sheet.EFFECTS)
+    yield from (title for _, _, title, *_ in histories.COLUMNS)
+    yield from (title for title, _ in along.ENVELOPES.values())
     for row in checks_sheet.clauses()["requirements"]:
         yield from (row[name] for name in ("requirement", "value", "remark") if name in row)
 
 
 class Table(unittest.TestCase):
     def test_every_text_is_in_the_table(self):
-        for path in sorted((SCRIPTS / "traverse_report").glob("*.py")):
+        for path in sorted(SOURCES):
             for text in literals(path):
                 self.assertIn(text, language.table(), path.name)
         for text in of_tables():
@@ -58,9 +62,8 @@ class Table(unittest.TestCase):
             self.assertEqual(parts, [parts[0]] * len(parts), row)
 
     def test_every_text_of_the_table_is_used(self):
-        code = "".join(path.read_text(encoding="utf-8") for path in (SCRIPTS / "traverse_report").glob("*.py"))
-        used = {text for path in (SCRIPTS / "traverse_report").glob("*.py")
-                for text in literals(path)} | set(of_tables())
+        code = "".join(path.read_text(encoding="utf-8") for path in SOURCES)
+        used = {text for path in SOURCES for text in literals(path)} | set(of_tables())
         program = "".join(path.read_text(encoding="utf-8") for path in OF_PROGRAM.rglob("*.?pp")).replace("_", " ")
         for text in language.table():
             if text not in used and f'"{text}"' not in code:
