@@ -89,11 +89,11 @@ class ChartCard {
     return Math.abs(limit) > FAR * side;
   }
 
-  // Names the limits beyond the axis at the edge where they are.
+  // Names the limits beyond the axis above or below the plot, where they are.
   addEdges() {
     for (const [name, value] of this.beyond) {
       const words = said("beyond", { limits: `${name}: ${ofQuantity(this.spec.quantity, value, this.spec.unit)}` });
-      this.plot.append(element("div", value > 0 ? "edge" : "edge low", `${value > 0 ? "↑" : "↓"} ${words}`));
+      this.plot[value > 0 ? "before" : "after"](element("div", "edge", `${value > 0 ? "↑" : "↓"} ${words}`));
     }
   }
 

@@ -19,7 +19,7 @@ def quantities_of(results, runs):
     """(name, words, unit, factor) of each quantity with a value for some run."""
     units = dict(results.file["verdicts/quantity"].asstr()[:]) if "verdicts/quantity" in results.file else {}
     names = [name for name in dict.fromkeys([*QUANTITIES, *units]) if name in runs.values]
-    return [(name, words_of(name), *unit_of_limit(name, units.get(name, "1"))) for name in names
+    return [(name, runs.quantity_in_words(name), *unit_of_limit(name, units.get(name, "1"))) for name in names
             if np.isfinite(runs.of_run(name)).any()]
 
 

@@ -4,7 +4,8 @@ import numpy as np
 from engineering_units import shown
 from picture_vehicles import wheels_of
 from traverse_report.language import capital, known, num, percent, t
-from traverse_report.quantities import QUANTITIES, shown_value, unit_of, unit_of_si, words_of
+from traverse_report.limits import factors_of
+from traverse_report.quantities import QUANTITIES, shown_value, unit_of, unit_of_si, with_factor
 from traverse_report.rail_sheet import CASES, PEAKS
 
 from .along import ENVELOPES, FEWEST_STATIONS
@@ -22,10 +23,10 @@ def limits(results):
     if "verdicts/limit" not in results.file:
         return []
     group, found = results.file["verdicts"], []
-    for (clause, text), (quantity, unit), limit in zip(group["clause"].asstr()[:], group["quantity"].asstr()[:],
-                                                       group["limit"][:]):
+    rows = zip(group["clause"].asstr()[:], group["quantity"].asstr()[:], group["limit"][:], factors_of(results.file))
+    for (clause, text), (quantity, unit), limit, contained in rows:
         shown_unit, factor = unit_of_limit(quantity, unit)
-        found.append({"clause": clause, "text": text, "quantity": quantity, "words": words_of(quantity),
+        found.append({"clause": clause, "text": text, "quantity": quantity, "words": with_factor(quantity, contained),
                       "unit": shown_unit, "factor": factor, "limit": number(factor * limit)})
     return found
 

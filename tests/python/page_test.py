@@ -283,7 +283,7 @@ class PageTest(Computed):
         greatest = self.js(f"Math.max(...{chart}.spec.curves.flatMap((one) => [...one.columns[0]]))")
         self.assertGreater(1e3 * limit, 2.5 * greatest)
         self.assertLess(self.js(f"{chart}.chart.scales.y.max"), 1.5 * greatest)
-        self.assertIn(f"{shown(1e3 * limit):g} mrad", self.js(f"{chart}.plot.querySelector('.edge').textContent"))
+        self.assertIn(f"{shown(1e3 * limit):g} mrad", self.js(f"{chart}.root.querySelector('.edge').textContent"))
 
     def test_a_click_in_a_study_shows_the_run(self):
         self.open("study")
