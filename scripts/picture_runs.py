@@ -185,7 +185,19 @@ class Runs:
         return self._unit_row(name)[1]
 
     def title(self, name):
-        return QUANTITIES[name][0] if name in QUANTITIES else name.replace("_", " ").capitalize()
+        """The quantity in words, with the factor of its limit that its values contain."""
+        words = QUANTITIES[name][0] if name in QUANTITIES else name.replace("_", " ").capitalize()
+        return words + ("" if self.contained(name) == 1.0 else f" × {self.contained(name):.5g}")
+
+    def factors(self):
+        """The factor of neglected effects of each limit; the judged values contain it."""
+        group = self.file["verdicts"]
+        return group["factor"][:] if "factor" in group else np.ones(len(group["limit"]))
+
+    def contained(self, name):
+        """The factor that the values of a quantity contain."""
+        column = self._column(name)
+        return 1.0 if column is None else float(self.factors()[column])
 
     def limits(self, name):
         """The limits of a quantity, in the unit of its panel."""
@@ -193,14 +205,16 @@ class Runs:
             return []
         unit, factor = self._unit_row(name)
         found, group = [], self.file["verdicts"]
-        rows = zip(group["quantity"].asstr()[:, 0], group["limit"][:], group["clause"].asstr()[:, 0])
-        for quantity, limit, clause in rows:
-            if SAME.get(quantity, quantity) == name:
-                words = f"limit {in_words(factor * limit, unit)}"
-                found.append(Limit(factor * float(limit), words, f"{words} ({clause})"))
-            elif quantity == "deflection_over_span" and name == "peak_deflection" and self.equal_span():
-                words = f"limit {in_words(limit, SPAN)}"
-                found.append(Limit(factor * float(limit) * self.equal_span(), words, f"{words} ({clause})"))
+        rows = zip(group["quantity"].asstr()[:, 0], group["limit"][:], group["clause"].asstr()[:, 0], self.factors())
+        for quantity, limit, clause, of_limit in rows:
+            over_span = quantity == "deflection_over_span" and name == "peak_deflection" and self.equal_span()
+            if SAME.get(quantity, quantity) != name and not over_span:
+                continue
+            words = f"limit {in_words(limit, SPAN) if over_span else in_words(factor * limit, unit)}"
+            ratio = of_limit / self.contained(name)  # of the limited value to the drawn one
+            words += "" if ratio == 1.0 else f" of {ratio:.5g} times the value"
+            value = factor * float(limit) * (over_span or 1.0) / ratio
+            found.append(Limit(value, words, f"{words} ({clause})"))
         return found
 
     def equal_span(self):

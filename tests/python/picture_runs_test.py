@@ -74,6 +74,19 @@ class SweepTest(Drawn):
         np.testing.assert_array_equal(curves["A10"], 2000.0 * peaks[9])
         self.assertEqual(set(curves["limit 3.5 m/s² (EN 1990)"]), {3.5})
 
+    def test_a_factor_of_neglected_effects_is_named_and_acts_on_the_limit(self):
+        peaks = self.write_sweep(2, limit=1e-4)
+        with h5py.File(self.file, "a") as file:
+            file["verdicts/factor"] = [1.1, 1.25]
+            file["sweep/judged"][...] = file["sweep/judged"][:] * [1.1, 1.25]
+        deflection, acceleration = self.assert_readable(self.figure(), "low-passed × 1.25", "limit 3.5 m/s² (EN 1990)",
+                                                        "limit L/10,000 of 1.1 times the value").axes
+        kept = [{name: values for name, _, values, _ in ax.kept_curves} for ax in (deflection, acceleration)]
+        np.testing.assert_allclose(kept[0]["A2"], 1e3 * peaks[1])
+        np.testing.assert_allclose(kept[0]["limit L/10,000 of 1.1 times the value (EN 1990)"], 2.5 / 1.1)
+        np.testing.assert_allclose(kept[1]["A2"], 1.25 * 2000.0 * peaks[1])
+        self.assertEqual(set(kept[1]["limit 3.5 m/s² (EN 1990)"]), {3.5})
+
     def test_a_limit_far_above_is_named(self):
         self.write_sweep(3, limit=1.0 / 600.0)
         self.assert_drawn("far above: limit L/600 (EN 1990)")
