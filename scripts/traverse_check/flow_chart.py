@@ -4,7 +4,10 @@ Where a step is not confirmed well enough to omit the analysis, or needs data th
 answer is the analysis: it is never wrong and takes seconds.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Optional
+
+from traverse_report.language import num, t
+from traverse_report.quantities import speed_in_words
 
 from . import units
 from .rules import clause, rule
@@ -15,6 +18,13 @@ class Part(NamedTuple):
     length: float  # determinant length in m
     n0: float      # Hz
     separate: bool
+
+
+class Line(NamedTuple):
+    """What the chart asks beside the frequency and the length of a bridge."""
+    line_speed: float                      # m/s
+    complex: bool = False                  # no simple structure
+    torsional_frequency: Optional[float] = None  # Hz
 
 
 class Answer(NamedTuple):
@@ -34,57 +44,74 @@ def limits_of_n0(length):
 def frequency_step(part):
     """(whether n0 is within figure 6.10, step)"""
     limits = limits_of_n0(part.length)
-    length = f"L = {units.in_words('span', part.length)}"
+    frequency, length = num(part.n0), num(part.length, ".6g")
     if limits is None:
-        return False, (clause("frequencies"), f"n0 = {part.n0:.4g} Hz; the figure has no limits for {length}")
+        said = t("n0 = {frequency} Hz; the figure has no limits for L = {length} m", frequency=frequency, length=length)
+        return False, (clause("frequencies"), said)
     within = limits[0] <= part.n0 <= limits[1]
-    interval = f"{'within' if within else 'outside'} {limits[0]:.3g} to {limits[1]:.3g} Hz"
-    return within, (clause("frequencies"), f"n0 = {part.n0:.4g} Hz is {interval} for {length}")
+    low, high = (num(limit, ".3g") for limit in limits)
+    words = "n0 = {frequency} Hz is within {low} to {high} Hz for L = {length} m" if within else \
+        "n0 = {frequency} Hz is outside {low} to {high} Hz for L = {length} m"
+    return within, (clause("frequencies"), t(words, frequency=frequency, low=low, high=high, length=length))
 
 
 def torsion_steps(part, torsional_frequency):
     """The last steps of the chart, which end in the dynamic analysis here."""
-    factor = rule("torsion")["value"]
+    value = rule("torsion")["value"]
+    factor, bound = num(value), num(value * part.n0)
     if torsional_frequency is None:
-        return [(clause("torsion"), f"nT > {factor:g} n0 cannot be decided without --torsional-frequency: dynamic "
-                 "analysis; if it is not satisfied, torsion must be included, which this plane model cannot do")]
-    compared = f"{factor:g} n0 = {factor * part.n0:.4g} Hz"
-    if torsional_frequency <= factor * part.n0:
-        return [(clause("torsion"), f"nT = {torsional_frequency:.4g} Hz is not above {compared}: dynamic analysis with "
-                 "torsion, which this plane model cannot include")]
-    return [(clause("torsion"), f"nT = {torsional_frequency:.4g} Hz is above {compared}: bending modes are sufficient"),
-            (clause("tables"), "v/n0 within tables F.1 and F.2 cannot be decided, because they are not in this "
-             "program: dynamic analysis")]
+        return [(clause("torsion"), t("nT > {factor} n0 cannot be decided without --torsional-frequency: dynamic "
+                                      "analysis; if it is not satisfied, torsion must be included, which this plane "
+                                      "model cannot do", factor=factor))]
+    frequency = num(torsional_frequency)
+    if torsional_frequency <= value * part.n0:
+        return [(clause("torsion"), t("nT = {frequency} Hz is not above {factor} n0 = {bound} Hz: dynamic analysis "
+                                      "with torsion, which this plane model cannot include", frequency=frequency,
+                                      factor=factor, bound=bound))]
+    return [(clause("torsion"), t("nT = {frequency} Hz is above {factor} n0 = {bound} Hz: bending modes are sufficient",
+                                  frequency=frequency, factor=factor, bound=bound)),
+            (clause("tables"), t("v/n0 within tables F.1 and F.2 cannot be decided, because they are not in this "
+                                 "program: dynamic analysis"))]
 
 
-def answer(part, question):
+def speed_step(line):
+    """(whether the line speed is low, step)"""
+    limit = rule("line_speed")
+    least = units.values("line-speed", f"{limit['value']} {limit['unit']}")[0]
+    slow = line.line_speed <= least
+    words = "line speed {speed} is not above {limit}" if slow else "line speed {speed} is above {limit}"
+    return slow, (clause("line_speed"), t(words, speed=speed_in_words(line.line_speed), limit=speed_in_words(least)))
+
+
+def answer(part, line):
     """The steps of the chart for a part of the bridge, and whether they end in a dynamic analysis."""
-    limit, longest = rule("line_speed"), rule("long_span")
-    slow = question.line_speed <= units.values("line-speed", f"{limit['value']} {limit['unit']}")[0]
-    steps = [(clause("line_speed"), f"line speed {units.in_words('line-speed', question.line_speed)} is "
-              f"{'not ' if slow else ''}above {limit['value']} {limit['unit']}")]
+    longest = rule("long_span")
+    slow, first = speed_step(line)
     within, frequencies = frequency_step(part)
-    if question.complex:
-        steps.append((clause("simple"), "no simple structure (--complex): dynamic analysis with bending and torsion"))
+    steps = [first]
+    if line.complex:
+        steps.append((clause("simple"), t("no simple structure: dynamic analysis with bending and torsion")))
         return Answer(steps, True)
     if slow and not part.separate:
-        steps += [frequencies, (clause("continuous"), "continuous bridge: no dynamic analysis, provided that the "
-                                "limits of EN 1990 A2.4.4 are satisfied with very good passenger comfort")]
+        steps += [frequencies, (clause("continuous"), t("continuous bridge: no dynamic analysis, provided that the "
+                                                        "limits of EN 1990 A2.4.4 are satisfied with very good "
+                                                        "passenger comfort"))]
         return Answer(steps, False)
     if slow:
         steps.append(frequencies)
         if within:
-            steps.append((clause("in_limits"), "no dynamic analysis up to this line speed"))
+            steps.append((clause("in_limits"), t("no dynamic analysis up to this line speed")))
             return Answer(steps, False)
     if not part.separate:
-        steps.append((clause("simple"), "continuous, therefore no simple structure: dynamic analysis with bending and "
-                      "torsion"))
+        steps.append((clause("simple"), t("continuous, therefore no simple structure: dynamic analysis with bending "
+                                          "and torsion")))
         return Answer(steps, True)
-    steps.append((clause("simple"), "simply supported: a simple structure, if it has no skew and rigid supports"))
+    steps.append((clause("simple"), t("simply supported: a simple structure, if it has no skew and rigid supports")))
     if not slow and part.length >= longest["value"]:
-        steps += [frequencies, (clause("long_span"), f"L >= {longest['value']} m: no public source confirms that the "
-                                "analysis may be omitted at this line speed: dynamic analysis")]
+        steps += [frequencies, (clause("long_span"), t("L >= {limit} m: no public source confirms that the analysis may "
+                                                       "be omitted at this line speed: dynamic analysis",
+                                                       limit=num(longest["value"])))]
         return Answer(steps, True)
     if not slow:
-        steps += [(clause("long_span"), f"L is below {longest['value']} m"), frequencies]
-    return Answer([*steps, *torsion_steps(part, question.torsional_frequency)], True)
+        steps += [(clause("long_span"), t("L is below {limit} m", limit=num(longest["value"]))), frequencies]
+    return Answer([*steps, *torsion_steps(part, line.torsional_frequency)], True)

@@ -8,7 +8,7 @@ import signal
 import sys
 import textwrap
 
-from . import flow_chart, outcome, question, runs, scene, units
+from . import flow_chart, outcome, question, runs, scene, track_defects, units
 from .rules import MARKS, CheckError, clause, printable, rule
 
 MODES = 8    # natural modes for each span that are searched
@@ -47,12 +47,14 @@ def print_steps(name, steps):
         print(textwrap.fill(said, WIDTH, initial_indent=f"  {number:<{width}}", subsequent_indent=" " * (width + 2)))
 
 
-def is_dynamic(asked, cases, traverse):
-    """Prints the steps of the flow chart for each case; whether one of them needs a dynamic analysis."""
+def need(asked, cases, traverse):
+    """Prints the steps of the flow chart for each case. Returns whether there is a dynamic analysis, and the parts of
+    the bridge in all cases."""
     print("Need for a dynamic analysis")
-    needed, several = False, asked.separate and len(set(asked.spans)) > 1
+    needed, several, parts = False, asked.separate and len(set(asked.spans)) > 1, []
     for case in cases:
         for part in parts_of(asked, case, traverse):
+            parts.append(part)
             found = flow_chart.answer(part, asked)
             needed |= found.needed
             span = f"span of {part.length:g} m" if several else ""
@@ -60,7 +62,7 @@ def is_dynamic(asked, cases, traverse):
     print("  Result: " + ("dynamic analysis" if needed else
                           "dynamic analysis because of --always, although figure 6.9 requires none" if asked.always else
                           "no dynamic analysis is necessary; load models with Φ only"))
-    return needed or asked.always
+    return needed or asked.always, parts
 
 
 def modes_of(asked, case, traverse):
@@ -88,10 +90,12 @@ def write(path, text):
     path.write_text(text, encoding="utf-8")
 
 
-def run_all(asked, cases, dynamic, traverse):
-    """Writes and runs the scenes of all cases; the names of the results files, with the words of their cases."""
+def run_all(asked, cases, factor, traverse):
+    """Writes and runs the scenes of all cases; the names of the results files, with the words of their cases. factor:
+    of the limits of effects of trains; None without a dynamic analysis."""
+    dynamic = factor is not None
     limits = pathlib.Path(asked.limits) if asked.limits else runs.data_file("limits", "en1991_2.yml")
-    write(asked.folder / "limits.yml", scene.limits_text(asked, limits, dynamic))
+    write(asked.folder / "limits.yml", scene.limits_text(asked, limits, factor))
     trains = trains_of(asked) if dynamic else [""]
     names, done = [], []
     for case in cases:
@@ -117,18 +121,15 @@ def print_verdicts(asked, done):
         found = outcome.verdicts(asked.folder / name)
         print(f"Verdicts: {words}; EI = {units.in_words('EI', case.EI)}, mass {units.in_words('mass', case.mass)}")
         print(*outcome.lines_of(found), sep="\n")
-        against = outcome.trains_against_models(asked.folder / name)
-        if against:
-            print(f"  {against}")
         everything += found
     return everything
 
 
 def print_remarks(asked, judged, dynamic):
     """What the check does not contain, and what its result depends on."""
-    left = [row["requirement"] for row in scene.not_covered(asked, [verdict.quantity for verdict in judged])]
+    left = [row["requirement"] for row in scene.not_covered(asked, [verdict.limit.quantity for verdict in judged])]
     for said in filter(None, (
-                 scene.conditions(asked, dynamic),
+                 outcome.consequence(judged), scene.conditions(asked, dynamic),
                  f"Not part of this check: {'; '.join(left)}.",
                  f"{MARKS[0]} no public source confirms the rule or its clause, {MARKS[1]} one public source confirms "
                  "it: check it with the norm. National annexes may change values.")):
@@ -164,20 +165,21 @@ def status_of(asked, traverse):
     """Runs the check, step by step."""
     print(f"Bridge: {scene.bridge_in_words(asked)}")
     cases = scene.cases(asked, stiffnesses_of(asked, traverse))
-    dynamic = is_dynamic(asked, cases, traverse)
+    dynamic, parts = need(asked, cases, traverse)
+    first, last, _ = scene.speeds(asked)
+    factor = track_defects.factor(parts, last, asked.careful) if dynamic else None
     if dynamic:
-        first, last, _ = scene.speeds(asked)
         print(f"Dynamic analysis: {', '.join(f'HSLM-{train}' for train in trains_of(asked))}, "
               f"{units.in_words('line-speed', first)} to {units.in_words('line-speed', last)}, "
-              f"damping by {clause('damping')}", flush=True)
-    done = run_all(asked, cases, dynamic, traverse)
+              f"damping by {clause('damping')}")
+        print(f"Effects of trains are judged with the factor {factor:.4g} for track defects, {clause('track_defects')}",
+              flush=True)
+    done = run_all(asked, cases, factor, traverse)
     judged = print_verdicts(asked, done)
     print_remarks(asked, judged, dynamic)
     print(outcome.conclusion(judged), flush=True)
     names = [name for name, *_ in done]
-    made = runs.documents(traverse, asked.folder, names, dynamic) if asked.report else []
-    if asked.report and not dynamic:
-        print("There is no report, because reports contain runs of trains: --always adds them.")
+    made = runs.documents(traverse, asked, names) if asked.report else []
     scenes = [pathlib.Path(name).with_suffix(".yml").name for name in names]
     print(f"Files in {printable(asked.folder)}: {', '.join([*made, *names, *scenes, 'limits.yml', 'summary.txt'])}")
     return outcome.status(judged)

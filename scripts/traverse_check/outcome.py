@@ -1,50 +1,19 @@
 """The verdicts of the results files, for the terminal, in the units of engineering_units.csv."""
 
-import math
-import re
-from typing import NamedTuple
-
-import h5py
-from traverse_report.quantities import over_span, unit_of, words_of
+from traverse_report.limits import stored
+from traverse_report.quantities import shown_value
+from traverse_report.source import Source
 
 from . import scene
-from .rules import marked, printable
+from .rules import marked, printable, rule
 
 EXCEEDED, NOT_JUDGED = 5, 6  # exit statuses
 WORDS = {"kept": "complied with", "broken": "EXCEEDED", "not judged": "NOT EVALUATED"}  # as in the report
 
 
-class Verdict(NamedTuple):
-    word: str
-    clause: str
-    quantity: str
-    value: float
-    limit: float
-    where: str
-
-
 def verdicts(path):
-    """The verdicts that a results file contains."""
-    with h5py.File(path, "r", locking=False) as file:
-        group = file["verdicts"]
-        texts = [group[name].asstr()[:] for name in ("verdict", "clause", "quantity")]
-        return [Verdict(verdict[0], clause[0], quantity[0], float(value), float(limit), verdict[1])
-                for verdict, clause, quantity, value, limit in zip(*texts, group["value"][:], group["limit"][:])]
-
-
-def shown(value, quantity):
-    """A value of a limit in its usual unit; deflections over the span as L/600."""
-    if math.isnan(value):
-        return "-"
-    unit, factor = unit_of(quantity)
-    return over_span(quantity, value) or f"{value * factor:.4g} {unit}".strip()
-
-
-def place(text):
-    """The place of a value, with the speed in km/h only."""
-    said = re.sub(r"[\d.]+ m/s \(([^)]*)\)", r"\1", text)
-    said = re.sub(r" with alpha = ([\d.]+) and Phi(\d) =", r", α = \1, Φ\2 =", said)
-    return printable(said)
+    """The verdicts that a results file contains, as in the report."""
+    return stored(Source(path))
 
 
 def percent(ratio):
@@ -53,26 +22,19 @@ def percent(ratio):
 
 def lines_of(found):
     """The verdicts as lines in columns."""
-    cells = [[WORDS.get(v.word, v.word), marked(v.clause, scene.sources_of(v.quantity)), words_of(v.quantity),
-              f"{shown(v.value, v.quantity)} of {shown(v.limit, v.quantity)}",
-              "" if math.isnan(v.value) else percent(v.value / v.limit), place(v.where)] for v in found]
+    cells = [[WORDS[v.word], marked(v.limit.clause, scene.sources_of(v.limit.quantity)), v.limit.words,
+              f"{shown_value(v.value, v.limit.quantity) or '-'} of {shown_value(v.limit.value, v.limit.quantity)}",
+              "" if v.word == "not judged" else percent(v.utilisation), printable(v.where)] for v in found]
     widths = [max(len(row[i]) for row in cells) for i in range(5)]
     return ["  " + "  ".join(cell.ljust(width) for cell, width in zip(row, [*widths, 0])) for row in cells]
 
 
-def trains_against_models(path):
-    """The line of 6.4.6.5: the effect with the greatest ratio of trains to load models; empty without trains."""
-    with h5py.File(path, "r", locking=False) as file:
-        if "norm/train_over_model" not in file:
-            return ""
-        ratios = file["norm/train_over_model"][:]
-        worst = int(ratios.argmax())
-        effect, train = file["norm/effect"].asstr()[worst, 0], file["norm/train"].asstr()[worst, 0]
-        model = file["norm/model"].asstr()[worst, 0]
-    governs = ("the design must include the dynamic effects of the trains" if ratios[worst] > 1.0 else
-               "the load models govern")
-    return (f"trains with dynamic increment against load models with Φ, EN 1991-2 6.4.6.5: at most {ratios[worst]:.4g} "
-            f"({effect}, {train} against {model}): {governs}")
+def consequence(found):
+    """What follows if the trains exceed the load models; empty if they do not."""
+    if any(verdict.word == "broken" and verdict.limit.quantity == "train_over_lm71" for verdict in found):
+        return (f"{rule('limit_states')['clause']}: the effects of the load models with Φ do not cover those of the "
+                "trains: the design must include the dynamic effects of the trains.")
+    return ""
 
 
 def status(found):
@@ -88,7 +50,7 @@ def conclusion(found):
     counts = [f"{count} of {len(found)} limits {'is' if count == 1 else 'are'} {WORDS[word]}"
               for count, word in ((broken, "broken"), (missing, "not judged")) if count]
     if judged:
-        worst = max(judged, key=lambda verdict: verdict.value / verdict.limit)
-        use = f"greatest utilisation {percent(worst.value / worst.limit)} ({words_of(worst.quantity)})"
+        worst = max(judged, key=lambda verdict: verdict.utilisation)
+        use = f"greatest utilisation {percent(worst.utilisation)} ({worst.limit.words})"
     return "; ".join(["Result: " + (", ".join(counts) or f"all {len(found)} limits are {WORDS['kept']}"),
                       *([use] if judged else [])]) + "."

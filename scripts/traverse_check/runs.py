@@ -80,16 +80,19 @@ def report_command():
     raise CheckError("traverse-report is not beside this command", 4)
 
 
-def documents(traverse, folder, files, with_report):
+def documents(traverse, asked, files):
     """A report of all results files, and a picture and a page of each. Returns the names of the files."""
-    report = start(folder, report_command(), *files, "-o", "report", "--program", traverse, "--folder", ".") \
-        if with_report else None
-    made = []
+    folder, more = asked.folder, []
+    if asked.torsional_frequency is not None:
+        more = ["--torsional-frequency", f"{asked.torsional_frequency!r} Hz"]
+    if asked.complex:
+        more.append("--complex")
+    report = start(folder, report_command(), *files, "-o", "report", "--program", traverse, "--folder", ".",
+                   "--line-speed", f"{asked.line_speed!r} m/s", *more)
+    made = ["report.pdf", "report.xlsx"]
     for name in files:
         for script, ending in (("picture.py", ".png"), ("page.py", ".html")):
             made.append(str(pathlib.Path(name).with_suffix(ending)))
             finish(start(folder, SCRIPTS / script, name, made[-1]), made[-1])
-    if report is not None:
-        finish(report, "the report")
-        made = ["report.pdf", "report.xlsx", *made]
+    finish(report, "the report")
     return made

@@ -5,14 +5,18 @@ import math
 from typing import NamedTuple
 
 import yaml
+from traverse_report import language
+from traverse_report.language import t
+from traverse_report.quantities import speed_in_words
 
-from . import units
+from . import track_defects, units
 from .rules import MARKS, CheckError, clause, data, requirements, rule
 
 SECTIONS = 20             # stations in each span
 MANY_SPANS = 4            # from this number of spans on, half of them: the time grows with their total number
 SPEED_STEP = 5.0 / 3.6    # m/s, before the program refines the speeds
 REFINE = 0.01             # relative accuracy of the peaks over the speed
+NAMES = {"stiffness": "bending stiffness EI", "mass": "mass per length"}
 WORDS = {"filler_beam": "filler beams", "prestressed": "prestressed concrete", "reinforced": "reinforced concrete"}
 
 
@@ -86,7 +90,8 @@ def norm_text(question):
 
 
 def report_text(question, dynamic):
-    return "report:\n" + rows(*((f"{name}: {quoted(text)}", "") for name, text in title_page(question, dynamic).items()))
+    texts = title_page(question, dynamic)
+    return "report:\n" + rows(*((f"{name}: {quoted(text)}", "") for name, text in texts.items()))
 
 
 def head(question, case, what):
@@ -144,11 +149,13 @@ def static_scene(question, case):
             + report_text(question, False) + "limits: limits.yml\n")
 
 
-def limit_rows(question, limits_file, dynamic):
-    """The limits of the file that apply. Direct fastening replaces values of options/limits/en1991_2.yml."""
+def limit_rows(question, limits_file, factor):
+    """The limits of the file that apply, and that of EN 1991-2 6.4.6.5. Direct fastening replaces values of
+    options/limits/en1991_2.yml. factor: of 6.4.6.4 for the effects of trains; None without a dynamic analysis."""
+    dynamic = factor is not None
     try:
         found = yaml.safe_load(limits_file.read_text(encoding="utf-8"))
-        found = [{name: str(row[name]) for name in ("clause", "quantity", "value", "text") if name in row}
+        found = [{name: str(row[name]) for name in ("clause", "quantity", "value", "text", "factor") if name in row}
                  for row in found]
         quantities = [row["quantity"] for row in found]
     except OSError as error:
@@ -164,14 +171,27 @@ def limit_rows(question, limits_file, dynamic):
             kept.append(row)
     if not kept:
         raise CheckError(f"{limits_file}: none of its limits applies to this check")
-    return kept
+    return with_rules_for_trains(kept, factor) if dynamic else kept
 
 
-def limits_text(question, limits_file, dynamic):
+def with_rules_for_trains(found, factor):
+    """Limits with the factor of 6.4.6.4 for the effects of trains, and with the limit of 6.4.6.5; rows that have their
+    own remain."""
+    more = {} if factor == 1.0 else {"factor": f"{factor:.6g}"}
+    found = [more | row if row["quantity"] in track_defects.QUANTITIES else row for row in found]
+    if all(row["quantity"] != "train_over_lm71" for row in found):
+        own = rule("limit_states")
+        found.append({"clause": own["clause"], "quantity": "train_over_lm71", "value": str(own["value"]),
+                      "text": own["text"]})
+    return found
+
+
+def limits_text(question, limits_file, factor):
     lines = ["- {" + ", ".join(f"{name}: {quoted(text)}" for name, text in row.items()) + "}\n"
-             for row in limit_rows(question, limits_file, dynamic)]
+             for row in limit_rows(question, limits_file, factor)]
     return ("# What: limits of this check; values are numbers in SI units, or fractions. To change and to run again.\n"
             f"# Source: {quoted(limits_file.name)}; national annexes may change recommended values.\n"
+            f"# factor: 1 + phi'', or 1 + phi''/2 on carefully maintained track, by {clause('track_defects')}.\n"
             "# Expected: no figure.\n" + "".join(lines))
 
 
@@ -188,21 +208,39 @@ def single_bounds(question):
 
 def not_covered(question, judged):
     """Requirements of EN 1990 A2.4.4 and EN 1991-2 6.4 without a verdict, which the check does not compute either."""
-    covered = {"norm", "hslm", "speeds", "damping", "mass", "stiffness"} - set(single_bounds(question))
+    covered = {"norm", "hslm", "damping", "mass", "stiffness", "need", "speeds", "track_defects"} - \
+        set(single_bounds(question))
     return [row for row in requirements() if not set(row.get("quantities", ())) & set(judged)
-            and row.get("needs") != "joints" and row.get("computed") not in covered
-            and row["requirement"] != "need for a dynamic analysis"]
+            and row.get("needs") != "joints" and row.get("computed", row.get("decided")) not in covered]
 
 
 def title_page(question, dynamic):
-    """The texts of the title page: those given, the bridge, and the conditions of the result."""
-    single = [f"the bounds of the {name} ({clause(name)})" for name in single_bounds(question)]
-    note = (f"Need for a dynamic analysis by {clause('line_speed')}: {'yes' if dynamic else 'no'}, at a line speed of "
-            f"{units.in_words('line-speed', question.line_speed)}.")
-    if single:
-        note += f" Not examined, as one value was given: {' and '.join(single)}."
-    words = f"{spans_in_words(question)}, {WORDS.get(question.type, question.type)}"
-    return {"structure": words[0].upper() + words[1:], "note": note} | question.title
+    """The texts of the title page in the language of the report: those given, the bridge, and the conditions of the
+    result."""
+    wanted = question.title.get("language", "en")
+    language.choose(wanted if wanted in language.LANGUAGES else "en")
+    try:
+        words = "need for a dynamic analysis by EN 1991-2 figure 6.9: yes, at a line speed of {speed}" if dynamic else \
+            "need for a dynamic analysis by EN 1991-2 figure 6.9: no, at a line speed of {speed}"
+        note = [t(words, speed=speed_in_words(question.line_speed))]
+        single = [f"{t(NAMES[name])} ({rule(name)['clause']})" for name in single_bounds(question)]
+        if single:
+            note.append(t("not examined, as one value was given: the bounds of {names}", names=", ".join(single)))
+        structure = f"{spans_on_title(question)}, {t(WORDS.get(question.type, question.type))}"
+        return {"structure": structure[0].upper() + structure[1:],
+                "note": " ".join(f"{said[0].upper()}{said[1:]}." for said in note)} | question.title
+    finally:
+        language.choose("en")
+
+
+def spans_on_title(question):
+    count, spans = len(question.spans), question.spans
+    lengths = " + ".join(language.num(span, ".6g") for span in (spans if len(set(spans)) > 1 else spans[:1]))
+    if count == 1:
+        return t("a simply supported span of {lengths} m", lengths=lengths)
+    if question.separate:
+        return t("{count} simply supported spans of {lengths} m", count=count, lengths=lengths)
+    return t("{count} continuous spans of {lengths} m", count=count, lengths=lengths)
 
 
 def conditions(question, dynamic):
@@ -211,5 +249,5 @@ def conditions(question, dynamic):
     if not dynamic or not single:
         return ""
     words = " and ".join("--EI" if name == "stiffness" else "--mass" for name in single)
-    return (f"Condition: the given {' and '.join(single)} do not scatter; their lower and upper bounds, two values of {words}, "
+    return (f"Condition: no scatter of the given {' and '.join(single)}; the lower and upper bounds, two values of {words}, "
             "were not examined.")

@@ -1,6 +1,7 @@
 """The page of the assumptions of the calculation, each with its source: an input file, the norm or the program."""
 
 import re
+from typing import NamedTuple
 
 import numpy as np
 from engineering_units import shown
@@ -132,7 +133,7 @@ def of_loads(source):
         rows.append((t("track"), t("not modelled: the loads act on the deck"), t("default of the program")))
     if options.get("track_profile", "none") != "none":
         rows.append((t("track irregularities"), options["track_profile"], origin(source, "track_profile")))
-    if not source.is_rail:
+    if source.is_dynamic:
         rows.append(spread_of(source))
     if "norm" in source.file:
         group = source.file["norm"]
@@ -155,43 +156,86 @@ def spread_of(source):
             origin(source, "load_spread"))
 
 
-def of_method(source):
-    file, options = source.file, source.options
+def method_of(source):
+    """The method of the analysis in words, with its mesh, modes and step."""
+    if not source.is_dynamic:
+        return t("static analysis with non-linear track resistance") if source.is_rail else \
+            t("static analysis by influence lines")
+    found = discretisation(source)
+    parts = [t("modal superposition, {count} natural modes", count=found.modes) if found.modes else
+             t("direct integration of the finite element model"),
+             t("{count} beam elements", count=found.elements) if found.elements else "",
+             f"{t('time step')} {found.step}" if found.step else ""]
+    return "; ".join(filter(None, parts))
+
+
+class Discretisation(NamedTuple):
+    """Modes (0: none), elements and time step as text; empty: unknown."""
+    modes: int
+    elements: str
+    step: str
+
+
+def discretisation(source):
+    """That of the runs, from the attributes of the sweep or study, the options and the notes of the program."""
+    file = source.file
     group = file["sweep"] if "sweep" in file else file["study"] if "study" in file else None
     attrs = {} if group is None else dict(group.attrs)
-    modes = int(attrs.get("modes", options.get("model_modes", 0)) or 0)
-    said = t("modal superposition, {count} natural modes", count=modes) if modes else \
-        t("direct integration of the finite element model")
-    said = t("static analysis with non-linear track resistance") if source.is_rail else said
-    elements = attrs.get("elements_per_span", noted(source, r"(\d+) elements a span")
-                         or noted(source, r"(\d+) elements"))
-    said += "; " + t("{count} beam elements", count=elements) if elements else ""
+    modes = int(attrs.get("modes", source.options.get("model_modes", 0)) or 0)
+    stated = noted(source, r"(\d+) elements a span") or noted(source, r"(\d+) elements")
+    elements = attrs.get("elements_per_span", stated)
     step = attrs.get("time_step", noted(source, r"steps of (?:at most )?([\d.e-]+) s"))
     unit, factor = shown("loss_time")
-    said += f"; {t('time step')} {num(factor * float(step))} {unit}" if step else ""
-    rows = [(t("method"), said, origin(source, "model_modes", "beam_elements_per_span", "accuracy"))]
-    if not source.is_rail:
-        stations = source.results.probes
-        rows.append((t("stations of evaluation"),
-                     t("{count} stations from x = {low} m to {high} m", count=len(stations),
-                       low=num(stations.min()), high=num(stations.max())),
-                     origin(source, "output_probes", "output_probes_spacing")))
-        limit = source.summary.get("acceleration_lowpass_frequency") or noted(source, r"low-passed at ([\d.e+]+) Hz")
-        rows.append((t("filter of deck accelerations"), t("low-pass, cut-off frequency {value} Hz, without phase shift",
-                                                          value=num(float(limit))) if limit else t("none"),
-                     "EN 1990 A2.4.4.2.1" if limit and "output_lowpass" not in options
-                     else origin(source, "output_lowpass")))
-        given = options.get("scene_start") == "given"
-        rows.append((t("start"), t("given positions and velocities") if given
-                     else t("bridge and vehicles in static equilibrium"), origin(source, "scene_start")))
-        wanted = num(float(options["accuracy"])) if "accuracy" in options else t("none requested")
-        rows.append((t("relative error requested"), wanted, origin(source, "accuracy")))
+    return Discretisation(modes, str(elements), f"{num(factor * float(step))} {unit}" if step else "")
+
+
+def of_method(source):
+    rows = [(t("method"), method_of(source), origin(source, "scene_analysis", "model_modes", "beam_elements_per_span",
+                                                    "accuracy"))]
+    if not source.is_dynamic:
+        return rows
+    stations = source.results.probes
+    rows.append((t("stations of evaluation"),
+                 t("{count} stations from x = {low} m to {high} m", count=len(stations),
+                   low=num(stations.min()), high=num(stations.max())),
+                 origin(source, "output_probes", "output_probes_spacing")))
+    limit = source.summary.get("acceleration_lowpass_frequency") or noted(source, r"low-passed at ([\d.e+]+) Hz")
+    rows.append((t("filter of deck accelerations"), t("low-pass, cut-off frequency {value} Hz, without phase shift",
+                                                      value=num(float(limit))) if limit else t("none"),
+                 "EN 1990 A2.4.4.2.1" if limit and "output_lowpass" not in source.options
+                 else origin(source, "output_lowpass")))
+    given = source.options.get("scene_start") == "given"
+    rows.append((t("start"), t("given positions and velocities") if given
+                 else t("bridge and vehicles in static equilibrium"), origin(source, "scene_start")))
+    return rows + of_accuracy(source)
+
+
+def of_accuracy(source):
+    """The relative errors that were requested: of the peaks of a run, and of their maxima over the speed."""
+    options = source.options
+    wanted = percent(float(options["accuracy"])) if "accuracy" in options else t("none requested")
+    rows = [(t("relative error of the peaks of a run, requested"), wanted, origin(source, "accuracy"))]
+    if source.runs is not None:
+        name = next((name for name in ("sweep_refine", "study_refine") if name in options), None)
+        rows.append((t("relative error of the peaks over the speed, requested"),
+                     percent(float(options[name])) if name else t("none requested"),
+                     origin(source, "sweep_refine", "study_refine")))
+        if "peak_uncertainty" in source.summary:
+            rows.append((t("the same, achieved"), uncertainty_of(source), t("computed")))
     return rows
+
+
+def uncertainty_of(source):
+    """By how much a peak over the speed may exceed the computed one, in words."""
+    summary = source.summary
+    share, curve = float(summary["peak_uncertainty"]), known(str(summary["peak_uncertainty_of"]))
+    said = t("{share} ({curve})", share=percent(share), curve=curve) if share > 0.0 else percent(share)
+    return f"{said}; {t('{count} speeds added', count=int(summary['speeds_added']))}"
 
 
 def rows_of(source):
     """Rows (assumption, value, source)."""
-    return of_bridge(source) + ([] if source.is_rail else of_damping(source)) + of_loads(source) + of_method(source)
+    return of_bridge(source) + (of_damping(source) if source.is_dynamic else []) + of_loads(source) + of_method(source)
 
 
 def sheet(report, source):

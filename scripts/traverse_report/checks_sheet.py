@@ -6,10 +6,11 @@ import pathlib
 
 import yaml
 
-from .curves import shown_limit
-from .front_sheet import COLOURS, WORDS, shown_value
+from .decisions import DECISIONS, need_for_analysis
+from .front_sheet import COLOURS, WORDS
 from .language import capital, t
 from .page import AMBER, GREY, INK, LEFT, Reference, table
+from .quantities import shown_value, speed_in_words
 
 PAGES = {"rail": {"rail_tension", "rail_compression", "deck_displacement", "deck_end_displacement"}}  # others: verdicts
 MARKS = ("⁰", "¹")  # clauses that no or one public source confirms
@@ -32,10 +33,10 @@ def has_all_trains(source):
 # What a requirement without a limit needs in the results: a condition, and the anchor of its page.
 COMPUTED = {
     "norm": (lambda source: "norm" in source.file, "norm"),
+    "trains_and_models": (lambda source: "norm/effect" in source.file, "norm"),
     "comfort": (lambda source: bool(source.results.vehicles), "comfort"),
     "hslm": (has_all_trains, "loads"),
     "real_trains": (lambda source: bool(len(source.model.train)) or "load" in source.model.forces, "loads"),
-    "speeds": (lambda source: source.runs is not None and str(source.runs.x_name).endswith("speed"), "assumptions"),
     "damping": (lambda source: "model_damping_bound" in source.options, "assumptions"),
     "mass": (lambda source: varied(source, "beam_mass"), "assumptions"),
     "stiffness": (lambda source: varied(source, "beam_EI"), "assumptions"),
@@ -47,21 +48,32 @@ def has_joints(source):
     return any(joint in ("hinge", "separate") for _, joint in source.model.supports)
 
 
+def is_unnecessary(source):
+    """Whether the flow chart requires no dynamic analysis."""
+    found = need_for_analysis(source)
+    return found is not None and not found.needed
+
+
 def results_of(source, row, verdicts):
     """(result in words, its colour, limit, value, anchor of its page) of a requirement, one for each verdict."""
     quantities = row.get("quantities", [])
     found = [verdict for verdict in verdicts if verdict.limit.quantity in quantities and verdict.word != "not judged"]
     if found:
-        return [(t(WORDS[v.word]), COLOURS[v.word], shown_limit(v.limit.value, v.limit.quantity),
+        return [(t(WORDS[v.word]), COLOURS[v.word], shown_value(v.limit.value, v.limit.quantity),
                  shown_value(v.value, v.limit.quantity), "rail" if v.limit.quantity in PAGES["rail"] else "verdicts")
                 for v in found]
     if row.get("needs") == "joints" and not has_joints(source):
         return [(t("not applicable: no joint between two decks"), GREY, "", "", "")]
+    if row.get("needs") == "dynamic" and not source.is_dynamic and is_unnecessary(source):
+        return [(t("not applicable: no dynamic analysis is necessary"), GREY, "", "", "need")]
+    decision = DECISIONS[row["decided"]](source) if "decided" in row else None
+    if decision is not None:
+        return [(decision.words, decision.colour, "", "", decision.anchor)]
     condition, anchor = COMPUTED.get(row.get("computed"), (None, ""))
     remark = t(row["remark"]) if "remark" in row else ""
     if condition is not None and condition(source):
         return [("; ".join(filter(None, (t("computed, without a limit"), remark))), INK, "", "", anchor)]
-    if condition is None and not quantities:
+    if condition is None and not quantities and "decided" not in row:
         return [("; ".join(filter(None, (t("not in this program"), remark))), GREY, "", "", "")]
     return [(t("not verified: no limit given") if quantities else t("not verified"), AMBER, "", "", "")]
 
@@ -77,13 +89,31 @@ def rows_of(source, verdicts):
 
 
 def sheet(report, source, verdicts):
+    report.foot_note = t("{one}: one public source confirms the number of the clause; {none}: no public source "
+                         "confirms it. Such numbers must be checked with the norm.", one=MARKS[1], none=MARKS[0])
+    scope(report, source, verdicts)
+    steps(report, source)
+    report.foot_note = ""
+
+
+def steps(report, source):
+    """The steps of the flow chart of figure 6.9 for the bridge of the file."""
+    found = need_for_analysis(source)
+    if found is None:
+        return
+    page = report.page(t("Need for a dynamic analysis"))
+    report.anchor("need")
+    page.text(LEFT, t("Flow chart of EN 1991-2 figure 6.9 for a line speed of {speed}",
+                      speed=speed_in_words(source.line.line_speed)))
+    page.y -= 0.05
+    table(report, page, [(t("clause"), 1.7, "left"), (t("step"), 5.1, "left")], found.steps)
+
+
+def scope(report, source, verdicts):
     page = report.page(t("Scope of verification"))
     page.text(LEFT, t("All requirements of EN 1990 A2.4.4 and EN 1991-2 6.4 and 6.5.4 for railway bridges. A result "
                       "covers only the requirements with a verdict; the others need a separate verification. Values in "
                       "brackets are the recommended ones; the national annex may change them."))
-    page.text(LEFT, t("{one}: one public source confirms the number of the clause; {none}: no public source confirms "
-                      "it. Such numbers must be checked with the norm.", one=MARKS[1], none=MARKS[0]), size=7,
-              colour=GREY)
     page.y -= 0.08
     cells = []
     for requirement, clause, results in rows_of(source, verdicts):

@@ -1,10 +1,9 @@
 """The comparison of several results files: the utilisation of each limit in each file, with its page."""
 
-from .curves import shown_limit
 from .front_sheet import COLOURS, WORDS, outcome, outcome_of
 from .language import capital, percent, t
 from .page import AMBER, GREEN, GREY, LEFT, RED, RIGHT, Reference, table
-from .quantities import words_of
+from .quantities import shown_value, words_of
 
 SEVERITY = (GREEN, GREY, AMBER, RED)
 FILES_A_TABLE = 4
@@ -31,7 +30,7 @@ def headline(entries):
         lines.append(t("Greatest utilisation: {share}, {place}: {quantity}, {result}.",
                        share=percent(verdict.utilisation),
                        place="; ".join(filter(None, (place, verdict.run))), result=t(WORDS[verdict.word]),
-                       quantity="; ".join(filter(None, (words_of(verdict.limit.quantity), verdict.limit.clause)))))
+                       quantity="; ".join(filter(None, (verdict.limit.words, verdict.limit.clause)))))
     lines.append(t("The result covers only the requirements that the section Scope of verification marks as verified."))
     return lines, max((colour for _, colour in own), key=SEVERITY.index)
 
@@ -71,7 +70,7 @@ def rows_of(entries, limits, first_pages):
         found = [next((verdict for verdict in verdicts if key_of(verdict.limit) == key
                        and verdict.word != "not judged"), None)
                  for _, verdicts in entries]
-        rows.append([f"{words_of(quantity)} ≤ {shown_limit(value, quantity)} ({clause})",
+        rows.append([f"{words_of(quantity)} ≤ {shown_value(value, quantity)} ({clause})",
                      *(utilisation_cell(verdict) if verdict else "" for verdict in found)])
     return [[capital(row[0]), *row[1:]] for row in rows]
 

@@ -3,12 +3,11 @@
 import numpy as np
 
 from . import curves
-from .curves import shown_limit
-from .front_sheet import is_known, shown_value, word_cell
+from .front_sheet import is_known, word_cell
 from .language import capital, number, percent, t
 from .limits import judge_lines
 from .page import GREY, LEFT, table
-from .quantities import QUANTITIES, unit_of, words_of
+from .quantities import QUANTITIES, shown_value, unit_of, words_of
 
 
 def line_sheet(report, source, limits):
@@ -37,9 +36,8 @@ def line_sheet(report, source, limits):
                           word_cell(row.word), broken])
         if page.room() < 1.5:
             page = report.page(page.heading)
-        page.text(LEFT, t("Limit {value} ({clause}): {quantity}", value=shown_limit(limit.value, limit.quantity),
-                          clause=limit.clause,
-                          quantity=words_of(limit.quantity)), size=9, weight="bold")
+        page.text(LEFT, t("Limit {value} ({clause}): {quantity}", value=shown_value(limit.value, limit.quantity),
+                          clause=limit.clause, quantity=limit.words), size=9, weight="bold")
         page.y -= 0.03
         page = table(report, page, columns, cells, size=7)
 
@@ -61,7 +59,7 @@ def curve_sheets(report, source, limits):
                 page.text(LEFT, note, size=8, colour=GREY)
         report.anchor(name)
         ax = page.axes(3.7, right=curves.room_for(names))
-        ax.set_title(capital(words_of(name)))
+        ax.set_title(capital(runs.quantity_in_words(name)))
         drawn[name] = curves.over_x(ax, source, name, factor * runs.of_run(name), unit,
                                     curves.limit_lines(source, limits, name))
         page.fit(ax)
@@ -86,7 +84,7 @@ def notes_on_curves(source):
     return said
 
 
-def envelope_sheet(report, source):
+def envelope_sheet(report, source, limits):
     """The largest deflection, acceleration and moment of each train at every probe, for a table of runs."""
     runs = source.runs
     stations = runs.probes[0] if runs.probes.ndim == 2 else runs.probes
@@ -112,3 +110,26 @@ def envelope_sheet(report, source):
         curves.along_bridge(ax, source.model.span_ends, stations, series, unit, static=static)
         ax.set_ylim(0.0, ax.get_ylim()[1] * 1.1)
         page.fit(ax)
+    if page is not None:
+        judged_places(report, page, source, limits)
+
+
+def judged_places(report, page, source, limits):
+    """The judged deck acceleration of each run at its place, because a sweep stores no other filtered values."""
+    runs, name = source.runs, "deck_acceleration"
+    if name not in runs.places:
+        return
+    page = report.page(page.heading) if page.room() < 3.1 else page
+    unit, factor = unit_of(name)
+    ax = page.axes(2.3, right=max(0.5 + curves.room_for(curves.names_of(runs)), 1.0))
+    for i, (line, indices) in enumerate(curves.chosen_lines(ax, runs, runs.of_run(name), curves.MOST_LISTED)):
+        colour, _, mark = curves.look(i)
+        ax.plot(runs.places[name][indices], factor * runs.of_run(name)[indices], ls="none", marker=mark, ms=3.2,
+                mew=0.0, color=colour, label=line)
+    ends = source.model.span_ends
+    ax.set(title=t("{quantity}: each run at its place", quantity=capital(runs.quantity_in_words(name))), ylabel=unit,
+           xlabel=t("position along the bridge (m)"), xlim=(ends[0], ends[-1]))
+    ax.set_ylim(0.0, ax.get_ylim()[1] * 1.1)
+    curves.draw_limits(ax, curves.limit_lines(source, limits, name))
+    ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.04), frameon=False, fontsize=8, labelspacing=0.35)
+    page.fit(ax)

@@ -6,9 +6,9 @@ from picture_axes import COLOURS, GREY, LABEL_SIZE, PALE, End, label_at_ends, no
 from picture_data import choose, thin
 from picture_layout import width_of, wrapped
 
-from .language import num, t
+from .language import t
 from .limits import STORED
-from .quantities import unit_of
+from .quantities import shown_value, unit_of
 
 RED = "#B00020"  # used for limits only
 # Lines differ in colour and in style, so that a grey print distinguishes them too.
@@ -28,14 +28,6 @@ def look(i):
 
 def mark_every(count):
     return max(count // 12, 1)
-
-
-def shown_limit(value, quantity):
-    """A limit as text with its unit; a deflection as a part of the span."""
-    if quantity.endswith("deflection_over_span"):
-        return f"L/{num(1.0 / value)}"
-    unit, factor = unit_of(quantity)
-    return f"{num(factor * value)} {unit}".strip()
 
 
 def draw_limits(ax, limits):
@@ -61,14 +53,15 @@ def limit_lines(source, limits, name):
     spans = np.unique(np.round(np.diff(source.model.span_ends), 6))
     lines = []
     for limit in limits:
-        words = f"{shown_limit(limit.value, limit.quantity)} ({limit.clause})"
+        words = f"{shown_value(limit.value, limit.quantity)} ({limit.clause})"
+        share = factor * source.runs.factors.get(name, 1.0) / limit.factor  # the curve has the factor of the file
         if STORED.get(limit.quantity, limit.quantity) == name:
-            lines.append((factor * limit.value, t("limit {value}", value=words)))
+            lines.append((share * limit.value, t("limit {value}", value=words)))
         elif limit.quantity == "deflection_over_span" and name == "peak_deflection" and len(spans) == 1:
-            lines.append((factor * limit.value * spans[0], t("limit {value}", value=words)))
+            lines.append((share * limit.value * spans[0], t("limit {value}", value=words)))
         elif limit.quantity == "deck_acceleration" and name == "peak_acceleration" and \
                 "deck_acceleration" not in source.runs.values:
-            lines.append((factor * limit.value, t("{value} applies to low-pass filtered values", value=words)))
+            lines.append((share * limit.value, t("{value} applies to low-pass filtered values", value=words)))
     return lines
 
 
@@ -197,6 +190,13 @@ def along_bridge(ax, supports, x, series, unit, marks=True, static=None):
         ax.axvline(support, color=PALE, lw=0.8)
 
 
+def draw_bounds(ax, values):
+    """Draws limits of magnitudes, above and below."""
+    for value in values:
+        for sign in (-1.0, 1.0):
+            ax.axhline(sign * value, color=RED, lw=1.0, ls=(0, (6, 2)))
+
+
 def history(ax, time, curves, title, unit, limits=()):
     """Draws a time history. curves: (name, values)."""
     ends = []
@@ -209,8 +209,6 @@ def history(ax, time, curves, title, unit, limits=()):
     ax.set_xlabel(t("time (s)"))
     if len(time) > 1:
         ax.set_xlim(time[0], time[-1])
-    for value in limits:
-        for sign in (-1.0, 1.0):
-            ax.axhline(sign * value, color=RED, lw=1.0, ls=(0, (6, 2)))
+    draw_bounds(ax, limits)
     if len(ends) > 1:
         label_at_ends(ax, ends)

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from . import model_sheet, norm_sheet, rail_sheet
-from .curves import shown_limit
+from . import model_sheet, norm_sheet, rail_sheet, static_sheet
 from .language import capital, digits, known, num, percent, place_in_words, t
 from .limits import STATIC
 from .page import AMBER, GREEN, GREY, LEFT, RED, table
-from .quantities import QUANTITIES, unit_of, words_of
+from .quantities import QUANTITIES, shown_value, unit_of, words_of
 
 WORDS = {"kept": "complied with", "kept alone": "complied with in the governing run", "broken": "exceeded",
          "not judged": "not evaluated", "below": "below", "above": "above"}
@@ -16,16 +15,6 @@ COLOURS = {"kept": GREEN, "kept alone": GREY, "broken": RED, "not judged": GREY,
 
 def word_cell(word):
     return t(WORDS[word]), COLOURS[word]
-
-
-def shown_value(value, quantity):
-    """A value of the quantity of a limit as text, with the usual unit."""
-    if np.isnan(value):
-        return ""
-    if quantity.endswith("deflection_over_span"):
-        return f"L/{digits(1.0 / value)}" if value > 0.0 else "0"
-    unit, factor = unit_of(quantity)
-    return f"{digits(factor * value)} {unit}".strip()
 
 
 def outcome(verdicts):
@@ -63,9 +52,8 @@ def verdict_table(report, page, verdicts):
     rows = []
     for v in verdicts:
         judged = v.word != "not judged"
-        rows.append(["; ".join(filter(None, (v.limit.clause, v.limit.text))), capital(words_of(v.limit.quantity)),
-                     shown_limit(v.limit.value, v.limit.quantity), shown_value(v.value, v.limit.quantity) if judged
-                     else "",
+        rows.append(["; ".join(filter(None, (v.limit.clause, known(v.limit.text)))), capital(v.limit.words),
+                     shown_value(v.limit.value, v.limit.quantity), shown_value(v.value, v.limit.quantity),
                      percent(v.utilisation) if judged else "", word_cell(v.word),
                      "; ".join(filter(None, (v.run, v.where)))])
     return table(report, page, columns, rows, size=7)
@@ -82,6 +70,8 @@ def peak_rows(source):
     """Rows (quantity, value, unit, run and place) of the greatest values, in the unit."""
     if source.is_rail:
         return rail_sheet.peak_rows(source)
+    if source.is_static:
+        return static_sheet.peak_rows(source)
     return peaks_of_run(source) if source.runs is None else peaks_of_runs(source)
 
 
@@ -114,7 +104,7 @@ def peaks_of_runs(source):
         run = int(np.nanargmin(values) if name.startswith("least") else np.nanargmax(values))
         place = runs.place(name, run)
         where = "" if place is None else ", " + place_in_words(place, source.results.supports)
-        rows.append((words_of(name), factor * values[run], unit, runs.run_in_words(run) + where))
+        rows.append((runs.quantity_in_words(name), factor * values[run], unit, runs.run_in_words(run) + where))
     return rows
 
 
@@ -141,7 +131,8 @@ def sheet(report, source, verdicts, governing):
     if said := norm_sheet.sentence(source):
         page.text(LEFT, said)
         page.y -= 0.1
-    head = t("greatest values of all runs") if source.runs is not None else t("greatest values of the run")
+    head = t("greatest values of all runs") if source.runs is not None else t("greatest values of the run") \
+        if source.is_run else t("greatest values")
     rows = [(capital(words), f"{digits(value)} {unit}".strip(), where)
             for words, value, unit, where in peak_rows(source)]
     page = table(report, page,

@@ -81,9 +81,9 @@ def governing_run(source, limits):
     worst, margin = int(np.nanargmax(source.runs.of_run("peak_deflection"))), np.inf
     why = t("it has the greatest deflection")
     for limit in limits:
-        values, _ = values_of(source, limit.quantity)
+        values, _ = values_of(source, limit)
         if limit.quantity == "deck_acceleration" and values is None:
-            values, _ = values_of(source, "unfiltered_deck_acceleration")
+            values, _ = values_of(source, limit._replace(quantity="unfiltered_deck_acceleration"))
         if values is None or np.isnan(values).all():
             continue
         if 1.0 - np.nanmax(values) / limit.value < margin:
@@ -99,8 +99,10 @@ def repeat(source, run, limits, program, folder, scratch):
     options["output_file"] = str(out)
     options["output_probes"] = ",".join(f"{x:.10g}" for x in stations(source, run))
     options["output_interval"] = "0.004"
+    if any(limit.quantity == "deck_acceleration" for limit in limits):
+        options["output_lowpass_series"] = "true"
     if limits:
-        rows = "".join(f"- {{quantity: {limit.quantity}, value: {limit.value!r}" +
+        rows = "".join(f"- {{quantity: {limit.quantity}, value: {limit.value!r}, factor: {limit.factor!r}" +
                        "".join(f", {name}: {quoted(text)}" for name, text in
                                (("clause", limit.clause), ("text", limit.text)) if text) + "}\n" for limit in limits)
         (scratch / "limits.yml").write_text(rows, encoding="utf-8")

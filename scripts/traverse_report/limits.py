@@ -1,13 +1,14 @@
 """Limits and verdicts of the runs: those of the file, otherwise computed from its values."""
 
 import pathlib
-import re
 from typing import NamedTuple
 
 import numpy as np
 import yaml
 
-from .language import decimal, known, num, t
+from .language import num, t
+from .larger_effect import larger, place_of, spans_at
+from .quantities import with_factor
 from .source import ReportError
 
 # Static effects by EN 1991-2: they are independent of the runs and checked once.
@@ -21,6 +22,12 @@ class Limit(NamedTuple):
     quantity: str
     value: float
     text: str
+    factor: float = 1.0  # of effects that the computation neglects; values of verdicts contain it
+
+    @property
+    def words(self):
+        """The quantity in words, with the factor."""
+        return with_factor(self.quantity, self.factor)
 
 
 class Verdict(NamedTuple):
@@ -48,11 +55,17 @@ def read_limits(path):
     try:
         rows = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
         return [Limit(str(row.get("clause", "")), str(row["quantity"]), as_number(row["value"]),
-                      str(row.get("text", ""))) for row in rows]
+                      str(row.get("text", "")), as_number(row.get("factor", 1.0))) for row in rows]
     except OSError as error:
         raise ReportError(f"{path}: {error.strerror}") from None
     except (yaml.YAMLError, KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError):
         raise ReportError(f"{path} is no list of limits, each with quantity, value and clause") from None
+
+
+def factors_of(file):
+    """The factor of each limit of /verdicts; their values contain it."""
+    group = file["verdicts"]
+    return group["factor"][:] if "factor" in group else np.ones(len(group["limit"]))
 
 
 def limits_of(source, given, folder):
@@ -69,47 +82,34 @@ def limits_of(source, given, folder):
 
 
 def stored(source):
-    """The verdicts of /verdicts."""
-    group = source.file["verdicts"] if "verdicts" in source.file else {}
+    """The verdicts of /verdicts; limits of load models judge the larger of them and the trains."""
+    file = source.file
+    group = file["verdicts"] if "verdicts" in file else {}
     if "limit" not in group:
         return []
     verdicts = []
     texts = [group[name].asstr()[:] for name in ("clause", "quantity", "verdict")]
-    columns = zip(*texts, group["value"][:], group["limit"][:], group["time"][:])
-    for clause, quantity, verdict, value, limit, time in columns:
+    columns = zip(*texts, group["value"][:], group["limit"][:], factors_of(file), group["time"][:])
+    for clause, quantity, verdict, value, limit, factor, time in columns:
         when = "" if np.isnan(time) else f", t = {num(time)} s"
-        verdicts.append(Verdict(Limit(clause[0], quantity[0], float(limit), clause[1]), verdict[0], float(value),
-                                "", place_of(verdict[1]) + when))
+        own = Limit(clause[0], quantity[0], float(limit), clause[1], float(factor))
+        value, place = larger(file, own.quantity, float(value), own.factor, place_of(verdict[1]) + when)
+        word = verdict[0] if verdict[0] == "not judged" else word_of(value, own)
+        verdicts.append(Verdict(own, word, value, "", place))
     return verdicts
 
 
-def place_of(text):
-    """The place of a value, or the reason of a missing verdict, as the program writes it; in the language if it is
-    known."""
-    said = known(re.sub(r"with alpha = ([\d.]+) and Phi(\d) =", r"α = \1, Φ\2 =", text))
-    return re.sub(r"(?<![\d.])\d+\.\d+(?![\d.])", lambda found: decimal(found[0]), said)
-
-
-def spans_of(source, stations):
-    """The length of the span of each station; at a support the shorter one."""
-    ends = source.model.span_ends
-    lengths = np.full(np.shape(stations), np.inf)
-    for left, right in zip(ends[:-1], ends[1:]):
-        inside = (stations >= left - 1e-9) & (stations <= right + 1e-9)
-        lengths = np.where(inside, np.minimum(lengths, right - left), lengths)
-    return lengths
-
-
-def values_of(source, quantity):
-    """One value per run in the unit of the limit, or None and the reason."""
-    runs = source.runs
+def values_of(source, limit):
+    """One value per run with the factor of the limit, in its unit, or None and the reason."""
+    runs, quantity = source.runs, limit.quantity
     for name in (quantity, STORED.get(quantity)):
         if name in runs.values:
-            return runs.of_run(name), ""
+            return limit.factor / runs.factors.get(name, 1.0) * runs.of_run(name), ""
     if quantity == "deflection_over_span":
         if not len(source.model.span_ends):
             return None, t("the file contains no spans")
-        return (np.abs(runs.values["peak_deflection"]) / spans_of(source, runs.probes)).max(axis=1), ""
+        spans = spans_at(source.model.span_ends, runs.probes)
+        return limit.factor * (np.abs(runs.values["peak_deflection"]) / spans).max(axis=1), ""
     if quantity == "deck_acceleration":
         return None, t("the runs were stored without low-pass filter")
     return None, t("the file does not contain it for every run")
@@ -123,11 +123,9 @@ def judge(source, limits):
     whys = {quantity: verdict.where for quantity, verdict in known.items()}
     for limit in limits:
         if limit.quantity in STATIC and limit.quantity in known:
-            found = known[limit.quantity]
-            word = found.word if found.word == "not judged" else word_of(found.value, limit)
-            verdicts.append(found._replace(limit=limit, word=word))
+            verdicts.append(judged_again(known[limit.quantity], limit))
             continue
-        values, why = values_of(source, limit.quantity)
+        values, why = values_of(source, limit)
         if values is None or np.isnan(values).all():
             verdicts.append(Verdict(limit, "not judged", np.nan, "", why
                                     or whys.get(limit.quantity, t("no run contains it"))))
@@ -148,6 +146,13 @@ def word_of(value, limit):
     return "kept" if value <= limit.value else "broken"
 
 
+def judged_again(verdict, limit):
+    """A stored verdict for a limit of the same quantity with another value or factor."""
+    value = limit.factor / verdict.limit.factor * verdict.value
+    word = verdict.word if verdict.word == "not judged" else word_of(value, limit)
+    return verdict._replace(limit=limit, word=word, value=value)
+
+
 def judge_run(source, limits):
     """The verdicts of a single run: the stored ones, otherwise by its peaks."""
     known, verdicts, summary = {verdict.limit.quantity: verdict for verdict in stored(source)}, [], source.summary
@@ -156,11 +161,9 @@ def judge_run(source, limits):
     for limit in limits:
         name = peaks.get(limit.quantity)
         if limit.quantity in known:
-            found = known[limit.quantity]
-            word = found.word if found.word == "not judged" else word_of(found.value, limit)
-            verdicts.append(found._replace(limit=limit, word=word))
+            verdicts.append(judged_again(known[limit.quantity], limit))
         elif name in summary:
-            value = abs(float(summary[name]))
+            value = limit.factor * abs(float(summary[name]))
             where = f"x = {num(summary[f'{name}_place'], '.6g')} m" if f"{name}_place" in summary else ""
             verdicts.append(Verdict(limit, word_of(value, limit), value, "", where))
         else:
@@ -201,10 +204,10 @@ def judge_lines(source, limits):
         return rows
     x, _ = runs.x()
     for limit in limits:
-        values, _ = values_of(source, limit.quantity)
+        values, _ = values_of(source, limit)
         filtered = values is not None or limit.quantity != "deck_acceleration"
         if not filtered:
-            values, _ = values_of(source, "unfiltered_deck_acceleration")
+            values, _ = values_of(source, limit._replace(quantity="unfiltered_deck_acceleration"))
         for name, indices in runs.lines() if values is not None else ():
             stations = np.unique(x[indices])
             greatest = np.array([np.nanmax(np.append(values[indices][x[indices] == at], -np.inf)) for at in stations])

@@ -116,7 +116,7 @@ def draw_load_model(page, name, row):
 def sheet(report, source):
     """The loads of a file, on a page of their own if they are load models of the norm, otherwise below the
     assumptions."""
-    static = [name for name, _ in source.file["static/load"].asstr()[:]] if "static/load" in source.file else []
+    static = source.static_loads()
     models = yaml.safe_load(pathlib.Path(__file__).with_name("load_models.yml").read_text(encoding="utf-8"))
     page = report.pages[-1]
     if static or any(name != "load" for name in source.model.forces):

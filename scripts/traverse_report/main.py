@@ -9,11 +9,12 @@ from typing import NamedTuple, Optional
 
 import fatigue
 import h5py
+from traverse_check import flow_chart, units
+from traverse_check.rules import CheckError
 
 from . import (
     annex_sheet, assumptions_sheet, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet, fatigue_sheet,
-               front_sheet,
-    loads_sheet, norm_sheet, rail_sheet, run_sheet, statistics, title_sheet, workbook_sheets)
+    front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, static_sheet, statistics, title_sheet, workbook_sheets)
 from . import governing as again
 from . import limits as judging
 from .language import LANGUAGES, choose, t
@@ -64,6 +65,10 @@ def arguments_of(given):
                         "slope:M,RANGE,CYCLES, in the stress's unit")
     parser.add_argument("--passages", type=positive, default=1.0, metavar="A_DAY", help="of the run; left out: 1")
     parser.add_argument("--no-governing-run", action="store_true", help="does not repeat it")
+    group = parser.add_argument_group("need for a dynamic analysis", "The flow chart of EN 1991-2 figure 6.9.")
+    group.add_argument("--line-speed", metavar="SPEED", help="maximum line speed at the site, such as 250 km/h")
+    group.add_argument("--torsional-frequency", metavar="HZ", help="first natural frequency of torsion")
+    group.add_argument("--complex", action="store_true", help="no simple structure: skew, flexible supports, torsion")
     group = parser.add_argument_group("title page", "These replace the options report_... of the scene.")
     for name, words in TITLE.items():
         group.add_argument(f"--{name}", metavar="TEXT" if name != "logo" else "FILE", help=words)
@@ -74,6 +79,24 @@ def arguments_of(given):
 def given_title(arguments):
     return {name.replace("railway-line", "line").replace("-", "_"): getattr(arguments, name.replace("-", "_"))
             for name in TITLE}
+
+
+def line_of(arguments):
+    """What the flow chart asks, or None without a line speed."""
+    def value(name, text):
+        found = units.values(name, text)
+        if len(found) != 1:
+            raise ReportError(f"--{name} {text}: allowed: one value")
+        return found[0]
+
+    if arguments.line_speed is None:
+        return None
+    try:
+        torsion = arguments.torsional_frequency
+        return flow_chart.Line(value("line-speed", arguments.line_speed), arguments.complex,
+                               None if torsion is None else value("torsional-frequency", torsion))
+    except CheckError as error:
+        raise ReportError(f"--{error}") from None
 
 
 def program_beside(given):
@@ -102,26 +125,28 @@ def governing_of(source, limits, arguments, scratch):
     return Governing(words, why, Source(path) if path is not None else None, trouble)
 
 
-def add_pages(report, source, limits, verdicts, governing, asked):
+def add_pages(report, entry, asked, program):
+    source, limits, verdicts, governing = entry
     front_sheet.sheet(report, source, verdicts, governing)
     assumptions_sheet.sheet(report, source)
     loads_sheet.sheet(report, source)
     checks_sheet.sheet(report, source, verdicts)
     norm_sheet.sheet(report, source)
+    static_sheet.sheet(report, source)
     rail_sheet.sheet(report, source)
     if source.runs is not None:
         curve_sheet.line_sheet(report, source, limits)
         curve_sheet.curve_sheets(report, source, limits)
-        curve_sheet.envelope_sheet(report, source)
+        curve_sheet.envelope_sheet(report, source, limits)
         statistics.sheet(report, source)
     one = source if source.is_run else governing.source if governing is not None else None
     if one is not None:
         words = source.kind_in_words() if source.is_run else t("Governing run: {run}", run=governing.words)
-        run_sheet.envelope_sheet(report, one, t("Results along the bridge"), words)
+        run_sheet.envelope_sheet(report, one, t("Results along the bridge"), words, limits)
         run_sheet.history_sheets(report, one, t("Time histories"), words, limits)
         comfort_sheet.sheet(report, one, words)
         fatigue_sheet.sheet(report, one, words, asked)
-    annex_sheet.sheet(report, source)
+    annex_sheet.sheet(report, source, program)
 
 
 def has_limits(path):
@@ -137,6 +162,7 @@ def entry_of(source, arguments, scratch):
     verdicts = judging.judge(source, limits)
     governing = governing_of(source, limits, arguments, scratch)
     if governing is not None and governing.source is not None:
+        source.governing = governing.source
         alone = judging.stored(governing.source)
         name = t("{run}, governing run only", run=governing.words)
         verdicts = judging.with_governing(verdicts, [verdict._replace(run=name) for verdict in alone])
@@ -145,15 +171,19 @@ def entry_of(source, arguments, scratch):
     return source, limits, verdicts, governing
 
 
-def report_of(entries, title, lines, colour, asked):
+def report_of(entries, title, lines, colour, asked, program=None):
     """The pages: title, contents, comparison of several files, and the pages of each file."""
     sources = [source for source, *_ in entries]
     report, first_pages = Report(f"traverse {sources[0].file.attrs.get('version', '')}"), []
-    for number, (source, limits, verdicts, governing) in enumerate(entries, 1):
-        report.part("" if len(entries) == 1 else f"{source.title()} ({source.path.name})", number)
+    for number, entry in enumerate(entries, 1):
+        report.part("" if len(entries) == 1 else f"{entry[0].title()} ({entry[0].path.name})", number)
         before = len(report.pages)
-        add_pages(report, source, limits, verdicts, governing, asked)
+        add_pages(report, entry, asked, program)
         first_pages.append(report.pages[before])
+    if len(entries) > 1:
+        report.part("", 0)
+        report.annex()
+    annex_sheet.notes_sheet(report, entries)
     report.part("", 0)
     own, report.pages = report.pages, []
     if len(entries) > 1:
@@ -171,7 +201,8 @@ def run(words):
         arguments.results = [path for path in arguments.results if has_limits(path)]
         if not arguments.results:
             return
-    sources = [Source(path) for path in arguments.results]
+    line = line_of(arguments)
+    sources = [Source(path, line) for path in arguments.results]
     wanted = arguments.language or sources[0].options.get("report_language", "en")
     choose(wanted if wanted in LANGUAGES else "en")
     title = title_sheet.title_of(sources, given_title(arguments), arguments.folder)
@@ -185,11 +216,11 @@ def run(words):
             folder.mkdir()
             entries.append(entry_of(source, arguments, folder))
         lines, colour = comparison_sheet.headline([(source, verdicts) for source, _, verdicts, _ in entries])
-        report = report_of(entries, title, lines, colour, asked)
+        report = report_of(entries, title, lines, colour, asked, program_beside(arguments.program))
         paths = [f"{stem}.pdf", f"{stem}.xlsx"]
         try:
             title_sheet.save(report, paths[0], title)
-            workbook_sheets.write(paths[1], title, lines, entries, asked)
+            workbook_sheets.write(paths[1], title, lines, entries, asked, program_beside(arguments.program))
         except OSError as error:
             raise ReportError(f"{error.filename or stem}: {error.strerror}") from None
     print(f"report  {paths[0]} ({len(report.pages)} pages), {paths[1]}")

@@ -5,7 +5,7 @@ from picture_axes import COLOURS, PALE
 
 from .language import digits, known, num, t
 from .page import GREY, LEFT, table
-from .quantities import unit_of_si
+from .quantities import speed_in_words, unit_of_si
 
 COLUMNS = ("phi_dyn", "phi_dyn_speed", "train_static", "train_dynamic", "train_x", "model_static", "model_with_phi",
            "model_x",
@@ -43,7 +43,7 @@ def sentence(source):
     return t("EN 1991-2 6.4.6.5: the trains govern these effects: {effects}. The greatest ratio to {model} with Φ is "
              "{ratio} ({effect}, {train} at {speed}).", effects=", ".join(map(known, by_train)), model=worst["model"],
              ratio=num(worst["train_over_model"], ".3f"), effect=known(worst["effect"]), train=worst["train"],
-             speed=speed(worst["phi_dyn_speed"]))
+             speed=speed_in_words(worst["phi_dyn_speed"]))
 
 
 def scaled(value, unit):
@@ -53,11 +53,6 @@ def scaled(value, unit):
 
 def place(x):
     return f"x = {num(round(x, 3))} m"
-
-
-def speed(v):
-    unit, factor = unit_of_si("m/s")
-    return f"{num(factor * v)} {unit}"
 
 
 def draw_effect(page, source, name, words, row):
@@ -94,7 +89,8 @@ def sheet(report, source):
                       "α times the effect of LM71, or of SW/0 on continuous bridges, over all positions of the load."))
     page.text(LEFT, t("Statement of the program: {words}", words=source.file["norm"].attrs["words"]), colour=GREY)
     page.y -= 0.1
-    cells = [[known(row["effect"]), row["train"], f"{num(row['phi_dyn'], '.3f')}, {speed(row['phi_dyn_speed'])}",
+    cells = [[known(row["effect"]), row["train"],
+              f"{num(row['phi_dyn'], '.3f')}, {speed_in_words(row['phi_dyn_speed'])}",
               scaled(row["train_static"], row["unit"]),
               f"{scaled(row['train_dynamic'], row['unit'])}, {place(row['train_x'])}",
               row["model"], f"{scaled(row['model_with_phi'], row['unit'])}, {place(row['model_x'])}",

@@ -12,6 +12,7 @@ import picture_layout  # noqa: E402
 from .language import Ticks, capital, t  # noqa: E402
 
 plt.rcParams.update({"font.size": 8.5, "axes.titlesize": 10, "axes.titlepad": 6, "lines.linewidth": 1.2,
+                     "pdf.fonttype": 42,  # whole letters, so that Greek ones can be searched
                      "figure.max_open_warning": 0})  # one figure per page
 
 WIDTH, HEIGHT = 8.27, 11.69
@@ -36,7 +37,7 @@ class Page:
         self.paper = self.figure.add_axes([0, 0, 1, 1])
         self.paper.set(xlim=(0, WIDTH), ylim=(0, HEIGHT))
         self.paper.axis("off")
-        self.heading, self.number = heading, number
+        self.heading, self.number, self.foot_note = heading, number, ""
         self.y = TOP
 
     def text(self, x, text, size=SIZE, colour=INK, width=None, **words):
@@ -84,6 +85,7 @@ class Report:
         self.foot = foot
         self.pages, self.contents, self.anchors, self.references = [], [], {}, []
         self.prefix, self.count, self.in_annex = "", 0, False
+        self.foot_note = ""  # explains the marks of the pages that follow
 
     def part(self, title, number):
         """Starts the pages of one results file of several; its sections are numbered from 1."""
@@ -114,6 +116,7 @@ class Report:
             if numbered:
                 self.contents.append([page.number, heading, page])
         page.y -= 0.12
+        page.foot_note = self.foot_note
         self.pages.append(page)
         return page
 

@@ -3,9 +3,10 @@ table."""
 
 from typing import NamedTuple
 
+import numpy as np
 from engineering_units import shown
 
-from .language import t
+from .language import digits, num, t
 
 
 class Quantity(NamedTuple):
@@ -31,9 +32,9 @@ QUANTITIES = {
     "wheel_unloading": Quantity("greatest wheel unloading, unfiltered"),
     "filtered_wheel_unloading": Quantity("greatest wheel unloading, low-pass filtered"),
     "unloading_time": Quantity("longest time of wheel unloading, low-pass filtered", "loss_time"),
-    "lm71_deflection_over_span": Quantity("deflection over span length under LM71"),
-    "lm71_end_rotation": Quantity("rotation of the deck ends under LM71", "rotation"),
-    "lm71_joint_rotation": Quantity("relative rotation of adjacent decks under LM71", "rotation"),
+    "lm71_deflection_over_span": Quantity("deflection over span length under LM71 or the trains"),
+    "lm71_end_rotation": Quantity("rotation of the deck ends under LM71 or the trains", "rotation"),
+    "lm71_joint_rotation": Quantity("relative rotation of adjacent decks under LM71 or the trains", "rotation"),
     "train_over_lm71": Quantity("effect of the trains over that of LM71"),
     "rail_tension": Quantity("additional tensile stress of the rails", "stress"),
     "rail_compression": Quantity("additional compressive stress of the rails", "stress"),
@@ -51,17 +52,31 @@ def words_of(name):
     return t(QUANTITIES[name].words) if name in QUANTITIES else name.replace("_", " ")
 
 
-def over_span(name, value):
-    """A deflection over the span length as engineers write it, L/600; empty for other quantities."""
-    if not name.endswith("deflection_over_span"):
-        return ""
-    return f"L/{1.0 / value:.0f}" if value > 0.0 else "0"
-
-
 def unit_of(name):
     """(unit for print, factor from SI)"""
     kind = QUANTITIES[name].kind if name in QUANTITIES else ""
     return shown(kind) if kind else ("", 1.0)
+
+
+def with_factor(name, factor):
+    """A quantity in words, with a factor that its values contain."""
+    return words_of(name) + ("" if factor == 1.0 else f" × {num(factor, '.5g')}")
+
+
+def shown_value(value, name):
+    """A value of a quantity as text with its usual unit, a deflection over the span as L/600; empty for NaN."""
+    if np.isnan(value):
+        return ""
+    if name.endswith("deflection_over_span"):
+        return f"L/{digits(1.0 / value)}" if value > 0.0 else "0"
+    unit, factor = unit_of(name)
+    return f"{digits(factor * value)} {unit}".strip()
+
+
+def speed_in_words(speed):
+    """A speed in m/s as text with the usual unit."""
+    unit, factor = shown("speed")
+    return f"{num(factor * speed)} {unit}"
 
 
 def unit_of_si(si):

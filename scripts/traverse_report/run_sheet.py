@@ -10,10 +10,29 @@ from .quantities import unit_of_si
 
 EFFECTS = (("deflection", "m", "Deflection, upward positive"), ("moment", "N m", "Bending moment, positive in sagging"),
            ("shear", "N", "Shear force, on both sides of passing loads"),
-           ("acceleration", "m/s2", "Deck acceleration, unfiltered"))
+           ("acceleration", "m/s2", "Deck acceleration, unfiltered"),
+           ("acceleration_lowpass", "m/s2", "Deck acceleration, low-pass filtered"))
+HEIGHT = 0.8  # inches, of a curve along the bridge
+DECK = {"acceleration": "unfiltered_deck_acceleration", "acceleration_lowpass": "deck_acceleration"}  # their limits
 
 
-def envelope_sheet(report, source, heading, run):
+def envelope_of(source, name):
+    """(least, greatest) value at each station; of filtered accelerations those of the stored instants."""
+    file = source.file
+    if f"envelope/{name}" in file:
+        return file[f"envelope/{name}"][:].T
+    if name == "acceleration_lowpass" and f"probes/{name}" in file:
+        values = source.results.over_time(file[f"probes/{name}"])
+        return values.min(axis=0), values.max(axis=0)
+    return None
+
+
+def deck_limits(limits, name):
+    """The limits of a deck acceleration without their factor, as its values do not contain it."""
+    return [limit.value / limit.factor for limit in limits if limit.quantity == DECK.get(name)]
+
+
+def envelope_sheet(report, source, heading, run, limits):
     """The deflected shape of one run at the largest deflection, and its envelopes with the static line."""
     file, x = source.file, source.results.probes
     page = report.page(heading)
@@ -22,7 +41,7 @@ def envelope_sheet(report, source, heading, run):
         page.text(LEFT, t("Dashed line: greatest static deflection, drawn downward."), size=8, colour=GREY)
     unit, factor = unit_of_si("m")
     if "shape/x" in file and len(file["shape/x"]) > 1:
-        ax = page.axes(1.2, right=0.1)
+        ax = page.axes(HEIGHT, right=0.1)
         ax.plot(file["shape/x"][:], factor * file["shape/deflection"][:], color=curves.COLOURS[0], lw=1.8)
         ax.axhline(0.0, color=curves.PALE, lw=0.8)
         ends = source.model.span_ends
@@ -36,14 +55,19 @@ def envelope_sheet(report, source, heading, run):
                           "this run has {all} in total.", count=curves.ENOUGH_A_SPAN, all=len(x)), colour=GREY)
         return
     for name, si, words in EFFECTS:
-        if f"envelope/{name}" not in file:
+        found = envelope_of(source, name)
+        if found is None:
             continue
-        ax = page.axes(1.05, right=0.1)
+        page = report.page(heading) if page.room() < HEIGHT + 0.7 else page
+        ax = page.axes(HEIGHT, right=0.1)
         unit, factor = unit_of_si(si)
-        least, greatest = factor * file[f"envelope/{name}"][:].T
+        least, greatest = (factor * values for values in found)
         curves.along_bridge(ax, source.model.span_ends, x, [("", least, greatest)], unit, marks=False)
         ax.axhline(0.0, color=curves.PALE, lw=0.8)
         ax.set_title(t("{effect}: least and greatest values", effect=t(words)))
+        if name in DECK:
+            curves.draw_bounds(ax, [factor * value for value in deck_limits(limits, name)])
+        page.fit(ax)
         if name == "deflection" and "envelope/static_deflection" in file:
             order = np.argsort(x)
             curves.draw_static(ax, x[order], file["envelope/static_deflection"][:][order])
@@ -54,24 +78,23 @@ def history_sheets(report, source, heading, run, limits):
     time, page = source.results.time, None
     for title, unit, series, lines in deck_panels(source, limits) + bearing_panels(source) + wheel_panels(source):
         names = [name for name, _ in series]
-        if page is None or page.room() < 1.9 + curves.key_room(names):
+        if page is None or page.room() < 1.75 + curves.key_room(names):
             page = report.page(heading)
             page.text(LEFT, run, colour=GREY)
-        ax = page.axes(1.2, right=curves.room_for(names))
+        ax = page.axes(1.05, right=curves.room_for(names))
         curves.history(ax, time, series, title, unit, lines)
         page.fit(ax)
 
 
 def deck_panels(source, limits):
     results, file, panels = source.results, source.file, []
-    deck = [limit.value for limit in limits if limit.quantity == "unfiltered_deck_acceleration"]
     for name, si, words in EFFECTS:
         if name != "shear" and f"probes/{name}" in file and len(results.probes):
             unit, factor = unit_of_si(si)
             values = factor * results.over_time(file[f"probes/{name}"])
             worst = int(np.argmax(np.abs(values).max(axis=0)))
             panels.append((f"{t(words)}, {place_in_words(results.probes[worst], results.supports)}", unit,
-                           [("", values[:, worst])], deck if name == "acceleration" else []))
+                           [("", values[:, worst])], [factor * value for value in deck_limits(limits, name)]))
     return panels
 
 

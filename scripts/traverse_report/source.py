@@ -10,6 +10,7 @@ from picture_data import Results
 from picture_model import Model
 
 from .language import number, t
+from .quantities import with_factor
 
 
 # Rows of engineering_units.csv for varied options of these units.
@@ -35,7 +36,7 @@ class Runs:
     def __init__(self, parameters, values, probes, static, over=(), units=None):
         self.parameters, self.values, self.probes, self.static = parameters, values, probes, static
         self.units = units or {}
-        self.places = {}  # stations of quantities with one value per run
+        self.places, self.factors = {}, {}  # of judged quantities: one station per run, and the factor of the limit
         self.count = len(next(iter(parameters.values())))
         varied = {name: column for name, column in parameters.items() if len(np.unique(column)) > 1}
         self.over = [name for name in over if name in varied]
@@ -54,6 +55,10 @@ class Runs:
     def words(self, name):
         """The name of a varied option, its unit for print and the factor to it."""
         return parameter_words(name, self.units.get(name, ""))
+
+    def quantity_in_words(self, name):
+        """A quantity with the factor of its limit that its values in the file contain."""
+        return with_factor(name, self.factors.get(name, 1.0))
 
     def x(self):
         name, unit, factor = self.words(self.x_name)
@@ -125,9 +130,10 @@ class Runs:
 
 
 class Source:
-    """One results file with the data of all pages."""
+    """One results file with the data of all pages. line: a flow_chart.Line, or None if it is unknown."""
 
-    def __init__(self, path):
+    def __init__(self, path, line=None):
+        self.line, self.governing = line, None  # the source of the governing run of a sweep or study
         self.path = pathlib.Path(path)
         try:
             self.file = h5py.File(path, "r", locking=False)
@@ -145,19 +151,22 @@ class Source:
             self.runs = self._study()
         self.is_run = self.runs is None and "probes/deflection" in self.file and self.results.rows > 0
         self.is_rail = "rail_forces/x" in self.file
-        if self.runs is None and not self.is_run and not self.is_rail:
-            raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor forces of the "
-                              f"rails: "
-                              "nothing to report on")
+        self.is_static = self.runs is None and not self.is_run and not self.is_rail and "static/x" in self.file
+        self.is_dynamic = self.runs is not None or self.is_run
+        if not self.is_dynamic and not self.is_rail and not self.is_static:
+            raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor static effects, "
+                              "nor forces of the rails: nothing to report on")
 
     def _judged(self, runs):
         """Adds the values of quantities with limits, one per run."""
         columns, places = runs.values.pop("judged", None), runs.values.pop("judged_x", None)
         if columns is None or "verdicts/quantity" not in self.file:
             return runs
+        factors = self.file["verdicts/factor"][:] if "verdicts/factor" in self.file else np.ones(columns.shape[1])
         for i, (quantity, _) in enumerate(self.file["verdicts/quantity"].asstr()[:]):
             if quantity not in runs.values and not np.isnan(columns[:, i]).all():
                 runs.values[quantity], runs.places[quantity] = columns[:, i], places[:, i]
+                runs.factors[quantity] = float(factors[i])
         return runs
 
     def _sweep(self):
@@ -187,12 +196,18 @@ class Source:
         units = {name: str(group[name].attrs.get("unit", "1")) for name in names}
         return self._judged(Runs(parameters, values, group["probes_x"][:], group["static_deflection"][:], over, units))
 
+    def static_loads(self):
+        """The names of the trains and load models with static effects."""
+        return [name for name, _ in self.file["static/load"].asstr()[:]] if "static/load" in self.file else []
+
     def title(self):
         return self.options.get("report_structure") or self.results.scene()
 
     def kind_in_words(self):
         if self.is_rail:
             return t("track-bridge interaction, static analysis")
+        if self.is_static:
+            return t("static effects over all positions of the loads, without dynamic analysis")
         if self.is_run:
             speed, (unit, factor) = self.results.speed(), shown("speed")
             return t("one run at {speed}", speed=f"{number(factor * speed)} {unit}") if speed else t("one run")
@@ -213,6 +228,8 @@ class Source:
 
     def train_in_words(self):
         model = self.model
+        if self.is_static:
+            return ", ".join(self.static_loads())
         if self.is_rail:
             return t("a train at {count} positions", count=len(self.file["rail_forces/front"]))
         if len(model.train):

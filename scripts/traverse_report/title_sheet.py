@@ -41,6 +41,14 @@ def day_of(source):
     return datetime.date.fromtimestamp(source.path.stat().st_mtime).isoformat()
 
 
+def local(date):
+    """A date such as 2026-11-27 as the language of the report writes it; other texts remain."""
+    try:
+        return datetime.date.fromisoformat(date).strftime(t("%Y-%m-%d"))
+    except ValueError:
+        return date
+
+
 def digest_of(path):
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
@@ -55,7 +63,7 @@ def title_of(sources, given, folder):
     if given.get("structure") and len(sources) == 1:
         sources[0].options["report_structure"] = given["structure"]
     texts["structure"] = given.get("structure") or ", ".join(dict.fromkeys(source.title() for source in sources))
-    texts["date"] = texts["date"] or max(day_of(source) for source in sources)
+    texts["date"] = local(texts["date"] or max(day_of(source) for source in sources))
     texts["logo"] = logo_of(given["logo"], [pathlib.Path()]) if given.get("logo") else own_logo(sources, texts["logo"],
                                                                                                 folder)
     return Title(**texts)
@@ -131,7 +139,9 @@ def draw_signatures(page, title):
 
 
 def title_page(report, title, sources, lines, colour):
-    page = report.page(t("Verification of the bridge under moving loads")
+    page = report.page(t("Verification of the bridge under static load models")
+                       if all(source.is_static for source in sources)
+                       else t("Verification of the bridge under moving loads")
                        if not any(source.is_rail for source in sources)
                        else t("Verification of track-bridge interaction") if all(source.is_rail for source in sources)
                        else t("Verification of the bridge and of its track"), numbered=False, drop=0.55)
@@ -148,7 +158,7 @@ def title_page(report, title, sources, lines, colour):
                  [(capital(words), said) for words, said in rows if said], size=9.5)
     page.y = max(min(page.y - 0.2, 4.2), 1.6)
     draw_signatures(page, title)
-    rows = [(source.path.name, day_of(source), f"traverse {source.file.attrs.get('version', '')}",
+    rows = [(source.path.name, local(day_of(source)), f"traverse {source.file.attrs.get('version', '')}",
              digest_of(source.path))
             for source in sources]
     table(report, page,
@@ -183,6 +193,7 @@ def save(report, path, title):
                 page.line(11.08, width=0.6)
             page.line(0.62, width=0.6)
             page.paper.text(LEFT, 0.55, report.foot, fontsize=7, color=GREY, va="top")
+            page.paper.text(LEFT, 0.38, page.foot_note, fontsize=6.5, color=GREY, va="top")
             page.paper.text(RIGHT, 0.55, t("page {number} of {count}", number=number, count=len(report.pages)),
                             fontsize=7,
                             color=GREY, va="top", ha="right")

@@ -26,7 +26,8 @@ def add_runs(book, name, source):
     """One row per run: varied options, then the greatest value of its probes."""
     runs = source.runs
     options = [(column, *runs.words(option)) for option, column in runs.parameters.items()]
-    quantities = [(runs.of_run(quantity), words_of(quantity), *unit_of(quantity)) for quantity in runs.values]
+    quantities = [(runs.of_run(quantity), runs.quantity_in_words(quantity), *unit_of(quantity))
+                  for quantity in runs.values]
     head = [t("run")] + [with_unit(words, unit) for _, words, unit, _ in options + quantities]
     columns = [factor * values for values, _, _, factor in options + quantities]
     book.add(name, head, ([run, *(column[run] for column in columns)] for run in range(min(runs.count, MOST_ROWS))))
@@ -49,7 +50,7 @@ def add_curves(book, name, source, limits):
         lines = limit_lines(source, limits, quantity)
         heads = [label] + [with_unit(one, unit) for one in names] + [with_unit(words, unit) for _, words in lines]
         columns += [[value] * len(stations) for value, _ in lines]
-        words = capital(words_of(quantity))
+        words = capital(runs.quantity_in_words(quantity))
         sheet = book.add(f"{name}{i}", heads, zip(stations, *columns), about=words)
         numbers = range(2, len(heads) + 1)
         add_chart(sheet, words, label, unit or t("ratio"), numbers, f"{get_column_letter(len(heads) + 2)}2",
@@ -60,7 +61,7 @@ def add_lines(book, name, source, limits):
     rows = []
     for row in judge_lines(source, limits):
         unit, factor = unit_of(row.limit.quantity)
-        rows.append([row.line, row.limit.clause, words_of(row.limit.quantity), factor * row.limit.value,
+        rows.append([row.line, row.limit.clause, row.limit.words, factor * row.limit.value,
                      factor * row.value,
                      unit or "1", row.x, 1.0 - row.margin, row.margin, t(WORDS[row.word]),
                      "; ".join(f"{num(a, 'g')} – {num(b, 'g')}" for a, b in row.broken)])

@@ -4,9 +4,9 @@ from openpyxl.styles import Font, PatternFill
 
 from . import annex_sheet, assumptions_sheet, checks_sheet, loads_sheet, norm_sheet, rail_sheet, workbook_results
 from .front_sheet import WORDS, peak_rows
-from .language import t
+from .language import known, t
 from .limits import stored
-from .quantities import unit_of, unit_of_si, words_of
+from .quantities import unit_of, unit_of_si
 from .workbook import FILLS, Workbook
 from .workbook_results import with_unit
 
@@ -16,7 +16,7 @@ def add_verdicts(book, name, verdicts):
     for v in verdicts:
         unit, factor = unit_of(v.limit.quantity)
         judged = v.word != "not judged"
-        rows.append([v.limit.clause, v.limit.text, words_of(v.limit.quantity), factor * v.limit.value,
+        rows.append([v.limit.clause, known(v.limit.text), v.limit.words, factor * v.limit.value,
                      factor * v.value if judged else None, unit or "1", v.utilisation if judged else None,
                      v.margin if judged else None, t(WORDS[v.word]), v.run, v.where, v.limit.quantity])
     sheet = book.add(name, [t("clause"), t("requirement"), t("quantity"), t("limit"), t("value"), t("unit"),
@@ -34,7 +34,7 @@ def add_scope(book, name, source, verdicts):
     book.add(name, [t("requirement"), t("clause"), t("result"), t("limit"), t("value")], rows)
 
 
-def add_source(book, prefix, entry, asked):
+def add_source(book, prefix, entry, asked, program):
     """All sheets of one results file."""
     source, limits, verdicts, governing = entry
     if verdicts:
@@ -69,13 +69,16 @@ def add_source(book, prefix, entry, asked):
         if alone := stored(governing.source):
             add_verdicts(book, f"{prefix}{t('governing run')} {t('verdicts')}", alone)
         workbook_results.add_run(book, f"{prefix}{t('governing run')} ", governing.source, asked)
-    notes = [[t("note"), str(i), note] for i, note in enumerate(source.model.notes, 1)]
-    errors = [[t("estimated relative error"), words, value] for words, value in annex_sheet.estimates(source)]
-    options = [[t("option"), name, value] for name, value in sorted(source.options.items())]
-    book.add(f"{prefix}{t('annex')}", [t("kind"), t("name"), t("value")], errors + notes + options)
+    notes = [[t("note"), run, note, "", ""] for run, note in annex_sheet.notes_of(source, governing)]
+    rows = [[t("model"), words, value, "", why] for words, value, why in annex_sheet.model_rows(source)] + \
+        [[t("estimated relative error"), words, value, "", why]
+         for words, value, why in annex_sheet.estimates(source)] if source.is_dynamic else []
+    options = [[t("option"), *row] for row in annex_sheet.option_rows(source, program)]
+    book.add(f"{prefix}{t('annex')}", [t("kind"), t("name"), t("value"), t("unit"), t("source")],
+             rows + notes + options)
 
 
-def write(path, title, lines, entries, asked):
+def write(path, title, lines, entries, asked, program=None):
     """title: of the title page; lines: the result; entries: (source, limits, verdicts, governing or None) of each
     file."""
     book = Workbook()
@@ -86,7 +89,7 @@ def write(path, title, lines, entries, asked):
     rows = [[t("result"), line] for line in lines] + [[words, text] for words, text in texts if text]
     front = book.add(t("overview"), [t("report"), ""], rows)
     for number, entry in enumerate(entries, 1):
-        add_source(book, "" if len(entries) == 1 else f"{number} ", entry, asked)
+        add_source(book, "" if len(entries) == 1 else f"{number} ", entry, asked, program)
     front.auto_filter.ref, front.freeze_panes = None, "A2"
     start = front.max_row + 2
     front.cell(start, 1, t("sheets")).font = Font(bold=True)

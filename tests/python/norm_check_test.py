@@ -11,6 +11,7 @@ import unittest
 
 import h5py
 import numpy as np
+import openpyxl
 import yaml
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
@@ -18,7 +19,8 @@ from small_runs import BINARY, SOURCE  # noqa: E402
 
 SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
-from traverse_check import flow_chart, main, outcome, question, rules, scene, units  # noqa: E402
+from traverse_report import language, limits  # noqa: E402
+from traverse_check import flow_chart, main, outcome, question, rules, scene, track_defects, units  # noqa: E402
 
 BRIDGE = ("--span", "28", "--EI", "260 GN.m2", "--mass", "19 t/m", "--type", "prestressed", "--line-speed", "250 km/h")
 # A short span under HSLM-B, which is computed in half a second; its deck acceleration is far above the limit.
@@ -119,6 +121,33 @@ class Questions(unittest.TestCase):
         self.assertIn("might be overwritten", self.refused(name, "--folder", "."))
 
 
+class TrackDefects(unittest.TestCase):
+    """phi'' of EN 1991-2 annex C, by hand for L = 10 m and n0 = 9 Hz: (56/e + 50 (90/80 - 1)/e^0.25)/100 = 0.25469."""
+
+    def test_a_bridge_of_10_m(self):
+        part = flow_chart.Part(10.0, 9.0, True)
+        for speed, careful, expected in ((22.0, False, 1.25469), (80.0, True, 1.127345), (11.0, False, 1.127345)):
+            self.assertAlmostEqual(track_defects.factor([part], speed, careful), expected, 4)
+
+    def test_long_bridges_have_none(self):
+        parts = [flow_chart.Part(60.0, 1.2, True), flow_chart.Part(100.0, 0.7, True)]
+        self.assertAlmostEqual(track_defects.factor(parts, 80.0, False), 1.0, 4)
+
+
+class Verdicts(unittest.TestCase):
+    """The conclusions of the check from verdicts that are given here."""
+
+    def verdict(self, quantity, value, limit=1.0):
+        row = limits.Limit("clause", quantity, limit, "")
+        return limits.Verdict(row, limits.word_of(value, row), value, "", "")
+
+    def test_trains_above_the_load_models_exceed_a_limit(self):
+        found = [self.verdict("deck_acceleration", 2.0, 3.5), self.verdict("train_over_lm71", 1.2)]
+        self.assertEqual(outcome.status(found), outcome.EXCEEDED)
+        self.assertIn("must include the dynamic effects of the trains", outcome.consequence(found))
+        self.assertEqual(outcome.consequence([self.verdict("train_over_lm71", 0.9)]), "")
+
+
 class FlowChart(unittest.TestCase):
     """EN 1991-2 figure 6.9; n0 and L of the parts are given here."""
 
@@ -158,6 +187,14 @@ class FlowChart(unittest.TestCase):
         for length in (3.9, 101.0):
             self.assertIsNone(flow_chart.limits_of_n0(length))
             self.assertTrue(self.answer(length, 5.0, "--line-speed", "160 km/h")[0])
+
+    def test_the_steps_are_in_the_language(self):
+        language.choose("de")
+        try:
+            said = self.answer(28.0, 5.0, "--line-speed", "200 km/h")[1]
+        finally:
+            language.choose("en")
+        self.assertIn("n0 = 5 Hz liegt innerhalb von 3,28 bis 7,84 Hz", said)
 
     def test_every_rule_has_a_clause_and_known_sources(self):
         known = rules.data()["sources"]
@@ -203,28 +240,39 @@ class Scenes(unittest.TestCase):
 
     def test_limits_of_the_track(self):
         file = SOURCE / "options/limits/en1991_2.yml"
-        texts = [scene.limits_text(ask("--track", track), file, True) for track in ("ballast", "direct")]
+        texts = [scene.limits_text(ask("--track", track), file, 1.2) for track in ("ballast", "direct")]
         ballast, direct = ({row["quantity"]: float(row["value"]) for row in yaml.safe_load(text)
                             if "/" not in row["value"]} for text in texts)
         self.assertEqual((ballast["deck_acceleration"], direct["deck_acceleration"]), (3.5, 5.0))
         self.assertEqual((ballast["end_rotation"], direct["end_rotation"]), (6.5e-3, 5.0e-3))
         self.assertNotIn("lm71_joint_rotation", ballast)
-        joints = scene.limits_text(ask("--span", "25,30", "--simply-supported"), file, False)
+        factors = {row["quantity"]: row.get("factor") for row in yaml.safe_load(texts[0])}
+        self.assertEqual(factors, {"deck_acceleration": "1.2", "end_rotation": "1.2", "lm71_deflection_over_span": None,
+                                   "lm71_end_rotation": None, "train_over_lm71": None})
+        joints = scene.limits_text(ask("--span", "25,30", "--simply-supported"), file, None)
         self.assertEqual({row["quantity"] for row in yaml.safe_load(joints)},
                          {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation"})
 
     def test_limits_of_the_user(self):
         with tempfile.TemporaryDirectory() as folder:
             own, asked = pathlib.Path(folder, "own.yml"), ask("--track", "direct", "--limits", "own.yml")
-            own.write_text('- {clause: "our rule", quantity: deck_acceleration, value: 1/3}\n', encoding="utf-8")
-            self.assertEqual(yaml.safe_load(scene.limits_text(asked, own, True)),
-                             [{"clause": "our rule", "quantity": "deck_acceleration", "value": "1/3"}])
+            own.write_text('- {clause: "our rule", quantity: deck_acceleration, value: 1/3, factor: 1.3}\n'
+                           '- {clause: "ours, too", quantity: train_over_lm71, value: 0.9}\n', encoding="utf-8")
+            self.assertEqual(yaml.safe_load(scene.limits_text(asked, own, 1.2)),
+                             [{"clause": "our rule", "quantity": "deck_acceleration", "value": "1/3", "factor": "1.3"},
+                              {"clause": "ours, too", "quantity": "train_over_lm71", "value": "0.9"}])
             with self.assertRaisesRegex(rules.CheckError, "none of its limits applies"):
-                scene.limits_text(asked, own, False)
+                scene.limits_text(asked, own, None)
             for text in ("{a: [", "7", "[7]", "[{value: 3}]"):
                 own.write_text(text, encoding="utf-8")
                 with self.assertRaisesRegex(rules.CheckError, "no list of limits"):
-                    scene.limits_text(asked, own, True)
+                    scene.limits_text(asked, own, 1.2)
+
+    def test_the_title_page_is_in_the_language_of_the_report(self):
+        title = self.options(ask("--span", "25,30", "--report-language", "de"))["report"]
+        self.assertEqual(title["structure"], "Durchlaufträger über 2 Felder von 25 + 30 m, Spannbeton")
+        self.assertTrue(title["note"].startswith("Dynamische Berechnung nach EN 1991-2 Bild 6.9 erforderlich: ja"))
+        self.assertIn("Not examined", self.options(ask())["report"]["note"])
 
     def test_texts_remain_texts(self):
         hostile = 'x\n"y": \x1b[31m{ # -options_file /etc/passwd'
@@ -260,7 +308,7 @@ class Commands(unittest.TestCase):
     def test_a_limit_is_exceeded(self):
         status, said, error = self.command(*SHORT, "--folder", "short")
         self.assertEqual((status, error), (outcome.EXCEEDED, ""))
-        self.assertIn("Result: 1 of 4 limits is EXCEEDED; greatest utilisation", said)
+        self.assertIn("Result: 1 of 5 limits is EXCEEDED; greatest utilisation", said)
         first, again = self.folder / "short/check.h5", self.run_again(self.folder / "short", "check")
         with h5py.File(first) as one, h5py.File(again) as other:
             acceleration = one["verdicts/value"][0]
@@ -297,15 +345,30 @@ class Commands(unittest.TestCase):
             low, high = flow_chart.limits_of_n0(28.0)
             self.assertIn(f"{low:.2f} to {high:.2f} Hz of figure 6.10", words)  # the program has the same limits
             self.assertEqual([row[0] for row in file["verdicts/verdict"].asstr()[:]], ["kept", "kept"])
+            self.check_report_of_static_effects(self.folder / folder / "check.h5", file)
             options = dict(file["options"].asstr()[:])
             self.assertFalse([value for value in options.values() if os.path.isabs(value)])
+
+    def check_report_of_static_effects(self, path, file):
+        """The report of load models alone has their effects, as in the file, and the answer of the flow chart."""
+        out = self.folder / "static"
+        ended = subprocess.run([sys.executable, "-B", SCRIPTS / "traverse-report", path, "-o", out, "--line-speed",
+                                "160 km/h", "--program", BINARY], capture_output=True, text=True)
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        book = openpyxl.load_workbook(out.with_suffix(".xlsx"))
+        rows = {row[0]: row for row in book["Greatest values"].iter_rows(min_row=2, values_only=True)}
+        self.assertAlmostEqual(rows["moment, static"][1], 1e-3 * np.abs(file["static/moment"][:]).max(), 9)
+        scope = {row[0].split(" (")[0]: row[2] for row in book["Scope"].iter_rows(min_row=2, values_only=True)}
+        self.assertEqual(scope["need for a dynamic analysis"], "no dynamic analysis is necessary")
+        self.assertEqual(scope["range of speeds"], "not applicable: no dynamic analysis is necessary")
+        self.assertEqual(scope["unrestrained uplift at the bearings"], "no uplift: no load lifts a bearing")
 
     def test_a_limit_that_cannot_be_evaluated(self):
         (self.folder / "own.yml").write_text('- {clause: "EN 1990 A2.4.4.3", quantity: car_acceleration, value: 1.0}\n',
                                              encoding="utf-8")
         status, said = self.inside(*SHORT, "--limits", "own.yml")
         self.assertEqual(status, outcome.NOT_JUDGED)
-        self.assertIn("Result: 1 of 1 limits is NOT EVALUATED.", said)
+        self.assertIn("Result: 1 of 2 limits is NOT EVALUATED; ", said)  # 6.4.6.5 is the other one
 
     def test_one_line_for_what_fails(self):
         for words, status, said in ((BRIDGE[2:], 2, "--span is missing"), ((*BRIDGE, "--alpha", "99"), 2, "norm_alpha"),
@@ -327,10 +390,16 @@ class Commands(unittest.TestCase):
             self.assertEqual(sorted(file["sweep/hslm_a"][:]), list(range(1, 11)))
             self.assertAlmostEqual(file["sweep/speed"][:].max(), 1.2 * 250.0 / 3.6, 9)
             self.assertIn(f"n0 = {file['norm'].attrs['n0']:.4g} Hz", said)
-            self.assertIn(f"{file['norm/train_over_model'][:].max():.4g}", said)
+            self.assertIn(f"{file['norm/train_over_model'][:].max():.4g} of 1 ", said)
+            speed, norm = file["sweep/speed"][:].max(), file["norm"]
+            of_track = track_defects.phi_of_track(norm["determinant_length"][0], norm.attrs["n0"], speed)
+            self.assertIn(f"phi'' = {of_track:.3g},", norm.attrs["words"])  # the program has the same formula
+            factors = dict(zip(file["verdicts/quantity"].asstr()[:, 0], file["verdicts/factor"][:]))
+            self.assertAlmostEqual(factors["deck_acceleration"], 1.0 + of_track, 5)
+            self.assertEqual(factors["lm71_end_rotation"], 1.0)
             worst = np.nanmax(file["verdicts/value"][:] / file["verdicts/limit"][:])
         self.assertEqual((folder / "summary.txt").read_text(encoding="utf-8"), said)
-        self.assertIn(f"Result: all 4 limits are complied with; greatest utilisation {100 * worst:.0f} %", said)
+        self.assertIn(f"Result: all 5 limits are complied with; greatest utilisation {100 * worst:.0f} %", said)
 
 
 if __name__ == "__main__":

@@ -7,16 +7,19 @@ import sys
 import unittest
 import unittest.mock
 
+import yaml
+
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from reported import SCRIPTS, Reported  # noqa: E402
+from traverse_check import rules, scene  # noqa: E402
 from traverse_page import along, histories  # noqa: E402
 from traverse_report import (  # noqa: E402
     annex_sheet, checks_sheet, comparison_sheet, fatigue_sheet, front_sheet, language, main, model_sheet, quantities,
-                             rail_sheet,
-    run_sheet, source, title_sheet)
+    rail_sheet, run_sheet, source, static_sheet, title_sheet)
 
 RAIL = f"options_file: {SCRIPTS.parent}/options/scenes/uic774_e13.yml\nuic774: {{fronts: [0.0, 60.0, 60.0]}}\n"
-SOURCES = [path for folder in ("traverse_report", "traverse_page") for path in (SCRIPTS / folder).glob("*.py")]
+SOURCES = [path for folder in ("traverse_report", "traverse_page", "traverse_check")
+           for path in (SCRIPTS / folder).glob("*.py")]
 WORD = re.compile(r"[A-Za-zÄÖÜäöüßéèêàç]{4,}")
 # Names and symbols that are the same in every language.
 SAME = set("traverse HSLM Sperling factor line report limits".split())
@@ -36,14 +39,20 @@ def literals(path):
 def of_tables():
     """The texts of the tables of the report."""
     yield from (row.words for row in quantities.QUANTITIES.values())
-    for table in (model_sheet.KINDS, front_sheet.WORDS, rail_sheet.CASES, annex_sheet.ESTIMATED, source.WORDS):
+    for table in (model_sheet.KINDS, front_sheet.WORDS, rail_sheet.CASES, source.WORDS, scene.WORDS, scene.NAMES):
         yield from table.values()
+    yield from (words for words, _ in annex_sheet.ESTIMATED.values())
+    yield from (words for _, words in static_sheet.DRAWN)
     yield from (words for words, *_ in (*rail_sheet.PEAKS.values(), *rail_sheet.FORCES.values()))
     yield from (words for *_, words in run_sheet.EFFECTS)
     yield from (title for _, _, title, *_ in histories.COLUMNS)
     yield from (title for title, _ in along.ENVELOPES.values())
     for row in checks_sheet.clauses()["requirements"]:
         yield from (row[name] for name in ("requirement", "value", "remark") if name in row)
+    limits = [row for path in (SCRIPTS.parent / "options/limits").glob("*.yml")
+              for row in yaml.safe_load(path.read_text(encoding="utf-8"))]
+    limits += [*rules.data()["rules"].values(), *rules.data()["direct_fastening"].values()]
+    yield from (row["text"] for row in limits if "text" in row)
 
 
 class Table(unittest.TestCase):
@@ -94,7 +103,7 @@ class Pages(Reported):
             if name in one.file:
                 words += one.file[name].asstr()[:].ravel().tolist()
         words += [name for vehicle in one.results.vehicles for name in vehicle]
-        return set(WORD.findall(" ".join(words)))
+        return set(WORD.findall(" ".join(words))) | (self.words_of_file(one.governing) if one.governing else set())
 
     def test_no_text_on_a_page_is_outside_of_the_table(self):
         def masked(text):

@@ -198,7 +198,7 @@ study: {vary: {load_speed: [30.0, 50.0], beam_mass: [1.6e4, 1.8e4, 2.0e4], beam_
             one.runs.units = one.runs.units | units
             report = page.Report()
             curve_sheet.curve_sheets(report, one, [])
-            curve_sheet.envelope_sheet(report, one)
+            curve_sheet.envelope_sheet(report, one, [])
             for sheet in report.pages:
                 renderer = sheet.figure.canvas.get_renderer()
                 for ax in sheet.figure.axes[1:]:

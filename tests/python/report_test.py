@@ -44,9 +44,15 @@ class Norm(Reported):
                              + ["LM71", "SW/2", "SW/0"])  # the hinge joins the spans
             np.testing.assert_allclose(static["LM71: greatest, moment (kN m)"], KNM * file["static/moment"][10, :, 1],
                                        rtol=1e-12)
-            self.assertEqual(verdicts["Value"][4], file["verdicts/value"][4])
+            # The trains of this slender bridge have a larger deflection than LM71: they are judged.
+            effect = list(norm["effect"].asstr()[:, 0]).index("deflection")
+            span = 20.0 if norm["train_x"][effect] < 20.0 else 25.0
+            self.assertGreater(norm["train_dynamic"][effect] / span, file["verdicts/value"][4])
+            self.assertAlmostEqual(verdicts["Value"][4], norm["train_dynamic"][effect] / span, 12)
+            self.assertIn(f"{norm['train'].asstr()[effect, 0]} at ", verdicts["Position, time"][4])
+            self.assertIn("governs", verdicts["Position, time"][4])
             self.assertAlmostEqual(verdicts["Value"][5], norm["train_over_model"][:].max(), 12)
-        self.assertEqual(verdicts["Result"][4:], ["complied with", "exceeded"])
+        self.assertEqual(verdicts["Result"][4:], ["exceeded", "exceeded"])
 
     def test_the_page_is_there_where_trains_were_compared(self):
         for name, pages in (("norm", 2), ("sweep", 1)):

@@ -1,0 +1,166 @@
+"""Requirements that the report decides from the results file without a limit: the need for a dynamic analysis, the
+range of speeds, track defects and uplift at the bearings."""
+
+from typing import NamedTuple
+
+import numpy as np
+from traverse_check import flow_chart, track_defects
+from traverse_check.rules import rule
+
+from .language import num, t
+from .page import AMBER, GREEN, GREY, INK, RED
+from .quantities import speed_in_words, unit_of_si, words_of
+
+
+class Decision(NamedTuple):
+    words: str
+    colour: str
+    anchor: str = ""  # of the page with its reasons
+
+
+def has_equal_spans(source):
+    """Whether all spans are equal and separate, or there is only one."""
+    lengths = np.unique(np.round(np.diff(source.model.span_ends), 6))
+    return len(lengths) == 1 and joints_are(source, "separate")
+
+
+def joints_are(source, kind):
+    return all(joint == kind for _, joint in source.model.supports[1:-1])
+
+
+def need_for_analysis(source):
+    """The answer of the flow chart of figure 6.9; None without line speed or first frequency, and for other bridges."""
+    if source.line is None or "norm" not in source.file:
+        return None
+    separate = has_equal_spans(source)
+    if not separate and not joints_are(source, "continuous"):
+        return None
+    group = source.file["norm"]
+    part = flow_chart.Part(float(group["determinant_length"][:].max()), float(group.attrs["n0"]), separate)
+    return flow_chart.answer(part, source.line)
+
+
+def need(source):
+    found = need_for_analysis(source)
+    if found is None:
+        why = t("not decided: the line speed is not part of the input (--line-speed)") if source.line is None else \
+            t("not decided: the chart needs one span, equal simple spans or a continuous bridge, and its first "
+              "frequency")
+        return Decision(why, AMBER)
+    if not found.needed:
+        return Decision(t("no dynamic analysis is necessary"), INK, "need")
+    if source.is_dynamic:
+        return Decision(t("a dynamic analysis is necessary; this report contains it"), INK, "need")
+    return Decision(t("a dynamic analysis is necessary; this report does not contain it"), RED, "need")
+
+
+def speeds(source):
+    """Whether the runs reach 1.2 times the line speed."""
+    if source.runs is None or not str(source.runs.x_name).endswith("speed"):
+        return None
+    computed = float(np.max(source.runs.parameters[source.runs.x_name]))
+    if source.line is None:
+        return Decision(t("computed up to {speed}; the line speed is not part of the input (--line-speed)",
+                          speed=speed_in_words(computed)), INK, "assumptions")
+    wanted = rule("speeds")["factor"] * source.line.line_speed
+    enough = computed >= (1.0 - 1e-9) * wanted
+    return Decision(t("computed up to {speed}; {factor} times the line speed: {wanted}", speed=speed_in_words(computed),
+                      factor=num(rule("speeds")["factor"]), wanted=speed_in_words(wanted)),
+                    GREEN if enough else RED, "assumptions")
+
+
+def defects(source):
+    """The factors of 6.4.6.4 that the values of the results file contain."""
+    if "verdicts/quantity" not in source.file:
+        return None
+    group = source.file["verdicts"]
+    factors = dict(zip(group["quantity"].asstr()[:, 0], group["factor"][:] if "factor" in group else ()))
+    known = {name: factors[name] for name in track_defects.QUANTITIES if factors.get(name, 1.0) != 1.0}
+    if not known:
+        return Decision(t("the judged values do not contain it (factor of the limits)"), AMBER)
+    said = "; ".join(f"{words_of(name)}: {num(value, '.5g')}" for name, value in known.items())
+    return Decision(t("factors of the judged values: {factors}", factors=said), INK, "verdicts")
+
+
+class Bearing(NamedTuple):
+    value: float  # N, least force on the bridge, upward positive
+    load: str
+    x: float
+
+    def words(self):
+        return t("{value} ({load}, x = {x} m)", value=force_in_words(self.value), load=self.load, x=num(self.x))
+
+
+def force_in_words(force):
+    unit, factor = unit_of_si("N")
+    return f"{num(factor * force)} {unit}"
+
+
+def traffic_uplift(source):
+    """The least static bearing force of all loads, with alpha and Phi or the dynamic factor of the trains at most."""
+    group = source.file["static"]
+    factors = factors_of_reactions(source)
+    least = [Bearing(factor * float(values[:, 0].min()), load, float(group["reaction_x"][int(values[:, 0].argmin())]))
+             for load, factor, values in zip(source.static_loads(), factors, group["reaction"][:])]
+    return min(least, key=lambda one: one.value)
+
+
+def dynamic_uplift(source):
+    """[the least bearing force over time] of the run of the file or of its governing run, if it has bearing forces."""
+    run = source if source.is_run else source.governing
+    if run is None or "supports/reaction" not in run.file:
+        return []
+    forces = run.results.over_time(run.file["supports/reaction"])[:, :, 1]
+    name = t("the run") if run is source else t("governing run")
+    return [Bearing(float(forces.min()), name, float(run.results.supports[int(forces.min(axis=0).argmin())]))]
+
+
+def factors_of_reactions(source):
+    """The largest factor of each static load: alpha Phi of a load model, 1 + phi'dyn + phi''/2 of the worst train."""
+    group = source.file["norm"] if "norm" in source.file else {}
+    phi = float(group["phi"][:].max()) * float(group.attrs["alpha"]) if "phi" in group else 1.0
+    of_train = float((group["train_dynamic"][:] / group["train_static"][:]).max()) if "train_dynamic" in group else 1.0
+    return [phi if load.startswith(("LM", "SW")) else of_train for load in source.static_loads()]
+
+
+def permanent_force(source, at):
+    """The bearing force of the mass of simple spans at a support in N; None of other bridges."""
+    if "mass" not in source.model.group or not joints_are(source, "separate"):
+        return None
+    x, mass = source.model.group["mass"][:].T
+    gravity, total = float(source.options.get("gravity", 9.81)), 0.0
+    for left, right in zip(source.model.span_ends[:-1], source.model.span_ends[1:]):
+        if min(abs(at - left), abs(at - right)) > 1e-6:
+            continue
+        own = np.linspace(left, right, 2001)
+        share = np.abs(own - (right if abs(at - left) < 1e-6 else left)) / (right - left)
+        load = np.interp(own, x, mass) * share
+        total += gravity * float(np.sum(0.5 * (load[1:] + load[:-1]) * np.diff(own)))
+    return total
+
+
+def uplift(source):
+    """Whether the bearing forces of traffic exceed those of the permanent loads; characteristic values."""
+    file = source.file
+    if source.is_run and source.options.get("beam_self_weight") == "true" and "supports/reaction" in file:
+        least = dynamic_uplift(source)[0]
+        words = "no uplift: least bearing force with the mass of the bridge {force}" if least.value > 0.0 else \
+            "uplift: least bearing force with the mass of the bridge {force}"
+        return Decision(t(words, force=least.words()), GREEN if least.value > 0.0 else RED)
+    if "static/reaction" not in file:
+        return Decision(t("not decided: the static bearing forces are missing (norm_load_models)"), AMBER)
+    traffic = min([traffic_uplift(source), *dynamic_uplift(source)], key=lambda one: one.value)
+    if traffic.value > -1e-6 * float(np.abs(file["static/reaction"][:]).max()):
+        return Decision(t("no uplift: no load lifts a bearing"), GREEN)
+    permanent = permanent_force(source, traffic.x)
+    if permanent is None:
+        return Decision(t("not decided: least force of traffic {force}; the bearing force of the permanent loads is "
+                          "missing (a run with beam_self_weight contains it)", force=traffic.words()), AMBER)
+    stays = permanent + traffic.value > 0.0
+    words = "no uplift: least force of traffic {force}, of the mass of the bridge {own}" if stays else \
+        "uplift: least force of traffic {force}, of the mass of the bridge {own}"
+    return Decision(t(words, force=traffic.words(), own=force_in_words(permanent)), GREEN if stays else RED)
+
+
+# The decisions by their names in clauses.yml. None: the file does not contain what they need.
+DECISIONS = {"need": need, "speeds": speeds, "track_defects": defects, "uplift": uplift}
