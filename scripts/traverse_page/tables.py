@@ -1,12 +1,16 @@
 """Tables of the page: verdicts, EN 1991-2 6.4.6.5, rail and bridge, forces at rest, envelopes, summary, options."""
 
+import re
+
 import numpy as np
 from engineering_units import shown
 from picture_vehicles import wheels_of
 from traverse_report.language import capital, known, num, percent, t
+from traverse_report.language import number as in_digits
 from traverse_report.limits import factors_of
 from traverse_report.quantities import QUANTITIES, shown_value, unit_of, unit_of_si, with_factor
 from traverse_report.rail_sheet import CASES, PEAKS
+from traverse_report.source import parameter_words
 
 from .along import ENVELOPES, FEWEST_STATIONS
 from .histories import named
@@ -38,6 +42,17 @@ def valued(limit, value):
     return [number(limit["factor"] * value), limit["unit"]]
 
 
+def with_options_in_words(results, text):
+    """The text of a verdict on a study, where the varied options of the run have their names and SI values."""
+    names = str(results.file["study"].attrs["dimensions"]).split(",") if "study/finished" in results.file else []
+    for name in names:
+        words, unit, factor = parameter_words(name, str(results.file["study"][name].attrs.get("unit", "1")))
+        head = "A" if name.endswith("hslm_a") else "" if name.endswith("speed") else f"{words} "
+        text = re.sub(rf"\b{re.escape(name)} (-?\d[\d.,]*(?:e[-+]?\d+)?)(?=,|$)", lambda found: head + in_digits(
+            factor * float(found[1].replace(",", "."))) + (f" {unit}" if unit else ""), text)
+    return text
+
+
 def verdicts(results, limits_of_file, found):
     """The table of the verdicts `found`; None without limits."""
     if not limits_of_file:
@@ -48,7 +63,8 @@ def verdicts(results, limits_of_file, found):
         of_runs = [t("{count} of {all}", count=f"{broken:.0f}", all=f"{runs:.0f}") if runs > 1 else ""] if many else []
         rows.append([verdict.word, limit["clause"], ": ".join(filter(None, (limit["words"], known(limit["text"])))),
                      valued(limit, verdict.value), valued(limit, verdict.limit.value),
-                     None if np.isnan(verdict.value) else percent(verdict.utilisation), verdict.where, *of_runs])
+                     None if np.isnan(verdict.value) else percent(verdict.utilisation),
+                     with_options_in_words(results, verdict.where), *of_runs])
     head = [t("result"), t("clause"), t("requirement"), t("value"), t("limit"), t("utilisation"),
             t("position and time, or reason of a missing value")]
     return {"title": capital(t("verdicts")), "first": True, "head": head + ([t("exceeded in")] if many else []),

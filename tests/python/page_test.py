@@ -1,6 +1,7 @@
 """scripts/page.py in a real browser: what the page draws, plays and says are the numbers of the results file."""
 
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -293,6 +294,12 @@ class PageTest(Computed):
         self.assertIn("180 km/h", row)
         self.assertIn(f"{shown(1e3 * np.abs(file['study/peak_deflection'][number]).max()):g} mm", row)
         self.assertEqual(self.js("page.runs.limitsOf({name: 'deck_acceleration'}).length"), 1)
+        said, where = self.js("byId('verdicts').innerText"), file["verdicts/verdict"].asstr()[0, 1]
+        stiffness, speed = (float(re.search(f"{name} ([-+.e0-9]+)", where)[1]) for name in
+                            ("foundation_vertical_k", "load_speed"))
+        self.assertIn(f"stiffness of the vertical springs {1e-6 * stiffness:.0f} MN/m", said)
+        self.assertIn(f"{3.6 * speed:.4g} km/h", said)
+        self.assertNotIn("load_speed", said)
 
     def test_rail_stresses_are_those_of_the_file(self):
         self.open("rail")
