@@ -48,7 +48,7 @@ def spline_matrix(knots, x, flat=(False, False)):
 
 
 def within(ascending, edges, open_ends=False):
-    """The slices of ascending values between neighbouring edges, with those at the edges or, with open ends, without."""
+    """Slices of ascending values between neighbouring edges, with those at the edges or, with open ends, without."""
     first, last = (np.searchsorted(ascending, edges, side=side) for side in ("left", "right"))
     starts, stops = (last[:-1], first[1:]) if open_ends else (first[:-1], last[1:])
     return [slice(int(start), max(int(start), int(stop))) for start, stop in zip(starts, stops)]

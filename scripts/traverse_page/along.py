@@ -80,8 +80,8 @@ def rail_charts(results):
         curves = [(t(words), np.column_stack([results.values(f"rail_forces/{case}/{side}") for side in sides]))
                   for case, words in CASES.items() if f"rail_forces/{case}/{sides[0]}" in results.file]
         if curves:
-            yield along(known(title), quantity, results.values(f"rail_forces/{at}"), curves, t("position along the track"),
-                        rail_limits(results, signs))
+            yield along(known(title), quantity, results.values(f"rail_forces/{at}"), curves,
+                        t("position along the track"), rail_limits(results, signs))
 
 
 def mode_charts(results):

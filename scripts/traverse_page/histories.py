@@ -66,13 +66,15 @@ def column_charts(results):
             yield some(title, quantity, [(f"{noun} at {place:.6g} m", values[:, i]) for i, place in enumerate(x)])
             continue
         kept = choose_probes(results, np.nanmax(np.abs(values), axis=0))
-        yield scaled(known(title) + part_of(kept, x), quantity, [(place_in_words(x[i], results.supports), values[:, i]) for i in kept])
+        yield scaled(known(title) + part_of(kept, x), quantity,
+                     [(place_in_words(x[i], results.supports), values[:, i]) for i in kept])
 
 
 def support_charts(results):
     if "supports/reaction" in results.file:
         forces = results.over_time(results.file["supports/reaction"])[:, :, 1]
-        curves = [(t("support at x = {x} m", x=num(x, ".6g")), forces[:, i]) for i, x in enumerate(results.supports) if forces[:, i].any()]
+        curves = [(t("support at x = {x} m", x=num(x, ".6g")), forces[:, i])
+                  for i, x in enumerate(results.supports) if forces[:, i].any()]
         if curves:
             yield some(t("Support reactions on the bridge, upward positive"), "force", curves)
 

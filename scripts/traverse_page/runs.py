@@ -62,13 +62,14 @@ def profiles(runs, kept):
             unit, factor = unit_of(name)
             largest = np.where(np.isfinite(values), values, -np.inf).max(axis=0)
             of_runs = packed(factor * values[kept][:, order]) if few else None
-            found.append({"title": t("Along the bridge: {effect}", effect=words_of(name)), "unit": unit, "x": packed(runs.probes[order]),
+            found.append({"title": t("Along the bridge: {effect}", effect=words_of(name)), "unit": unit,
+                          "x": packed(runs.probes[order]),
                           "largest": packed(factor * largest[order]), "runs": of_runs})
     return found
 
 
 def speeds_of(results, runs):
-    """The constant speed of the train of each run, m/s; None if a run moves in another way than the model in the file."""
+    """The constant speed of the train of each run, m/s; None if runs move in another way than the model in the file."""
     model, varied = Model(results), [name for name, column in runs.parameters.items() if len(np.unique(column)) > 1]
     groups = len(np.unique(model.trains[:, 0])) + len(np.unique(model.loads[:, 0]))
     tabled = any(name.endswith("_speed_file") for name in results.options)
@@ -76,7 +77,8 @@ def speeds_of(results, runs):
     others = [name for name in varied if name not in names and name.startswith(OF_PLACES)]
     trains = {f"A{number:.0f}" for number in np.unique(runs.parameters.get("hslm_a", ()))}
     both = len(model.train) > 0 and len(model.forces) > 0
-    if tabled or others or both or groups > 1 or len(names) > 1 or not (len(model.train) or trains <= set(model.forces)):
+    unknown = not len(model.train) and not trains <= set(model.forces)
+    if tabled or others or both or unknown or groups > 1 or len(names) > 1:
         return None
     speed = runs.parameters[names[0]] if names else np.full(runs.count, results.speed() or 0.0)
     return speed if np.all(speed != 0.0) else None

@@ -191,8 +191,8 @@ def exaggeration_in_words(factor, bodies):
 
 
 def still(results, travels=False):
-    """The drawing of a file without a run over time. A train that is nowhere at rest is in the middle of the bridge or, if
-    it travels, where it starts: the page then moves it at the speed of the chosen run."""
+    """The drawing of a file without a run over time. A train that is nowhere at rest is in the middle of the bridge or,
+    if it travels, where it starts: the page then moves it at the speed of the chosen run."""
     model = Model(results)
     if not len(model.span_ends):
         return None

@@ -83,11 +83,12 @@ def norm(results):
         shown_unit, factor = unit_of_si(unit)
         dynamic, *forces, ratio = of_row
         static, with_dynamic, of_model, with_phi = ([number(factor * value), shown_unit] for value in forces)
-        rows.append([known(effect.replace("_", " ")), known(governs), train, number(dynamic), static, with_dynamic, model, of_model,
-                     with_phi, number(ratio)])
+        rows.append([known(effect.replace("_", " ")), known(governs), train, number(dynamic), static, with_dynamic, model,
+                     of_model, with_phi, number(ratio)])
     return {"title": t("Dynamic verdict by EN 1991-2, 6.4.6.5"), "rows": rows,
             "head": [t("effect"), t("governs"), t("train"), "φ′dyn", t("static"), "1 + φ′dyn + φ″/2", t("load model"),
-                     t("static"), t("with α and Φ"), t("train over load model")], "note": str(group.attrs.get("words", ""))}
+                     t("static"), t("with α and Φ"), t("train over load model")],
+            "note": str(group.attrs.get("words", ""))}
 
 
 def rail(results):
@@ -108,8 +109,9 @@ def rail(results):
         head += [f"{t(words)} ({unit})", t("at x (m)")]
     fronts = group["front"][:]
     return {"title": t("Track-bridge interaction by UIC 774-3"), "head": head, "rows": rows,
-            "note": t("Of {count} positions of the train, its front {low} to {high} m behind the end of the bridge from "
-                      "which it comes.", count=len(fronts), low=num(fronts.min(), ".6g"), high=num(fronts.max(), ".6g"))}
+            "note": t("Of {count} positions of the train, its front {low} to {high} m behind the end of the bridge "
+                      "from which it comes.",
+                      count=len(fronts), low=num(fronts.min(), ".6g"), high=num(fronts.max(), ".6g"))}
 
 
 def envelope(results):

@@ -10,7 +10,8 @@ def words():
         "decimal": "." if Chosen.language == "en" else ",",
         "kept": t("complied with"), "broken": t("exceeded"), "not judged": t("not evaluated"),
         "verdicts": capital(t("verdicts")), "result": t("result"), "value": t("value"), "limit": t("limit"),
-        "requirement": t("requirement"), "utilisation": t("utilisation"), "beyond": t("beyond this axis: {limits}"), "skip": t("Go to the results"),
+        "requirement": t("requirement"), "utilisation": t("utilisation"),
+        "beyond": t("beyond this axis: {limits}"), "skip": t("Go to the results"),
         "drawing": t("Drawing"), "play": t("Play"), "pause": t("Pause"), "playKey": t("Play or pause (space)"),
         "back": t("One sample back (left arrow)"), "forth": t("One sample forward (right arrow)"), "time": t("time"),
         "speedOfPlaying": t("Speed of playing"), "realTime": t("{factor} × real time"),
@@ -25,8 +26,8 @@ def words():
         "largest": t("largest of all runs"), "variedOption": t("varied option"), "at": t("at x"),
         "bridge": t("position along the bridge"), "along": t("Along the bridge"), "histories": t("Over time"),
         "reset": t("Reset zoom"),
-        "chartsNote": t("Drag across a chart to zoom in all of them, click to go to an instant, click a name to hide its "
-                        "curve. The numbers beside the names are the values at the instant of the drawing."),
+        "chartsNote": t("Drag across a chart to zoom in all of them, click to go to an instant, click a name to hide "
+                        "its curve. The numbers beside the names are the values at the instant of the drawing."),
         "notes": t("Notes of the program (in English)"), "find": t("Find"),
         "keys": t("Keys: space plays, the arrows step, + and − zoom the charts about the instant, 0 resets the zoom."),
         "caveat": t("Only the limits listed here were evaluated. All other requirements need a separate verification."),
