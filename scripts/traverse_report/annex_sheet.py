@@ -19,16 +19,28 @@ USUAL = ("deflection", "acceleration", "acceleration_lowpass", "moment")  # list
 SECONDS_FOR_HELP = 10.0
 
 
-def estimates(source):
-    """Rows (quantity, estimated relative error, where it comes from)."""
-    rows = []
+def estimates(source, governing):
+    """Rows (quantity, estimated relative error, where it comes from). governing: the repeated run, or None."""
+    rows, of_finer = [], errors_of_governing(governing)
     for name, (words, in_notes) in ESTIMATED.items():
         error = source.summary.get(f"expected_error_{name}")
         if error is not None:
             rows.append((t(words), percent_of_error(error), t("trial runs with finer mesh, step or more modes")))
+        elif name in of_finer:
+            rows.append((t(words), percent_of_error(of_finer[name]),
+                         t("governing run with twice the elements and natural modes")))
         elif name in USUAL or (name == "wheel_force" and len(source.model.train)):
             rows.append((t(words), t("not estimated"), reason(source, in_notes)))
     return rows
+
+
+def errors_of_governing(governing):
+    """{quantity: relative difference of the peak of the governing run from the finer one}"""
+    if governing is None or governing.finer is None:
+        return {}
+    run, finer = governing.source.summary, governing.finer.summary
+    return {name: abs(float(run[name]) / float(finer[name]) - 1.0) for name in USUAL
+            if name in run and finer.get(name, 0.0) != 0.0}
 
 
 def percent_of_error(error):
@@ -116,7 +128,7 @@ def option_rows(source, program):
             if not name.startswith(("vehicle_", "output_file", "report_"))]
 
 
-def sheet(report, source, program):
+def sheet(report, source, governing, program):
     report.annex()
     if source.is_dynamic:
         page = report.page(t("Mesh, time step and error estimates"))
@@ -127,7 +139,7 @@ def sheet(report, source, program):
         page.y -= 0.05
         columns = [(t("peak values of"), 2.2, "left"), (t("estimated relative error"), 1.5, "left"),
                    (t("source of the estimate, or why there is none"), 3.1, "left")]
-        table(report, page, columns, [(capital(words), *rest) for words, *rest in estimates(source)])
+        table(report, page, columns, [(capital(words), *rest) for words, *rest in estimates(source, governing)])
     page = report.page(t("Options of the computation"))
     page.text(LEFT, t("Numbers are in the unit of the option; the run of the file has these options and defaults of "
                       "the program for all others."), size=8, colour=GREY)

@@ -225,10 +225,16 @@ def of_accuracy(source):
     return rows
 
 
+def curve_in_words(name):
+    """The name that the program gives a curve over the speed, such as 'end rotation of A8'."""
+    quantity, of, train = name.partition(" of A")
+    return t("{quantity} of {train}", quantity=known(quantity), train=f"A{train}") if of else known(name)
+
+
 def uncertainty_of(source):
     """By how much a peak over the speed may exceed the computed one, in words."""
     summary = source.summary
-    share, curve = float(summary["peak_uncertainty"]), known(str(summary["peak_uncertainty_of"]))
+    share, curve = float(summary["peak_uncertainty"]), curve_in_words(str(summary["peak_uncertainty_of"]))
     said = t("{share} ({curve})", share=percent(share), curve=curve) if share > 0.0 else percent(share)
     return f"{said}; {t('{count} speeds added', count=int(summary['speeds_added']))}"
 

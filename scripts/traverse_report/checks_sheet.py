@@ -59,7 +59,8 @@ def results_of(source, row, verdicts):
     quantities = row.get("quantities", [])
     found = [verdict for verdict in verdicts if verdict.limit.quantity in quantities and verdict.word != "not judged"]
     if found:
-        return [(t(WORDS[v.word]), COLOURS[v.word], shown_value(v.limit.value, v.limit.quantity),
+        return [(": ".join([t(WORDS[v.word]), *([v.limit.words] if len(found) > 1 else [])]), COLOURS[v.word],
+                 shown_value(v.limit.value, v.limit.quantity),
                  shown_value(v.value, v.limit.quantity), "rail" if v.limit.quantity in PAGES["rail"] else "verdicts")
                 for v in found]
     if row.get("needs") == "joints" and not has_joints(source):

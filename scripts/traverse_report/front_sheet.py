@@ -46,9 +46,9 @@ def outcome_of(source, verdicts):
 
 
 def verdict_table(report, page, verdicts):
-    columns = [(t("requirement"), 1.55, "left"), (t("quantity"), 1.2, "left"), (t("limit"), 0.62, "right"),
-               (t("value"), 0.72, "right"), (t("utilisation"), 0.72, "right"), (t("result"), 0.85, "left"),
-               (t("run, position, time"), 1.14, "left")]
+    columns = [(t("requirement"), 1.4, "left"), (t("quantity"), 1.2, "left"), (t("limit"), 0.55, "right"),
+               (t("value"), 0.72, "right"), (t("utilisation"), 0.7, "right"), (t("result"), 0.7, "left"),
+               (t("run, position, time"), 1.53, "left")]
     rows = []
     for v in verdicts:
         judged = v.word != "not judged"

@@ -22,6 +22,11 @@ def value_text(value):
     return f"{int(value)}" if value == round(value) and abs(value) < 2 ** 53 else repr(float(value))
 
 
+def modes_of(source):
+    """The number of natural modes of the runs of a sweep or study; 0: by elements."""
+    return int(source.file["sweep" if "sweep" in source.file else "study"].attrs.get("modes", 0))
+
+
 def options_of(source, run):
     """The options of one run of the table: name -> value."""
     options = {name: value for name, value in source.options.items() if not LEFT_OUT.match(name)}
@@ -39,8 +44,8 @@ def options_of(source, run):
                 if one:
                     count = len(options.get(one, "").split(","))
                     options[one] = ",".join([text] * count)
-    if int(attributes.get("modes", 0)) > 0:
-        options["model_modes"] = str(int(attributes["modes"]))
+    if modes_of(source) > 0:
+        options["model_modes"] = str(modes_of(source))
     if "time_step" in attributes:
         options["ts_dt"] = repr(float(attributes["time_step"]))
     if "elements_per_span" in attributes:
@@ -92,10 +97,14 @@ def governing_run(source, limits):
     return worst, why
 
 
-def repeat(source, run, limits, program, folder, scratch):
-    """Computes the run. Returns the path of its results, or None and the message of the program."""
+def repeat(source, run, limits, program, folder, scratch, finer=1):
+    """Computes the run, with `finer` times the elements and natural modes. Returns the path of its results, or None and
+    the message of the program."""
     options = write_vehicles(options_of(source, run), scratch)
-    out = scratch / "governing.h5"
+    if finer > 1:
+        for name in ("model_modes", "beam_elements_per_span"):
+            options[name] = str(finer * int(options[name]))
+    out = scratch / f"governing_{finer}.h5"
     options["output_file"] = str(out)
     options["output_probes"] = ",".join(f"{x:.10g}" for x in stations(source, run))
     options["output_interval"] = "0.004"

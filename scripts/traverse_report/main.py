@@ -35,6 +35,7 @@ class Governing(NamedTuple):
     why: str
     source: Optional[Source]  # its results; None if it could not be repeated
     trouble: str
+    finer: Optional[Source] = None  # its results with twice the elements and natural modes
 
 
 def positive(text):
@@ -122,7 +123,11 @@ def governing_of(source, limits, arguments, scratch):
     if program is None:
         return Governing(words, why, None, "the program traverse is not beside this script; --program names it")
     path, trouble = again.repeat(source, run, limits, program, arguments.folder or ".", scratch)
-    return Governing(words, why, Source(path) if path is not None else None, trouble)
+    if path is None:
+        return Governing(words, why, None, trouble)
+    finer = again.repeat(source, run, limits, program, arguments.folder or ".", scratch, finer=2)[0] \
+        if again.modes_of(source) else None
+    return Governing(words, why, Source(path), "", Source(finer) if finer is not None else None)
 
 
 def add_pages(report, entry, asked, program):
@@ -146,7 +151,7 @@ def add_pages(report, entry, asked, program):
         run_sheet.history_sheets(report, one, t("Time histories"), words, limits)
         comfort_sheet.sheet(report, one, words)
         fatigue_sheet.sheet(report, one, words, asked)
-    annex_sheet.sheet(report, source, program)
+    annex_sheet.sheet(report, source, governing, program)
 
 
 def has_limits(path):

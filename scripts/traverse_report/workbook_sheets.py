@@ -72,7 +72,7 @@ def add_source(book, prefix, entry, asked, program):
     notes = [[t("note"), run, note, "", ""] for run, note in annex_sheet.notes_of(source, governing)]
     rows = [[t("model"), words, value, "", why] for words, value, why in annex_sheet.model_rows(source)] + \
         [[t("estimated relative error"), words, value, "", why]
-         for words, value, why in annex_sheet.estimates(source)] if source.is_dynamic else []
+         for words, value, why in annex_sheet.estimates(source, governing)] if source.is_dynamic else []
     options = [[t("option"), *row] for row in annex_sheet.option_rows(source, program)]
     book.add(f"{prefix}{t('annex')}", [t("kind"), t("name"), t("value"), t("unit"), t("source")],
              rows + notes + options)

@@ -1,0 +1,214 @@
+"""Requirements that scripts/traverse-report decides without a limit, and its annex: against the results files."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from reported import BINARY, Reported  # noqa: E402
+from traverse_check import flow_chart  # noqa: E402
+from traverse_report import (  # noqa: E402
+    annex_sheet, decisions, fatigue_sheet, language, larger_effect, limits, main, page, run_sheet, source, title_sheet)
+
+SIMPLE = """
+beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
+model: {modes: 3, damping_ratios: 0.01}
+scene: {tail: 0.2}
+"""
+TRAINS = """
+sweep: {speed: [40.0, 80.0, 5.0], hslm_a: [1, 2]}
+norm: {load_models: [lm71]}
+limits: factor.yml
+"""
+FACTOR = '- {clause: "rule 7", quantity: deck_acceleration, value: 3.5, factor: 1.25}\n'
+
+
+class Computations(Reported):
+    """Sweeps over a simple and a continuous bridge, and a run with the weight of the bridge."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        if (cls.folder / "simple.h5").exists():
+            return
+        (cls.folder / "factor.yml").write_text(FACTOR, encoding="utf-8")
+        cls.compute("simple", SIMPLE + TRAINS)
+        cls.compute("continuous", SIMPLE.replace("[20.0]", "[20.0, 20.0]") + TRAINS)
+        cls.compute("heavy", SIMPLE.replace("mass: 1.8e4", "mass: 1.8e4, self_weight: true")
+                    + "load: {forces: [2.0e5], speed: 40.0}\noutput: {interval: 0.01}\n")
+
+    def source(self, name, line=None):
+        return source.Source(self.folder / f"{name}.h5", line)
+
+
+class Decisions(Computations):
+    def test_the_need_for_a_dynamic_analysis(self):
+        one = self.source("simple", flow_chart.Line(200.0 / 3.6))
+        part = flow_chart.Part(20.0, one.file["norm"].attrs["n0"], True)
+        self.assertEqual(decisions.need_for_analysis(one), flow_chart.answer(part, one.line))
+        self.assertIn("--line-speed", decisions.need(self.source("simple")).words)
+        hinged = self.source("sweep", flow_chart.Line(60.0))  # neither simple spans nor continuous
+        self.assertIsNone(decisions.need_for_analysis(hinged))
+
+    def test_the_range_of_speeds(self):
+        for line_speed, colour in ((60.0, page.GREEN), (80.0 / 1.2, page.GREEN), (70.0, page.RED)):
+            found = decisions.speeds(self.source("simple", flow_chart.Line(line_speed)))
+            self.assertEqual(found.colour, colour)
+            self.assertIn("computed up to 288 km/h", found.words)
+
+    def test_factors_of_track_defects(self):
+        self.assertTrue(decisions.defects(self.source("simple")).words.endswith(": 1.25"))
+        self.assertIn("do not contain it", decisions.defects(self.source("judged")).words)
+        self.assertIsNone(decisions.defects(self.source("heavy")))
+
+    def test_verdicts_contain_the_factor(self):
+        one = self.source("simple")
+        without = limits.Limit("rule 7", "deck_acceleration", 3.5, "")
+        with_it, = limits.judge(one, limits.limits_of(one, None, None))
+        other, = limits.judge(one, [without])
+        self.assertEqual(with_it.value, np.nanmax(one.file["sweep/judged"]))
+        self.assertAlmostEqual(other.value, with_it.value / 1.25, 12)
+        self.assertEqual(with_it.limit.words, "greatest deck acceleration, low-pass filtered × 1.25")
+
+    def test_uplift_of_a_simple_bridge(self):
+        one = self.source("simple")
+        self.assertAlmostEqual(decisions.permanent_force(one, 20.0), 1.8e4 * 9.81 * 10.0, 3)
+        self.assertIn("no load lifts a bearing", decisions.uplift(one).words)
+        one.governing = self.source("heavy")
+        self.assertEqual(decisions.dynamic_uplift(one)[0].value,
+                         one.governing.file["supports/reaction"][:, :, 1].min())
+
+    def test_uplift_of_a_continuous_bridge_lacks_the_permanent_load(self):
+        one = self.source("continuous")
+        found = decisions.uplift(one)
+        self.assertEqual(found.colour, page.AMBER)
+        norm, static = one.file["norm"], one.file["static"]
+        dynamic = (norm["train_dynamic"][:] / norm["train_static"][:]).max()
+        factors = [norm["phi"][0] if load.startswith("LM") or load.startswith("SW") else dynamic
+                   for load, _ in static["load"].asstr()[:]]
+        least = min(factor * values[:, 0].min() for factor, values in zip(factors, static["reaction"][:]))
+        self.assertLess(least, -1e3)
+        self.assertIn(language.num(1e-3 * least), found.words)
+
+    def test_uplift_of_a_run_with_the_weight_of_the_bridge(self):
+        one = self.source("heavy")
+        found = decisions.uplift(one)
+        self.assertEqual(found.colour, page.GREEN)
+        self.assertIn(language.num(1e-3 * one.file["supports/reaction"][:, :, 1].min()), found.words)
+
+
+class LargerEffect(Computations):
+    def test_trains_govern_only_where_they_are_larger(self):
+        file = self.source("simple").file
+        norm = file["norm"]
+        row = list(norm["effect"].asstr()[:, 0]).index("end_rotation")
+        of_trains = float(norm["train_dynamic"][row])
+        for value, factor, expected in ((1.1 * of_trains, 1.0, 1.1 * of_trains), (0.9 * of_trains, 1.0, of_trains),
+                                        (1.1 * of_trains, 1.2, 1.2 * of_trains)):
+            found, place = larger_effect.larger(file, "lm71_end_rotation", value, factor, "LM71, x = 0 m")
+            self.assertEqual(found, expected)
+            self.assertEqual("load models govern" in place, expected == value)
+        self.assertEqual(larger_effect.larger(file, "deck_acceleration", 1.0, 1.0, "A1"), (1.0, "A1"))
+
+    def test_spans_at_supports_are_the_shorter_ones(self):
+        found = larger_effect.spans_at(np.array([0.0, 20.0, 45.0]), np.array([0.0, 20.0, 20.1, 45.0]))
+        np.testing.assert_array_equal(found, [20.0, 20.0, 25.0, 25.0])
+
+    def test_places_are_in_the_language(self):
+        language.choose("de")
+        self.assertEqual(larger_effect.place_of("A1 at 66.705 m/s (240.1 km/h), x = 16.8 m"),
+                         "A1 bei 240,1 km/h, x = 16,8 m")
+        self.assertEqual(larger_effect.place_of("LM71 with alpha = 1.21 and Phi3 = 1.154, x = 14 m"),
+                         "LM71, α = 1,21, Φ₃ = 1,154, x = 14 m")
+        self.assertEqual(larger_effect.place_of("moment of A3 at 265.9 km/h, x = 0 m"),
+                         "Biegemoment, A3 bei 265,9 km/h, x = 0 m")
+        language.choose("en")
+
+
+class Annex(Computations):
+    def whole(self, names):
+        entries, arguments = self.entries_of(names)
+        report = main.report_of(entries, title_sheet.Title(structure="S", date="2026"), ["line"], page.GREEN,
+                                fatigue_sheet.Asked(), BINARY)
+        report.fill_references()
+        return entries, report
+
+    def test_errors_come_from_the_repeated_run_with_a_finer_model(self):
+        (one, _, _, governing), = self.entries_of(["simple"])[0]
+        rows = {words: (error, why) for words, error, why in annex_sheet.estimates(one, governing)}
+        run, finer = governing.source.summary["moment"], governing.finer.summary["moment"]
+        self.assertNotEqual(run, finer)
+        self.assertEqual(rows["bending moment"][0], annex_sheet.percent_of_error(abs(run / finer - 1.0)))
+        self.assertEqual(governing.finer.options["model_modes"], "6")
+        self.assertIn("twice", rows["bending moment"][1])
+        alone = {words: why for words, _, why in annex_sheet.estimates(one, None)}
+        self.assertIn("model_modes = 3 is given", alone["bending moment"])
+
+    def test_filtered_accelerations_of_the_repeated_run_are_drawn(self):
+        (_, rows, _, governing), = self.entries_of(["simple"])[0]
+        values = governing.source.file["probes/acceleration_lowpass"][:]
+        least, greatest = run_sheet.envelope_of(governing.source, "acceleration_lowpass")
+        np.testing.assert_array_equal([least, greatest], [values.min(axis=0), values.max(axis=0)])
+        self.assertEqual(run_sheet.deck_limits(rows, "acceleration_lowpass"), [3.5 / 1.25])
+        titles = [title for title, *_ in run_sheet.deck_panels(governing.source, rows)]
+        self.assertTrue(any("low-pass filtered" in title for title in titles), titles)
+
+    def test_notes_of_all_files_are_listed_once(self):
+        entries, report = self.whole(["simple", "continuous"])
+        rows = annex_sheet.notes_of_all(entries)
+        notes = {name: set(one.model.notes) for name, one in (("simple.h5", entries[0][0]),
+                                                              ("continuous.h5", entries[1][0]))}
+        for note in notes["simple.h5"] & notes["continuous.h5"]:
+            self.assertEqual([run for run, said in rows if said == note], ["all files"])
+        own = notes["continuous.h5"] - notes["simple.h5"]
+        self.assertGreater(len(own), 0)
+        for note in own:
+            self.assertIn(("continuous.h5, first run", note), rows)
+        self.assertEqual([one.heading for one in report.pages].count("Notes of the program (in English)"), 1)
+
+    def test_options_have_units_and_origins(self):
+        rows = {name: rest for name, *rest in annex_sheet.option_rows(self.source("simple"), BINARY)}
+        self.assertEqual(rows["beam_EI"], ["6.0e10", "N m2", "simple.yml, line 2"])
+        self.assertEqual(rows["sweep_speed"][1], "m/s")
+        self.assertEqual(annex_sheet.units_of_options("/bin/false"), {})
+
+    def test_marks_are_explained_on_every_page_that_has_them(self):
+        _, report = self.whole(["simple"])
+        marked = [one for one in report.pages
+                  if any(re.search(r"[0-9)][⁰¹]$", text.get_text()) for text in one.paper.texts)]
+        self.assertGreater(len(marked), 0)
+        for one in marked:
+            self.assertIn("⁰: no public source", one.foot_note)
+        self.assertEqual(report.pages[0].foot_note, "")
+
+    def test_greek_letters_can_be_searched(self):
+        status, _, error = self.command("simple.h5", "--no-governing-run", "--line-speed", "200 km/h")
+        self.assertEqual((status, error), (0, ""))
+        self.assertNotIn(b"/Type3", (self.folder / "simple.pdf").read_bytes())
+        if shutil.which("pdftotext"):
+            said = subprocess.run(["pdftotext", self.folder / "simple.pdf", "-"], capture_output=True, text=True).stdout
+            for text in ("φ′dyn", "Φ₃", "α", "Flow chart of EN 1991-2 figure 6.9 for a line speed of 200 km/h"):
+                self.assertIn(text, said)
+
+    def test_dates_are_those_of_the_language(self):
+        for name, expected in (("en", "2026-11-27"), ("de", "27.11.2026"), ("fr", "27/11/2026")):
+            language.choose(name)
+            self.assertEqual(title_sheet.local("2026-11-27"), expected)
+            self.assertEqual(title_sheet.local("November 2026"), "November 2026")
+        language.choose("en")
+
+    def test_speeds_that_are_no_line_speed(self):
+        for words in (("--line-speed", "fast"), ("--line-speed", "80"), ("--line-speed", "200 km/h",
+                                                                         "--torsional-frequency", "-1 Hz")):
+            status, _, error = self.command("simple.h5", *words)
+            self.assertEqual((status, len(error.strip().splitlines())), (1, 1), error)
+            self.assertIn(words[-2], error)
+
+
+if __name__ == "__main__":
+    unittest.main()
