@@ -108,8 +108,8 @@ def answer(part, line):
         return Answer(steps, True)
     steps.append((clause("simple"), t("simply supported: a simple structure, if it has no skew and rigid supports")))
     if not slow and part.length >= longest["value"]:
-        steps += [frequencies, (clause("long_span"), t("L >= {limit} m: no public source confirms that the analysis may "
-                                                       "be omitted at this line speed: dynamic analysis",
+        steps += [frequencies, (clause("long_span"), t("L >= {limit} m: no public source confirms that the analysis "
+                                                       "may be omitted at this line speed: dynamic analysis",
                                                        limit=num(longest["value"])))]
         return Answer(steps, True)
     if not slow:

@@ -249,5 +249,5 @@ def conditions(question, dynamic):
     if not dynamic or not single:
         return ""
     words = " and ".join("--EI" if name == "stiffness" else "--mass" for name in single)
-    return (f"Condition: no scatter of the given {' and '.join(single)}; the lower and upper bounds, two values of {words}, "
-            "were not examined.")
+    return (f"Condition: no scatter of the given {' and '.join(single)}; the lower and upper bounds, two values of "
+            f"{words}, were not examined.")

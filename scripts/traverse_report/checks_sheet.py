@@ -9,7 +9,7 @@ import yaml
 from .decisions import DECISIONS, need_for_analysis
 from .front_sheet import COLOURS, WORDS
 from .language import capital, t
-from .page import AMBER, GREY, INK, LEFT, Reference, table
+from .page import AMBER, GREY, INK, LEFT, RED, Reference, table
 from .quantities import shown_value, speed_in_words
 
 PAGES = {"rail": {"rail_tension", "rail_compression", "deck_displacement", "deck_end_displacement"}}  # others: verdicts
@@ -87,6 +87,13 @@ def rows_of(source, verdicts):
         mark = MARKS[len(row["sources"])] if row["clause"] and len(row["sources"]) < len(MARKS) else ""
         rows.append((said, row["clause"] + mark, results_of(source, row, verdicts)))
     return rows
+
+
+def alarms(source):
+    """The requirements that are decided without a limit and are not satisfied, in words."""
+    found = [(row, DECISIONS[row["decided"]](source)) for row in clauses()["requirements"] if "decided" in row]
+    return [f"{capital(t(row['requirement']))}, {row['clause']}: {decision.words}" for row, decision in found
+            if decision is not None and decision.colour == RED]
 
 
 def sheet(report, source, verdicts):

@@ -1,5 +1,6 @@
 """The comparison of several results files: the utilisation of each limit in each file, with its page."""
 
+from . import checks_sheet
 from .front_sheet import COLOURS, WORDS, outcome, outcome_of
 from .language import capital, percent, t
 from .page import AMBER, GREEN, GREY, LEFT, RED, RIGHT, Reference, table
@@ -31,8 +32,11 @@ def headline(entries):
                        share=percent(verdict.utilisation),
                        place="; ".join(filter(None, (place, verdict.run))), result=t(WORDS[verdict.word]),
                        quantity="; ".join(filter(None, (verdict.limit.words, verdict.limit.clause)))))
+    alarms = list(dict.fromkeys(said for source, _ in entries for said in checks_sheet.alarms(source)))
+    lines += alarms
     lines.append(t("The result covers only the requirements that the section Scope of verification marks as verified."))
-    return lines, max((colour for _, colour in own), key=SEVERITY.index)
+    colours = [colour for _, colour in own] + ([AMBER] if alarms else [])
+    return lines, max(colours, key=SEVERITY.index)
 
 
 def key_of(limit):

@@ -69,13 +69,18 @@ def add_source(book, prefix, entry, asked, program):
         if alone := stored(governing.source):
             add_verdicts(book, f"{prefix}{t('governing run')} {t('verdicts')}", alone)
         workbook_results.add_run(book, f"{prefix}{t('governing run')} ", governing.source, asked)
+    add_annex(book, f"{prefix}{t('annex')}", source, governing, program)
+
+
+def add_annex(book, name, source, governing, program):
     notes = [[t("note"), run, note, "", ""] for run, note in annex_sheet.notes_of(source, governing)]
-    rows = [[t("model"), words, value, "", why] for words, value, why in annex_sheet.model_rows(source)] + \
-        [[t("estimated relative error"), words, value, "", why]
-         for words, value, why in annex_sheet.estimates(source, governing)] if source.is_dynamic else []
+    rows = []
+    if source.is_dynamic:
+        rows += [[t("model"), words, value, "", why] for words, value, why in annex_sheet.model_rows(source)]
+        rows += [[t("estimated relative error"), words, value, "", why]
+                 for words, value, why in annex_sheet.estimates(source, governing)]
     options = [[t("option"), *row] for row in annex_sheet.option_rows(source, program)]
-    book.add(f"{prefix}{t('annex')}", [t("kind"), t("name"), t("value"), t("unit"), t("source")],
-             rows + notes + options)
+    book.add(name, [t("kind"), t("name"), t("value"), t("unit"), t("source")], rows + notes + options)
 
 
 def write(path, title, lines, entries, asked, program=None):

@@ -13,7 +13,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from reported import BINARY, Reported  # noqa: E402
 from traverse_check import flow_chart  # noqa: E402
 from traverse_report import (  # noqa: E402
-    annex_sheet, decisions, fatigue_sheet, language, larger_effect, limits, main, page, run_sheet, source, title_sheet)
+    annex_sheet, comparison_sheet, decisions, fatigue_sheet, language, larger_effect, limits, main, page,
+    run_sheet, source, title_sheet)
 
 SIMPLE = """
 beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
@@ -82,6 +83,14 @@ class Decisions(Computations):
         one.governing = self.source("heavy")
         self.assertEqual(decisions.dynamic_uplift(one)[0].value,
                          one.governing.file["supports/reaction"][:, :, 1].min())
+
+    def test_what_is_not_satisfied_without_a_limit_is_on_the_title_page(self):
+        for line_speed, colour, count in ((60.0, page.GREEN, 2), (70.0, page.AMBER, 3)):
+            one = self.source("simple", flow_chart.Line(line_speed))
+            kept = limits.judge(one, [limits.Limit("clause", "deck_acceleration", 1e3, "")])
+            lines, found = comparison_sheet.headline([(one, kept)])
+            self.assertEqual((found, len(lines) - 1), (colour, count))
+        self.assertTrue(lines[2].startswith("Range of speeds, EN 1991-2 6.4.6.2: computed up to 288 km/h"), lines)
 
     def test_uplift_of_a_continuous_bridge_lacks_the_permanent_load(self):
         one = self.source("continuous")
