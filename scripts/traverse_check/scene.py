@@ -175,15 +175,16 @@ def limit_rows(question, limits_file, factor):
 
 
 def with_rules_for_trains(found, factor):
-    """Limits with the factor of 6.4.6.4 for the effects of trains, and with the limit of 6.4.6.5; rows that have their
-    own remain."""
-    more = {} if factor == 1.0 else {"factor": f"{factor:.6g}"}
-    found = [more | row if row["quantity"] in track_defects.QUANTITIES else row for row in found]
-    if all(row["quantity"] != "train_over_lm71" for row in found):
-        own = rule("limit_states")
-        found.append({"clause": own["clause"], "quantity": "train_over_lm71", "value": str(own["value"]),
-                      "text": own["text"]})
-    return found
+    """Limits with those of the trains: of deflection and rotation as under LM71, and of 6.4.6.5, each unless there is
+    one; and with the factor of 6.4.6.4 for the effects of trains, unless a row has its own."""
+    own, more = rule("limit_states"), {} if factor == 1.0 else {"factor": f"{factor:.6g}"}
+    added = [row | {"quantity": row["quantity"].removeprefix("lm71_"), "text": "under the trains"} for row in found
+             if row["quantity"].startswith("lm71_")]
+    added.append({"clause": own["clause"], "quantity": "train_over_lm71", "value": str(own["value"]),
+                  "text": own["text"]})
+    given = {row["quantity"] for row in found}
+    found = found + [row for row in added if row["quantity"] not in given]
+    return [more | row if row["quantity"] in track_defects.QUANTITIES else row for row in found]
 
 
 def limits_text(question, limits_file, factor):

@@ -247,8 +247,11 @@ class Scenes(unittest.TestCase):
         self.assertEqual((ballast["end_rotation"], direct["end_rotation"]), (6.5e-3, 5.0e-3))
         self.assertNotIn("lm71_joint_rotation", ballast)
         factors = {row["quantity"]: row.get("factor") for row in yaml.safe_load(texts[0])}
-        self.assertEqual(factors, {"deck_acceleration": "1.2", "end_rotation": "1.2", "lm71_deflection_over_span": None,
-                                   "lm71_end_rotation": None, "train_over_lm71": None})
+        self.assertEqual(factors, {"deck_acceleration": "1.2", "end_rotation": "1.2", "deflection_over_span": "1.2",
+                                   "lm71_deflection_over_span": None, "lm71_end_rotation": None,
+                                   "train_over_lm71": None})
+        values = {row["quantity"]: row["value"] for row in yaml.safe_load(texts[0])}
+        self.assertEqual(values["deflection_over_span"], values["lm71_deflection_over_span"])
         joints = scene.limits_text(ask("--span", "25,30", "--simply-supported"), file, None)
         self.assertEqual({row["quantity"] for row in yaml.safe_load(joints)},
                          {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation"})
@@ -308,7 +311,7 @@ class Commands(unittest.TestCase):
     def test_a_limit_is_exceeded(self):
         status, said, error = self.command(*SHORT, "--folder", "short")
         self.assertEqual((status, error), (outcome.EXCEEDED, ""))
-        self.assertIn("Result: 1 of 5 limits is EXCEEDED; greatest utilisation", said)
+        self.assertIn("Result: 1 of 6 limits is EXCEEDED; greatest utilisation", said)
         first, again = self.folder / "short/check.h5", self.run_again(self.folder / "short", "check")
         with h5py.File(first) as one, h5py.File(again) as other:
             acceleration = one["verdicts/value"][0]
@@ -399,7 +402,7 @@ class Commands(unittest.TestCase):
             self.assertEqual(factors["lm71_end_rotation"], 1.0)
             worst = np.nanmax(file["verdicts/value"][:] / file["verdicts/limit"][:])
         self.assertEqual((folder / "summary.txt").read_text(encoding="utf-8"), said)
-        self.assertIn(f"Result: all 5 limits are complied with; greatest utilisation {100 * worst:.0f} %", said)
+        self.assertIn(f"Result: all 6 limits are complied with; greatest utilisation {100 * worst:.0f} %", said)
 
 
 if __name__ == "__main__":
