@@ -17,6 +17,8 @@ MovingForceLimits::MovingForceLimits(const Scene& scene, SharedBeam& shared, dou
       cutoff_frequency_(cutoff_frequency),
       by_modes_(shared.modal->modes() < shared.modal->probes().count),
       count_(by_modes_ ? shared.modal->modes() : shared.modal->probes().count),
+      rotates_(std::any_of(scene.limits.begin(), scene.limits.end(),
+                           [](const options::VerdictLimit& limit) { return limit.quantity.ends_with("_rotation"); })),
       slopes_(shared.modal->slopes(DeckRotations(*shared.beam).unknowns(), scene.self_weight ? scene.gravity : 0.0)) {}
 
 std::vector<results::EvaluatedQuantity> MovingForceLimits::evaluate(std::size_t train, double end_time,
@@ -57,6 +59,7 @@ void MovingForceLimits::sample_run(std::size_t train, const Plan& plan, LimitChe
   const std::size_t modes = bridge.modes();
   std::vector<double> slopes(slopes_.count);
   const auto sample = [&] {
+    if (!rotates_) return;
     std::copy(slopes_.weight.begin(), slopes_.weight.end(), slopes.begin());
     motion.add_channels(modes, slopes_.count, slopes.data());
     for (std::size_t i = 0; i < modes; ++i)
@@ -92,14 +95,52 @@ void MovingForceLimits::at_probes(const double* of_modes, double* row) const {
   }
 }
 
+/// The largest extreme of the probes' accelerations. Only instants at which the greatest shapes of the modes permit it
+/// are evaluated, each with its neighbours: an extreme is interpolated from five samples.
+Extreme MovingForceLimits::largest_at_probes(double interval) {
+  const std::size_t probes = shared_.modal->probes().count, instants = series_.size() / count_;
+  const std::vector<double>& shapes = shared_.modal->probes().deflection;
+  std::vector<double> greatest_shape(count_, 0.0);
+  for (std::size_t i = 0; i < count_; ++i)
+    for (std::size_t p = 0; p < probes; ++p)
+      greatest_shape[i] = std::max(greatest_shape[i], std::abs(shapes[i * probes + p]));
+  const auto bound = [&](std::size_t k) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < count_; ++i) sum += greatest_shape[i] * std::abs(series_[k * count_ + i]);
+    return sum;
+  };
+  std::size_t largest = 0;
+  for (std::size_t k = 1; k < instants; ++k)
+    if (bound(k) > bound(largest)) largest = k;
+  rows_.resize(instants * probes);
+  at_probes(&series_[largest * count_], rows_.data());
+  double reached = 0.0;
+  for (std::size_t p = 0; p < probes; ++p) reached = std::max(reached, std::abs(rows_[p]));
+  Extreme peak;
+  for (std::size_t k = 0; k < instants;) {
+    if (bound(k) < share_of_largest_sample * reached) {
+      ++k;
+      continue;
+    }
+    const std::size_t first = k - std::min<std::size_t>(k, 2);
+    std::size_t past = k;  // the end of the stretch: three instants without the bound
+    for (std::size_t quiet = 0; past < instants && quiet < 3; ++past)
+      quiet = bound(past) < share_of_largest_sample * reached ? quiet + 1 : 0;
+    for (std::size_t j = first; j < past; ++j) at_probes(&series_[j * count_], &rows_[(j - first) * probes]);
+    const Extreme one =
+        largest_peak(std::span<const double>(rows_).first((past - first) * probes), probes, interval, first);
+    if (std::abs(one.value) > std::abs(peak.value)) peak = one;
+    k = past;
+  }
+  return peak;
+}
+
 results::LowPassed MovingForceLimits::filtered(double interval) {
   const LowPass filter(cutoff_frequency_, interval);
   filter.apply(series_, count_);
-  if (!by_modes_) return peak_of(series_, scene_.output.probes, cutoff_frequency_, interval);
-  const std::size_t probes = shared_.modal->probes().count, instants = series_.size() / count_;
-  rows_.resize(instants * probes);
-  for (std::size_t k = 0; k < instants; ++k) at_probes(&series_[k * count_], &rows_[k * probes]);
-  return peak_of(rows_, scene_.output.probes, cutoff_frequency_, interval);
+  if (!by_modes_)
+    return low_passed_peak(largest_peak(series_, count_, interval), scene_.output.probes, cutoff_frequency_, interval);
+  return low_passed_peak(largest_at_probes(interval), scene_.output.probes, cutoff_frequency_, interval);
 }
 
 }  // namespace traverse::app

@@ -12,6 +12,7 @@
 #include "results/verdict.hpp"
 #include "run/limit_check.hpp"
 #include "run/plan.hpp"
+#include "run/response_extremes.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -32,6 +33,7 @@ class MovingForceLimits {
  private:
   void sample_run(std::size_t train, const Plan& plan, LimitCheck& check);
   results::LowPassed filtered(double interval);
+  Extreme largest_at_probes(double interval);
   /// Converts the modes' accelerations to the accelerations of the probes.
   void at_probes(const double* of_modes, double* row) const;
 
@@ -40,6 +42,7 @@ class MovingForceLimits {
   double cutoff_frequency_;
   bool by_modes_;      // the modes' accelerations are filtered, because there are fewer modes than probes
   std::size_t count_;  // number of filtered series
+  bool rotates_;       // a rotation has a limit
   train::Fleet no_fleet_;
   structure::ModalSlopes slopes_;
   std::map<std::size_t, integrate::ForceHistory> histories_;  // the key is the train

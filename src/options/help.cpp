@@ -44,6 +44,7 @@ constexpr Heading headings[] = {
     {"report", "report", "Title page and language of the report (scripts/traverse-report)"},
     {"sweep", "sweep", "Sweeps over speeds and trains"},
     {"study", "study", "Studies of varied options"},
+    {"find", "find", "Values of an option that keep limits"},
     {"log", "petsc", "Other options of PETSc than ts_..."},
     {"malloc", "petsc", ""},
     {"skip", "petsc", ""},

@@ -253,6 +253,16 @@ constexpr Row later_rows[] = {
   {"study_statistics_quantiles", numbers, "1", "0.5,0.98", {0.0, 1.0, true}, "", 0, "probabilities of the quantiles"},
   {"study_statistics_confidence", number, "1", "0.95", {0.5, 0.9999}, "", 0, "confidence level of the intervals of the quantiles"},
   {"study_refine", number, "1", "(only the speeds given)", tolerance_or_none, "", 0, "as sweep_refine, for each combination of the other options and for the largest value over those of the statistics; study_vary must contain train_speed or load_speed"},
+  {"find_option", text, "", "", any, "", 0, "the option whose values are searched, such as beam_EI or load_speed: all values between find_between that keep the limits, or for which a quantity has a value"},
+  {"find_between", texts, "", "", any, "", 2, "least and greatest value of the search, in the unit of find_option; speeds may be in km/h"},
+  {"find_also", texts, "", "", any, "", 0, "other options that take the value of find_option in every run"},
+  {"find_keep", text, "", "limits", any, "", 0, "what the values shall keep; limits: all limits of runs; or the quantity of one limit"},
+  {"find_quantity", text, "", "", any, "", 0, "instead of limits: the quantity that shall not exceed find_equals; the ends of the intervals are the values at which it equals it"},
+  {"find_equals", number, "", "", positive, "", 0, "value of find_quantity, in its SI unit"},
+  {"find_for_each", texts, "", "(trains and others, if find_option is a speed)", any, "", 0, "varied options with a separate answer for each of their values"},
+  {"find_points", integer, "", "(13; for speeds two in the width of a resonance)", {3, 2000}, "", 0, "number of first values, between which others are added"},
+  {"find_accuracy", number, "1", "1e-3", {1e-8, 0.1}, "", 0, "relative accuracy of the ends of the intervals"},
+
   {"study_resume", flag, "", "false", any, "", 0, "uses the finished runs of the same study in the existing results file"},
 
   {"check", flag, "", "false", any, "", 0, "reads everything, shows model, static loads, selected methods, cost and unusual input, and stops without a run"},

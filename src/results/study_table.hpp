@@ -56,6 +56,8 @@ class StudyTable {
   void put(std::size_t run, const double* row);
   /// Sets the reason why runs cannot evaluate the quantity of a limit, in words.
   void set_reason(std::size_t limit, const std::string& why) { reasons_[limit] = why; }
+  /// The reason that was set last; empty if there is none.
+  std::string reason(std::size_t limit) const { return limit < reasons_.size() ? reasons_[limit] : ""; }
   bool finished(std::size_t run) const { return finished_[run] != 0.0; }
   std::size_t finished_runs() const;
 

@@ -128,9 +128,8 @@ void DeckAcceleration::finish(ResponseExtremes& peaks) {
   peaks.add_low_passed(std::span<const double>(rows_).first(settled * stations_.size()), interval_);
 }
 
-results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,
-                           double interval) {
-  const Extreme peak = largest_peak(rows, stations.size(), interval);
+results::LowPassed low_passed_peak(const Extreme& peak, const std::vector<double>& stations, double frequency,
+                                   double interval) {
   return {{peak.value, peak.time, stations[static_cast<std::size_t>(peak.place)]}, frequency, interval, low_pass_name};
 }
 

@@ -44,9 +44,9 @@ double unsettled_end(double frequency);
 /// which output_probes reduces, or "wheels".
 std::string filter_obstacle(double frequency, const Plan& plan, std::size_t series, const char* what = "probes");
 
-/// The peak of filtered accelerations; rows: all stations at each instant.
-results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,
-                           double interval);
+/// The peak of filtered accelerations with the frequency and the interval of the filter; its place: index of a station.
+results::LowPassed low_passed_peak(const Extreme& peak, const std::vector<double>& stations, double frequency,
+                                   double interval);
 
 /// Filters series, rows of `count` values at intervals of `interval` s from 0 on. Returns the number of rows before the
 /// unsettled end.
@@ -65,7 +65,9 @@ class DeckAcceleration {
   /// After the last instant, once: filters all series and adds the extremes before their unsettled ends to the peaks.
   void finish(ResponseExtremes& peaks);
   /// After finish. The peak of the whole series.
-  results::LowPassed peak() const { return peak_of(rows_, stations_, frequency_, interval_); }
+  results::LowPassed peak() const {
+    return low_passed_peak(largest_peak(rows_, stations_.size(), interval_), stations_, frequency_, interval_);
+  }
   /// Whether the peak is within the unsettled end.
   bool ends_unsettled() const { return peak().extreme.time > settled_until_; }
   /// After finish. The filtered series at the stored samples.

@@ -154,13 +154,27 @@ void ResponseExtremes::add_low_passed(std::span<const double> rows, double inter
   }
 }
 
-Extreme largest_peak(std::span<const double> rows, std::size_t series, double interval) {
+// Only samples near the largest one can belong to the largest extreme. The five samples around each of them determine
+// the interpolated extreme.
+Extreme largest_peak(std::span<const double> rows, std::size_t series, double interval, std::size_t first) {
+  double greatest = 0.0;
+  for (const double value : rows) greatest = std::max(greatest, std::abs(value));
   Extreme largest;
-  for (std::size_t i = 0; i < series; ++i) {
-    const auto record = [&](double value, double time, bool) {
-      if (std::abs(value) > std::abs(largest.value)) largest = {value, time, i};
+  const std::size_t last = rows.size() / std::max<std::size_t>(series, 1);
+  for (std::size_t at = 0; at < rows.size(); ++at) {
+    const double value = std::abs(rows[at]);
+    if (value < share_of_largest_sample * greatest) continue;
+    const std::size_t k = at / series, i = at % series;
+    const bool inner = k > 0 && k + 1 < last;
+    if (inner && (value < std::abs(rows[at - series]) || value < std::abs(rows[at + series]))) continue;
+    const std::size_t from = k - std::min<std::size_t>(k, 2), past = std::min(k + 3, last);
+    const auto record = [&](double extreme, double time, bool) {
+      if (std::abs(extreme) > std::abs(largest.value)) largest = {extreme, time, i};
     };
-    track_series(rows, series, i, interval, record).finish(no_kinks, record);
+    ExtremumTracker curve;
+    for (std::size_t j = from; j < past; ++j)
+      curve.add(static_cast<double>(first + j) * interval, rows[j * series + i], no_kinks, record);
+    if (past == last) curve.finish(no_kinks, record);
   }
   return largest;
 }

@@ -90,9 +90,11 @@ class ResponseExtremes {
   std::array<std::vector<Extreme>, quantities> largest_of_each_;
 };
 
+/// The least magnitude of the sample next to the largest extreme of a series, relative to its largest sample.
+inline constexpr double share_of_largest_sample = 0.8;
 /// The extreme with the largest magnitude of several series, rows of `series` values at intervals of `interval` s from
-/// 0 on; place: index of the series.
-Extreme largest_peak(std::span<const double> rows, std::size_t series, double interval);
+/// first * interval on; place: index of the series.
+Extreme largest_peak(std::span<const double> rows, std::size_t series, double interval, std::size_t first = 0);
 
 /// The relative difference of the largest extremes of two runs, or, if larger, twice the root mean square of the
 /// differences of all extremes above 0.6 of the largest one that are nearest to each other in both runs, within

@@ -99,6 +99,18 @@ std::vector<double> read_speeds(const options::Options& options);
 bool describes_study(const options::Options& options);
 /// The scene of a study's first run, with the study.
 Scene read_study(const options::Options& options);
+/// The reason why a study cannot vary an option; empty if it can.
+std::string why_not_varied(const options::Options& options, const std::string& option);
+/// The least given damping ratio of the bridge; 0 if none is given.
+double least_damping(const Scene& scene);
+/// Whether the options ask for values of an option that keep limits (find_option).
+bool describes_search(const options::Options& options);
+/// The option of a search with the ends of its range.
+StudyDimension searched_dimension(const options::Options& options);
+/// Reads find_... into a study that has the dimension of the search.
+void read_search(const options::Options& options, Study& study);
+/// Sets the first values of a search and its condition, by the limits of the scene.
+void finish_search(const options::Options& options, Scene& scene);
 /// The one given option that selects the forces of a load; empty if there is none.
 std::string load_option(const options::Options& options, const std::string& load = "load");
 /// Whether there are any moving forces.

@@ -60,10 +60,11 @@ void declare_study(Options& o) {
   }
 }
 
-/// The reason why a study cannot vary an option; empty if it can.
+}  // namespace
+
 std::string why_not_varied(const Options& o, const std::string& option) {
   const Row& row = *o.find_known(option);
-  for (const char* own : {"study_", "sweep_", "output_", "scene_", "options_", "accuracy", "modes_"})
+  for (const char* own : {"study_", "sweep_", "find_", "output_", "scene_", "options_", "accuracy", "modes_"})
     if (option.starts_with(own)) return "it applies to the whole study, not to a single run";
   const bool of_petsc = options::owned_by_petsc(option);
   if (of_petsc && option != "ts_dt" && option != "ts_max_time") return "PETSc reads it once, for all runs";
@@ -73,6 +74,8 @@ std::string why_not_varied(const Options& o, const std::string& option) {
   if (number) return "";
   return row.count > 1 ? fmt::format("it needs {}, not one number", options::allowed(row)) : "it is not a number";
 }
+
+namespace {
 
 /// The options that study_vary_... names, in the given order.
 std::vector<std::string> varied_options(const Options& o) {
@@ -216,7 +219,15 @@ StudyDimension dimension_of(const Options& o, const std::string& option, const V
 void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& study) {
   Axes axes(o, study);
   std::vector<std::string> taken;
+  if (describes_search(o)) {
+    StudyDimension searched = searched_dimension(o);
+    taken = searched.options;
+    axes.add_listed(std::move(searched), 2.0);
+  }
   for (StudyDimension& dimension : swept_dimensions(o, vehicles)) {
+    for (const std::string& option : dimension.options)
+      if (std::find(taken.begin(), taken.end(), option) != taken.end())
+        o.refuse("find_option", option + " is also varied by the sweep; remove one of them");
     taken.insert(taken.end(), dimension.options.begin(), dimension.options.end());
     const double count = static_cast<double>(dimension.values.size());
     axes.add_listed(std::move(dimension), count);
@@ -290,12 +301,15 @@ void read_refinement(const Options& o, Study& study) {
     o.refuse(option, "not allowed with statistics over the speed (study_statistics_over)");
 }
 
-/// The least given damping ratio of the bridge; 0 if none is given.
+}  // namespace
+
 double least_damping(const Scene& scene) {
   if (scene.damping.ratios) return std::min(scene.damping.ratios->first, scene.damping.ratios->second);
   const std::vector<double>& ratios = scene.by_given_modes() ? scene.beam->given->ratio : scene.damping_of_modes;
   return ratios.empty() ? 0.0 : *std::min_element(ratios.begin(), ratios.end());
 }
+
+namespace {
 
 /// Adds a note if limits are checked at speeds with larger steps than the half-power width of a resonance, 2 zeta v.
 void record_coarse_speeds(Scene& scene) {
@@ -303,6 +317,7 @@ void record_coarse_speeds(Scene& scene) {
   const auto speeds = std::find_if(study.dimensions.begin(), study.dimensions.end(), is_speed);
   if (speeds == study.dimensions.end() || speeds->law != "list" || study.refine > 0.0 || !scene.has_run_limits())
     return;
+  if (study.find && speeds == study.dimensions.begin() + static_cast<std::ptrdiff_t>(study.find->dimension)) return;
   std::vector<double> v = speeds->values;
   std::sort(v.begin(), v.end());
   const double width = 2.0 * least_damping(scene);
@@ -320,7 +335,8 @@ void record_coarse_speeds(Scene& scene) {
 
 void check_study(const Options& o, Scene& scene) {
   const Study& study = *scene.study;
-  const std::string first = o.first_with_prefix(study_prefix)->name;
+  const options::Entry* const varied_first = o.first_with_prefix(study_prefix);
+  const std::string first = varied_first != nullptr ? varied_first->name : "find_option";
   if (scene.analysis != Analysis::transient) o.refuse(first, "a study needs scene_analysis transient");
   if (!scene.beam) o.refuse(first, "a study needs a bridge (beam_spans)");
   for (const StudyDimension& d : study.dimensions)
@@ -335,7 +351,9 @@ void check_study(const Options& o, Scene& scene) {
 
 }  // namespace
 
-bool describes_study(const Options& o) { return o.first_with_prefix(study_prefix) != nullptr; }
+bool describes_study(const Options& o) {
+  return o.first_with_prefix(study_prefix) != nullptr || describes_search(o);
+}
 
 Scene read_study(const Options& given) {
   Options o = given;
@@ -350,10 +368,12 @@ Scene read_study(const Options& given) {
   read_dimensions(o, vehicles, study);
   read_statistics(o, study);
   read_refinement(o, study);
+  read_search(o, study);
   study.resume = o.flag("study_resume");
   std::vector<std::pair<std::string, std::string>> values = values_of_run(study, 0);
   Scene scene = read_scene_of_study(given, values);
   scene.study = std::move(study);
+  finish_search(o, scene);
   if (o.has("output_lowpass_series"))
     scene.notes.emplace_back("output_lowpass_series has no effect: studies store no series");
   if (scene.norm) {
@@ -377,7 +397,7 @@ Scene read_scene_of_study(const options::Options& given,
                           const std::vector<std::pair<std::string, std::string>>& values) {
   options::Entries entries;
   for (const options::Entry& entry : given.entries())
-    if (!entry.name.starts_with("study_") && entry.name != "sweep_speed" && entry.name != "sweep_refine" &&
+    if (!entry.name.starts_with("study_") && !entry.name.starts_with("find_") && entry.name != "sweep_speed" && entry.name != "sweep_refine" &&
         entry.name != "sweep_hslm_a")
       entries.set(entry);
   for (const auto& [name, value] : values) entries.set({name, value, "a value of the study", 0});

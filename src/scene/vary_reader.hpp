@@ -38,10 +38,10 @@ class VaryReader {
   std::vector<double> draws(std::uint64_t seed, std::size_t count) const;
   /// Checks that the values are given in one way only.
   void check_one_way() const;
+  /// A number in the option's unit, the text `word` of the option `given`; speeds may be given in km/h.
+  double number(const std::string& given, const std::string& word) const;
 
  private:
-  /// A number in the option's unit; speeds may be given in km/h.
-  double number(const std::string& given, const std::string& word) const;
   double number(std::string_view how) const { return number(name(how), o_.text(name(how))); }
   std::vector<double> range(const std::string& given, double from, double to, double step, double& count) const;
 

@@ -22,6 +22,11 @@ double curvature_at(const std::vector<double>& v, const std::vector<double>& y, 
 
 }  // namespace
 
+double possible_peak(const std::vector<double>& v, const std::vector<double>& y, std::size_t i) {
+  const double h = v[i + 1] - v[i], curvature = std::max(curvature_at(v, y, i), curvature_at(v, y, i + 1));
+  return std::max(y[i], y[i + 1]) + 0.125 * curvature_factor * curvature * h * h;
+}
+
 Refinement refine(const std::vector<double>& speed, const std::vector<SpeedCurve>& curves, double tolerance) {
   Refinement refinement;
   std::set<double> added;
@@ -35,9 +40,7 @@ Refinement refine(const std::vector<double>& speed, const std::vector<SpeedCurve
     const double largest = y.empty() ? 0.0 : *std::max_element(y.begin(), y.end());
     if (!(largest > 0.0)) continue;
     for (std::size_t i = 0; i + 1 < v.size(); ++i) {
-      const double h = v[i + 1] - v[i];
-      const double curvature = std::max(curvature_at(v, y, i), curvature_at(v, y, i + 1));
-      const double above = (std::max(y[i], y[i + 1]) + 0.125 * curvature_factor * curvature * h * h) / largest - 1.0;
+      const double h = v[i + 1] - v[i], above = possible_peak(v, y, i) / largest - 1.0;
       if (above > refinement.uncertainty) {
         refinement.uncertainty = above;
         refinement.curve = curve.name;

@@ -13,6 +13,11 @@ struct SpeedCurve {
   std::vector<double> value;  // magnitude at each speed; NaN: not computed
 };
 
+/// The greatest value that a curve of samples y at v (ascending) may have between samples i and i + 1: the higher one
+/// plus h^2/8 times four times the larger curvature of the parabolas through three neighbours there, because a peak
+/// between samples is sharper than its flanks.
+double possible_peak(const std::vector<double>& v, const std::vector<double>& y, std::size_t i);
+
 struct Refinement {
   std::vector<double> speeds;  // m/s, ascending, to be added; empty: no interval has to be halved, or none can be
   double uncertainty = 0.0;    // the largest possible excess of a peak over the largest computed value, relative to it
@@ -20,9 +25,7 @@ struct Refinement {
 };
 
 /// The middles of the intervals between speeds (ascending) in which a curve may exceed its largest value by more than
-/// `tolerance` of it. The bound exceeds the higher end by h^2/8 times four times the larger curvature of the parabolas
-/// through three neighbours there, because a peak between samples is sharper than its flanks. Intervals below 1e-7 of
-/// the speed are not halved.
+/// `tolerance` of it, by possible_peak. Intervals below 1e-7 of the speed are not halved.
 Refinement refine(const std::vector<double>& speed, const std::vector<SpeedCurve>& curves, double tolerance);
 
 /// A limited quantity of one train that is below its limit at all speeds so far.

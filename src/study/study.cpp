@@ -20,6 +20,7 @@
 #include "run/outputs.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
+#include "study/find.hpp"
 #include "study/study_file.hpp"
 #include "study/study_model.hpp"
 #include "study/study_refinement.hpp"
@@ -93,6 +94,7 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
                     engine::instructions())));
   else if (!first.lane_obstacle().empty() && !scene.vehicles.empty())
     notes.push_back("runs are computed one by one: " + first.lane_obstacle());
+  if (study.find) notes.emplace_back("values of the option are added until all ends of its intervals are known");
   if (study.refine > 0.0)
     notes.push_back(
         fmt::format("speeds are added until the error of the peaks over the speed is below {:g}", study.refine));
@@ -116,11 +118,15 @@ bool has_wheels(const Scene& scene) {
   return std::any_of(scene.vehicles.begin(), scene.vehicles.end(), [](const Vehicle& v) { return !v.wheels.empty(); });
 }
 
-std::size_t max_speeds_of(const Study& study, std::size_t given) {
+std::size_t max_values_of(const Study& study, std::size_t given) {
   return study.refine < 0.0 ? max_speeds_by_default(given) : max_speeds(given);
 }
 
-/// Rounds of runs; each round has the speeds of the round before and added ones.
+/// The dimension whose values are added in rounds.
+std::size_t extended_dimension(const Study& study) { return study.find ? study.find->dimension : study.speeds; }
+bool adds_values(const Study& study) { return study.find || study.refine != 0.0; }
+
+/// Rounds of runs; each round has the speeds, or the values of a search, of the round before and added ones.
 class Rounds {
  public:
   /// width: width of a resonance, relative to the speed.
@@ -133,13 +139,13 @@ class Rounds {
         width_(width),
         stored_(std::move(stored)),
         notes_(notes),
-        given_(speeds_of(scenes.study())) {
+        given_(ascending(scenes.study(), extended_dimension(scenes.study()))) {
     begin(scenes.study());
   }
 
   /// Collective. Further speeds (m/s) for the first round.
   void add(const std::vector<double>& speeds) {
-    if (!speeds.empty()) begin(with_speeds(scenes_.study(), speeds));
+    if (!speeds.empty()) begin(with_values(scenes_.study(), scenes_.study().speeds, speeds));
   }
   /// Collective. Copies the results of earlier runs from the file and returns their number.
   std::size_t copy_stored() {
@@ -152,17 +158,18 @@ class Rounds {
     while (true) {
       file_.emplace(comm_, std::move(place), scene_, model_, *table_, notes_);
       RunFailure failure = compute_runs(comm_, scenes_, known_, *table_, *file_);
-      if (scenes_.study().refine == 0.0) return failure;
+      if (!adds_values(scenes_.study())) return failure;
       const bool ends = failure.failed() || signal_on_any(comm_) != 0;
       const std::vector<double> more = ends ? std::vector<double>() : next();
       if (more.empty()) {
-        for (const double speed : speeds_of(scenes_.study()))
+        if (scenes_.study().find) return failure;
+        for (const double speed : ascending(scenes_.study(), scenes_.study().speeds))
           refined_.added.push_back(std::binary_search(given_.begin(), given_.end(), speed) ? 0.0 : 1.0);
         course.refined = std::move(refined_);
         return failure;
       }
       const results::StoredStudy last = stored_of(*table_);
-      begin(with_speeds(scenes_.study(), more));
+      begin(with_values(scenes_.study(), extended_dimension(scenes_.study()), more));
       const std::vector<char> before = copy_known(comm_, last, *table_);
       known_ = copy_known(comm_, stored_, *table_);
       course.known += std::count(known_.begin(), known_.end(), 1) - std::count(before.begin(), before.end(), 1);
@@ -179,25 +186,30 @@ class Rounds {
     table_.emplace(scenes_.study(), scene_.output.probes.size(), has_wheels(scene_), scene_.limits);
     known_.assign(table_->runs(), 0);
   }
-  /// Collective. The speeds to be added, by the peaks on rank 0. Empty: the peaks are known well enough, or the number
-  /// of speeds would exceed its limit.
+  /// Collective. The speeds or searched values to be added, by the table of rank 0. Empty: the results are known well
+  /// enough, or the number of values would exceed its limit.
   std::vector<double> next() {
     const Study& study = scenes_.study();
-    refined_.wanted = std::max(study.refine, 0.0);
     int rank = 0;
     MPI_Comm_rank(comm_, &rank);
-    std::vector<double> speeds;
+    std::vector<double> values;
     if (rank == 0) {
-      const Refinement found = next_speeds(*table_, width_);
-      refined_.uncertainty = found.uncertainty;
-      refined_.curve = found.curve;
-      if (speeds_of(study).size() + found.speeds.size() <= max_speeds_of(study, given_.size())) speeds = found.speeds;
+      values = study.find ? values_to_add(*table_) : speeds_to_add();
+      const std::size_t known = study.dimensions[extended_dimension(study)].values.size();
+      if (known + values.size() > max_values_of(study, given_.size())) values.clear();
     }
-    int size = static_cast<int>(speeds.size());
+    int size = static_cast<int>(values.size());
     MPI_Bcast(&size, 1, MPI_INT, 0, comm_);
-    speeds.resize(static_cast<std::size_t>(size));
-    MPI_Bcast(speeds.data(), size, MPI_DOUBLE, 0, comm_);
-    return speeds;
+    values.resize(static_cast<std::size_t>(size));
+    MPI_Bcast(values.data(), size, MPI_DOUBLE, 0, comm_);
+    return values;
+  }
+  std::vector<double> speeds_to_add() {
+    Refinement found = next_speeds(*table_, width_);
+    refined_.wanted = std::max(scenes_.study().refine, 0.0);
+    refined_.uncertainty = found.uncertainty;
+    refined_.curve = found.curve;
+    return found.speeds;
   }
 
   MPI_Comm comm_;
@@ -207,7 +219,7 @@ class Rounds {
   double width_;
   results::StoredStudy stored_;  // runs of an earlier, interrupted study
   const std::vector<std::string>& notes_;
-  std::vector<double> given_;  // speeds of the user, m/s, ascending
+  std::vector<double> given_;  // first values of the extended dimension, ascending
   std::optional<results::StudyTable> table_;
   std::vector<char> known_;  // 1 for each run whose results are known
   std::optional<StudyFile> file_;
@@ -265,7 +277,8 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
                  : signal != 0    ? fmt::format("ended by signal {}", signal)
                                   : "reached its end";
   const results::StudyTable& table = rounds.table();
-  std::vector<results::Verdict> verdicts = table.verdicts();
+  // A search has runs on both sides of each limit; its answer is not a verdict.
+  std::vector<results::Verdict> verdicts = table.study().find ? std::vector<results::Verdict>() : table.verdicts();
   if (rank == 0 && findings) {
     findings->finish(table);
     findings->add_to(verdicts);
@@ -277,6 +290,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   }
   if (rank == 0) print_study_course(table, model, course, verdicts, found, given);
   if (failure.failed()) throw Error(failure.message, failure.status);
+  if (table.study().find && signal == 0) check_answers(comm, table);
   check_deflection(comm, given, largest_deflection(comm, table));
   return signal == 0 ? 0 : 128 + signal;
 }

@@ -15,6 +15,7 @@
 #include "run/model_record.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
+#include "study/find.hpp"
 
 namespace traverse::app {
 namespace {
@@ -105,10 +106,7 @@ results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results:
       why = error.what();
     }
   }
-  int size = static_cast<int>(why.size());
-  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-  why.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(why.data(), size, MPI_CHAR, 0, comm);
+  why = broadcast_text(comm, std::move(why));
   if (!why.empty())
     throw InputError(
         fmt::format("study_resume: {} contains other runs: {}; without study_resume all runs are computed again",
@@ -240,6 +238,7 @@ void StudyFile::finish(const StudyCourse& course, const std::vector<results::Ver
   if (course.refined && table_.study().sweep)
     recorder_.datasets({{"/sweep/added", {course.refined->added.size()}, course.refined->added, "1"}});
   if (findings != nullptr) findings->record(recorder_);
+  if (table_.study().find) record_answers(table_, answers_of(table_), recorder_);
   results::record_verdicts(recorder_, verdicts);
   std::vector<results::Attribute> summary = results::summary_of(table_);
   for (const auto& [quantity, error] : model_.expected_errors) summary.push_back({"expected_error_" + quantity, error});
@@ -260,6 +259,7 @@ void print_study_course(const results::StudyTable& table, const results::RunMode
     sweep ? results::print_sweep(table) : results::print_study(table);
     if (course.refined) results::print(*course.refined);
     if (findings != nullptr) findings->print();
+    if (table.study().find) print_answers(table, answers_of(table));
     results::StudyStatistics(table).print();
     results::print_verdicts(verdicts, scene.unusual);
   }

@@ -56,7 +56,7 @@ std::string name_of(const Study& study, std::size_t run) {
 Curves sort_runs(const Study& study) {
   Curves curves;
   const options::StudyDimension& speeds = study.dimensions[study.speeds];
-  const std::vector<double> ascending = speeds_of(study);
+  const std::vector<double> sorted = ascending(study, study.speeds);
   std::map<std::vector<std::size_t>, std::size_t> known;
   for (std::size_t run = 0; run < study.runs(); ++run) {
     std::vector<std::size_t> at;
@@ -67,7 +67,7 @@ Curves sort_runs(const Study& study) {
     curves.curve.push_back(found->second);
     const double speed = study.value(run, speeds);
     curves.place.push_back(
-        static_cast<std::size_t>(std::lower_bound(ascending.begin(), ascending.end(), speed) - ascending.begin()));
+        static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), speed) - sorted.begin()));
   }
   return curves;
 }
@@ -97,10 +97,10 @@ std::vector<SpeedCurve> limited_curves(const StudyTable& table, std::size_t l) {
 
 }  // namespace
 
-std::vector<double> speeds_of(const Study& study) {
-  std::vector<double> speeds = study.dimensions[study.speeds].values;
-  std::sort(speeds.begin(), speeds.end());
-  return speeds;
+std::vector<double> ascending(const Study& study, std::size_t dimension) {
+  std::vector<double> values = study.dimensions[dimension].values;
+  std::sort(values.begin(), values.end());
+  return values;
 }
 
 std::vector<SpeedCurve> curves_of(const StudyTable& table) {
@@ -136,16 +136,16 @@ std::vector<LimitedCurve> curves_below_limits(const StudyTable& table) {
 }
 
 Refinement next_speeds(const StudyTable& table, double width) {
-  const std::vector<double> speeds = speeds_of(table.study());
+  const std::vector<double> speeds = ascending(table.study(), table.study().speeds);
   return table.study().refine < 0.0 ? refine_for_limits(speeds, curves_below_limits(table), width)
                                     : refine(speeds, curves_of(table), table.study().refine);
 }
 
-Study with_speeds(Study study, const std::vector<double>& added) {
-  options::StudyDimension& speeds = study.dimensions[study.speeds];
-  speeds.values.insert(speeds.values.end(), added.begin(), added.end());
-  std::sort(speeds.values.begin(), speeds.values.end());
-  study.axes[speeds.axis].length = speeds.values.size();
+Study with_values(Study study, std::size_t dimension, const std::vector<double>& added) {
+  options::StudyDimension& extended = study.dimensions[dimension];
+  extended.values.insert(extended.values.end(), added.begin(), added.end());
+  std::sort(extended.values.begin(), extended.values.end());
+  study.axes[extended.axis].length = extended.values.size();
   return study;
 }
 

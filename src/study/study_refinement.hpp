@@ -22,10 +22,10 @@ std::vector<LimitedCurve> curves_below_limits(const results::StudyTable& table);
 /// resonance, see refine_for_limits.
 Refinement next_speeds(const results::StudyTable& table, double width);
 
-/// The study with these speeds (m/s) added, in ascending order.
-options::Study with_speeds(options::Study study, const std::vector<double>& added);
+/// The study with these values of a dimension added, in ascending order. The dimension has an axis of its own.
+options::Study with_values(options::Study study, std::size_t dimension, const std::vector<double>& added);
 
-/// The speeds of a study, ascending.
-std::vector<double> speeds_of(const options::Study& study);
+/// The values of a dimension, ascending.
+std::vector<double> ascending(const options::Study& study, std::size_t dimension);
 
 }  // namespace traverse::app

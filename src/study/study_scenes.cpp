@@ -109,6 +109,7 @@ Scene StudyScenes::base(std::size_t base) const {
   scene.sweep->runs = runs_.size();
   scene.sweep->seeds = seeds_;
   if (const auto& own = runs_[first_run_[base]].own.seed) std::erase(scene.sweep->seeds, *own);
+  scene.limits = scene_.limits;
   scene.name = scene_.name;
   scene.quiet = scene_.quiet;
   return scene;
