@@ -48,8 +48,8 @@ def print_steps(name, steps):
 
 
 def need(asked, cases, traverse):
-    """Prints the steps of the flow chart for each case. Returns whether there is a dynamic analysis, and the parts of
-    the bridge in all cases."""
+    """Prints the steps of the flow chart for each case. Returns whether one of them needs a dynamic analysis, and the
+    parts of the bridge in all cases."""
     print("Need for a dynamic analysis")
     needed, several, parts = False, asked.separate and len(set(asked.spans)) > 1, []
     for case in cases:
@@ -62,7 +62,7 @@ def need(asked, cases, traverse):
     print("  Result: " + ("dynamic analysis" if needed else
                           "dynamic analysis because of --always, although figure 6.9 requires none" if asked.always else
                           "no dynamic analysis is necessary; load models with Φ only"))
-    return needed or asked.always, parts
+    return needed, parts
 
 
 def modes_of(asked, case, traverse):
@@ -90,7 +90,7 @@ def write(path, text):
     path.write_text(text, encoding="utf-8")
 
 
-def run_all(asked, cases, factor, traverse):
+def run_all(asked, cases, factor, needed, traverse):
     """Writes and runs the scenes of all cases; the names of the results files, with the words of their cases. factor:
     of the limits of effects of trains; None without a dynamic analysis."""
     dynamic = factor is not None
@@ -102,8 +102,8 @@ def run_all(asked, cases, factor, traverse):
         modes = modes_of(asked, case, traverse) if dynamic else 0
         for train in trains:
             names.append(case.name + (f"_hslm_{train.lower()}" if len(trains) > 1 else ""))
-            write(asked.folder / f"{names[-1]}.yml", scene.dynamic_scene(asked, case, modes, train) if train else
-                  scene.static_scene(asked, case))
+            text = scene.dynamic_scene(asked, case, modes, train, needed) if train else scene.static_scene(asked, case)
+            write(asked.folder / f"{names[-1]}.yml", text)
             words = ", ".join(filter(None, [case.words, f"HSLM-{train}" if train else "load models with Φ"]))
             done.append((f"{names[-1]}.h5", words, case))
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
@@ -165,7 +165,8 @@ def status_of(asked, traverse):
     """Runs the check, step by step."""
     print(f"Bridge: {scene.bridge_in_words(asked)}")
     cases = scene.cases(asked, stiffnesses_of(asked, traverse))
-    dynamic, parts = need(asked, cases, traverse)
+    needed, parts = need(asked, cases, traverse)
+    dynamic = needed or asked.always
     first, last, _ = scene.speeds(asked)
     factor = track_defects.factor(parts, last, asked.careful) if dynamic else None
     if dynamic:
@@ -174,7 +175,7 @@ def status_of(asked, traverse):
               f"damping by {clause('damping')}")
         print(f"Effects of trains are judged with the factor {factor:.4g} for track defects, {clause('track_defects')}",
               flush=True)
-    done = run_all(asked, cases, factor, traverse)
+    done = run_all(asked, cases, factor, needed, traverse)
     judged = print_verdicts(asked, done)
     print_remarks(asked, judged, dynamic)
     print(outcome.conclusion(judged), flush=True)

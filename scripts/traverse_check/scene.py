@@ -89,8 +89,8 @@ def norm_text(question):
         (f"track: {'careful' if question.careful else 'standard'}", "EN 1991-2 6.4.5.2: careful: Phi2; standard: Phi3"))
 
 
-def report_text(question, dynamic):
-    texts = title_page(question, dynamic)
+def report_text(question, needed):
+    texts = title_page(question, needed)
     return "report:\n" + rows(*((f"{name}: {quoted(text)}", "") for name, text in texts.items()))
 
 
@@ -111,8 +111,8 @@ def speeds(question):
     return first, last, (last - first) / math.ceil((last - first) / SPEED_STEP)
 
 
-def dynamic_scene(question, case, modes, train):
-    """The sweep of the trains HSLM-A or HSLM-B over the speeds."""
+def dynamic_scene(question, case, modes, train, needed=True):
+    """The sweep of the trains HSLM-A or HSLM-B over the speeds. needed: whether figure 6.9 requires it."""
     first, last, step = speeds(question)
     sweep = [(f"speed: [{first!r}, {last!r}, {step!r}]",
               f"m/s: from, to, step; to {rule('speeds')['factor']} times the line speed, {clause('speeds')}"),
@@ -134,7 +134,7 @@ def dynamic_scene(question, case, modes, train):
             + "model:\n" + rows(*damping) + ("load:\n" + rows(*loads) if loads else "") + "sweep:\n" + rows(*sweep)
             + "scene:\n" + rows(("tail: 1.0", "s of free vibration"))
             + "output:\n" + rows((f"probes: {{spacing: {spacing!r}}}", "m: stations along the bridge"))
-            + norm_text(question) + report_text(question, True) + "limits: limits.yml\n")
+            + norm_text(question) + report_text(question, needed) + "limits: limits.yml\n")
 
 
 def bare_static_scene(question, case, spans):
@@ -215,13 +215,13 @@ def not_covered(question, judged):
             and row.get("needs") != "joints" and row.get("computed", row.get("decided")) not in covered]
 
 
-def title_page(question, dynamic):
+def title_page(question, needed):
     """The texts of the title page in the language of the report: those given, the bridge, and the conditions of the
-    result."""
+    result. needed: whether figure 6.9 requires a dynamic analysis."""
     wanted = question.title.get("language", "en")
     language.choose(wanted if wanted in language.LANGUAGES else "en")
     try:
-        words = "need for a dynamic analysis by EN 1991-2 figure 6.9: yes, at a line speed of {speed}" if dynamic else \
+        words = "need for a dynamic analysis by EN 1991-2 figure 6.9: yes, at a line speed of {speed}" if needed else \
             "need for a dynamic analysis by EN 1991-2 figure 6.9: no, at a line speed of {speed}"
         note = [t(words, speed=speed_in_words(question.line_speed))]
         single = [f"{t(NAMES[name])} ({rule(name)['clause']})" for name in single_bounds(question)]

@@ -9,6 +9,7 @@ from engineering_units import shown
 from .language import capital, digits, known, num, percent, t
 from .model_sheet import KINDS, draw_bridge
 from .page import table
+from .quantities import words_of
 
 FIRST_FREQUENCIES = 6
 
@@ -228,7 +229,8 @@ def of_accuracy(source):
 def curve_in_words(name):
     """The name that the program gives a curve over the speed, such as 'end rotation of A8'."""
     quantity, of, train = name.partition(" of A")
-    return t("{quantity} of {train}", quantity=known(quantity), train=f"A{train}") if of else known(name)
+    words = words_of(quantity.replace(" ", "_"))
+    return t("{quantity} of {train}", quantity=words, train=f"A{train}") if of else words
 
 
 def uncertainty_of(source):

@@ -21,8 +21,10 @@ def clauses():
     return yaml.safe_load(pathlib.Path(__file__).with_name("clauses.yml").read_text(encoding="utf-8"))
 
 
-def varied(source, *names):
-    return source.runs is not None and any(name in source.runs.parameters for name in names)
+def varied(source, name):
+    """Whether an option has several values: in the runs of the file, or in the files of the report."""
+    return source.runs is not None and (name in source.runs.parameters
+                                        or len({one.options.get(name) for one in source.compared}) > 1)
 
 
 def has_all_trains(source):

@@ -60,8 +60,9 @@ def verdict_table(report, page, verdicts):
 
 
 def is_known(runs, name):
-    """Whether a quantity has values; for losses of contact, whether there are any."""
-    if name in STATIC or name not in runs.values or np.isnan(runs.of_run(name)).all():
+    """Whether a quantity is listed and drawn: it has values, of losses of contact at least one, and no other quantity
+    contains it, as the deflection that over the span."""
+    if name in (*STATIC, "deflection_over_span") or name not in runs.values or np.isnan(runs.of_run(name)).all():
         return False
     return name != "longest_loss" or np.nanmax(runs.of_run(name)) > 0.0
 

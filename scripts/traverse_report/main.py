@@ -208,6 +208,8 @@ def run(words):
             return
     line = line_of(arguments)
     sources = [Source(path, line) for path in arguments.results]
+    for source in sources:
+        source.compared = sources
     wanted = arguments.language or sources[0].options.get("report_language", "en")
     choose(wanted if wanted in LANGUAGES else "en")
     title = title_sheet.title_of(sources, given_title(arguments), arguments.folder)

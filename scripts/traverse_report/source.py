@@ -134,6 +134,7 @@ class Source:
 
     def __init__(self, path, line=None):
         self.line, self.governing = line, None  # the source of the governing run of a sweep or study
+        self.compared = []  # the sources of all files of the report
         self.path = pathlib.Path(path)
         try:
             self.file = h5py.File(path, "r", locking=False)

@@ -13,8 +13,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from reported import BINARY, Reported  # noqa: E402
 from traverse_check import flow_chart  # noqa: E402
 from traverse_report import (  # noqa: E402
-    annex_sheet, comparison_sheet, decisions, fatigue_sheet, language, larger_effect, limits, main, page,
-    run_sheet, source, title_sheet)
+    annex_sheet, assumptions_sheet, checks_sheet, comparison_sheet, decisions, fatigue_sheet, language, larger_effect,
+    limits, main, page, run_sheet, source, title_sheet)
 
 SIMPLE = """
 beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
@@ -91,6 +91,15 @@ class Decisions(Computations):
             lines, found = comparison_sheet.headline([(one, kept)])
             self.assertEqual((found, len(lines) - 1), (colour, count))
         self.assertTrue(lines[2].startswith("Range of speeds, EN 1991-2 6.4.6.2: computed up to 288 km/h"), lines)
+
+    def test_bounds_may_be_in_several_files(self):
+        several = [self.source("simple"), self.source("simple")]
+        several[1].options["beam_EI"] = "7.0e10"
+        for one in several:
+            self.assertFalse(checks_sheet.varied(one, "beam_EI"))
+            one.compared = several
+            self.assertTrue(checks_sheet.varied(one, "beam_EI"))
+            self.assertFalse(checks_sheet.varied(one, "beam_mass"))
 
     def test_uplift_of_a_continuous_bridge_lacks_the_permanent_load(self):
         one = self.source("continuous")
@@ -203,6 +212,15 @@ class Annex(Computations):
             said = subprocess.run(["pdftotext", self.folder / "simple.pdf", "-"], capture_output=True, text=True).stdout
             for text in ("φ′dyn", "Φ₃", "α", "Flow chart of EN 1991-2 figure 6.9 for a line speed of 200 km/h"):
                 self.assertIn(text, said)
+
+    def test_the_accuracy_over_the_speed_is_stated(self):
+        one = self.source("simple")
+        one.options["sweep_refine"] = "0.01"
+        one.summary.update(peak_uncertainty=0.004, peak_uncertainty_of="end rotation of A8", speeds_added=7)
+        rows = {words: (value, place) for words, value, place in assumptions_sheet.of_accuracy(one)}
+        self.assertEqual(rows["relative error of the peaks over the speed, requested"][0], "1.0 %")
+        self.assertEqual(rows["the same, achieved"][0],
+                         "0.4 % (greatest rotation of the deck ends of A8); 7 speeds added")
 
     def test_dates_are_those_of_the_language(self):
         for name, expected in (("en", "2026-11-27"), ("de", "27.11.2026"), ("fr", "27/11/2026")):
