@@ -127,7 +127,8 @@ def print_verdicts(asked, done):
 
 def print_remarks(asked, judged, dynamic):
     """What the check does not contain, and what its result depends on."""
-    left = [row["requirement"] for row in scene.not_covered(asked, [verdict.limit.quantity for verdict in judged])]
+    left = [row["requirement"] for row in scene.not_covered(asked, [verdict.limit.quantity for verdict in judged],
+                                                             dynamic)]
     for said in filter(None, (
                  outcome.consequence(judged), scene.conditions(asked, dynamic),
                  f"Not part of this check: {'; '.join(left)}.",

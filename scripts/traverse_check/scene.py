@@ -207,12 +207,14 @@ def single_bounds(question):
             if len(values) == 1]
 
 
-def not_covered(question, judged):
-    """Requirements of EN 1990 A2.4.4 and EN 1991-2 6.4 without a verdict, which the check does not compute either."""
+def not_covered(question, judged, dynamic):
+    """Requirements of EN 1990 A2.4.4 and EN 1991-2 6.4 without a verdict, which the check does not compute either; those
+    of a dynamic analysis only if there is one."""
     covered = {"norm", "hslm", "damping", "mass", "stiffness", "need", "speeds", "track_defects"} - \
         set(single_bounds(question))
+    left_out = {"joints"} if dynamic else {"joints", "dynamic"}
     return [row for row in requirements() if not set(row.get("quantities", ())) & set(judged)
-            and row.get("needs") != "joints" and row.get("computed", row.get("decided")) not in covered]
+            and row.get("needs") not in left_out and row.get("computed", row.get("decided")) not in covered]
 
 
 def title_page(question, needed):

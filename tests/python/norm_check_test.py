@@ -260,6 +260,8 @@ class Commands(unittest.TestCase):
         self.assertEqual(status, 0, said)
         self.assertIn("n0 = 4.1 Hz", said)
         self.assertIn("no dynamic analysis is necessary", said)
+        self.assertNotIn("real trains", said)
+        self.assertIn("twist of the deck", said)
         self.assertEqual([path.name for path in self.folder.iterdir()], [folder])
         with h5py.File(self.folder / folder / "check.h5") as file:
             self.assertAlmostEqual(file["norm"].attrs["n0"], 4.1, 9)
