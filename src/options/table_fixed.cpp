@@ -247,7 +247,8 @@ constexpr Row later_rows[] = {
   {"sweep_instants", number, "", "20", {4.0, 1e4}, "", 0, "samples per period of the fastest mode if the modes are exact in time; peaks between samples are interpolated by parabolas"},
 
   {"study_combine", choice, "", "grid", any, "grid together random", 0, "how the lists of study_vary are combined; grid: all combinations; together: lists of equal length, row by row; random: study_draws draws from each list"},
-  {"study_draws", integer, "", "", {1, 1e6}, "", 0, "number of values that are drawn of each random option"},
+  {"study_draws", integer, "", "", {1, 1e6}, "", 0, "number of values that are drawn of each random option; with study_sensitivity: base samples of Sobol's or trajectories of Morris' design"},
+  {"study_sensitivity", choice, "", "none", any, "none local morris sobol", 0, "which random options matter; local: derivatives at their means; morris: elementary effects; sobol: parts of the variance"},
   {"study_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "seed of the random draws; each option has its own random stream"},
   {"study_statistics_over", texts, "", "(track_seed and drawn options)", any, "", 0, "options over which mean, deviation and quantiles are computed"},
   {"study_statistics_quantiles", numbers, "1", "0.5,0.98", {0.0, 1.0, true}, "", 0, "probabilities of the quantiles"},

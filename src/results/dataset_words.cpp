@@ -93,6 +93,8 @@ constexpr Row rows[] = {
     {"find/interval", "interval end", "values of the option within the bound"},
     {"find/interval_answer", "interval", "answer to which the interval belongs"},
     {"find/interval_at_end", "interval end", "whether the end is one of the searched range"},
+    {"sensitivity/units", "quantity column", "quantity and unit"},
+    {"sensitivity/*", "quantity factor", ""},
     {"quantities/peaks", "quantity_of_peaks column", "quantity and unit"},
     {"quantities/limits", "quantity_of_limits column", "quantity and unit"},
     {"verdicts/*", "criterion column", ""},

@@ -8,9 +8,9 @@
 #include <set>
 #include <string_view>
 
-#include "base/random_stream.hpp"
 #include "results/terminal.hpp"
 #include "scene_parts.hpp"
+#include "study_axes.hpp"
 #include "vary_reader.hpp"
 
 namespace traverse::app {
@@ -109,91 +109,6 @@ std::vector<StudyDimension> swept_dimensions(const Options& o, const NamedVehicl
   return dimensions;
 }
 
-/// Combines listed and drawn dimensions by study_combine.
-class Axes {
- public:
-  Axes(const Options& o, Study& study) : o_(o), study_(study), combine_(o.choice("study_combine")) {
-    seed_ = static_cast<std::uint64_t>(o.integer("study_seed"));
-    if (o.has("study_draws")) draws_ = static_cast<std::size_t>(o.integer("study_draws"));
-  }
-
-  void add_listed(StudyDimension dimension, double count) {
-    if (combine_ != "grid" && count > most_runs)
-      o_.refuse("study_combine",
-                fmt::format("{} has {:g} values; allowed: at most {:g}", dimension.name(), count, most_runs));
-    if (combine_ == "grid") {
-      dimension.axis = study_.axes.size();
-      study_.axes.push_back({dimension.name(), static_cast<std::size_t>(std::min(count, 1e15))});
-      runs_ *= count;
-      sizes_ += fmt::format("{}{:g} of {}", sizes_.empty() ? "" : " times ", count, dimension.name());
-    } else if (combine_ == "together") {
-      merge("row", static_cast<std::size_t>(count), dimension);
-      runs_ = count;
-    } else {
-      draw_from_list(dimension);
-      merge("draw", draws(dimension.name()), dimension);
-      runs_ = static_cast<double>(draws_);
-    }
-    study_.dimensions.push_back(std::move(dimension));
-  }
-  void add_drawn(StudyDimension dimension, const VaryReader& reader) {
-    std::size_t count = draws_;
-    if (combine_ == "together" && joint_) count = study_.axes[*joint_].length;
-    if (count == 0) count = draws(dimension.name());
-    if (!joint_ && combine_ != "together") {
-      runs_ *= static_cast<double>(count);
-      sizes_ += fmt::format("{}{} draws", sizes_.empty() ? "" : " times ", count);
-    } else if (combine_ == "together") {
-      runs_ = static_cast<double>(count);
-    }
-    if (runs_ <= most_runs) dimension.values = reader.draws(seed_, count);
-    merge(combine_ == "together" ? "row" : "draw", count, dimension);
-    study_.dimensions.push_back(std::move(dimension));
-  }
-  double runs() const { return runs_; }
-  const std::string& sizes() const { return sizes_; }
-
- private:
-  std::size_t draws(const std::string& dimension) const {
-    if (draws_ == 0)
-      throw InputError(
-          fmt::format("study_draws is missing: the number of values drawn of {}; allowed: a whole number from 1 to "
-                      "{:g}",
-                      dimension, most_runs));
-    return draws_;
-  }
-  /// Assigns a dimension to the shared axis.
-  void merge(const char* name, std::size_t length, StudyDimension& dimension) {
-    if (!joint_) {
-      joint_ = study_.axes.size();
-      study_.axes.push_back({name, length});
-    }
-    if (const std::size_t other = study_.axes[*joint_].length; other != length) {
-      const auto shares_axis = [this](const StudyDimension& d) { return d.axis == *joint_; };
-      const auto first = std::find_if(study_.dimensions.begin(), study_.dimensions.end(), shares_axis);
-      o_.refuse("study_combine",
-                fmt::format("needs lists of equal length; {} ({}) and {} ({}) differ; use study_combine grid",
-                            first->name(), other, dimension.name(), length));
-    }
-    dimension.axis = *joint_;
-  }
-  void draw_from_list(StudyDimension& dimension) const {
-    const std::vector<double> list = std::move(dimension.values);
-    const base::RandomStream stream(seed_, dimension.name());
-    dimension.values.clear();
-    for (std::size_t i = 0; i < draws(dimension.name()); ++i)
-      dimension.values.push_back(list[static_cast<std::size_t>(stream.uniform(i) * static_cast<double>(list.size()))]);
-  }
-
-  const Options& o_;
-  Study& study_;
-  std::string combine_, sizes_;
-  std::uint64_t seed_ = 1;
-  std::size_t draws_ = 0;
-  double runs_ = 1.0;
-  std::optional<std::size_t> joint_;  // the axis that several dimensions share
-};
-
 /// The dimension of a varied option and of the options with the same values, without the values. taken: the varied
 /// options.
 StudyDimension dimension_of(const Options& o, const std::string& option, const VaryReader& reader,
@@ -217,7 +132,7 @@ StudyDimension dimension_of(const Options& o, const std::string& option, const V
 }
 
 void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& study) {
-  Axes axes(o, study);
+  StudyAxes axes(o, study);
   std::vector<std::string> taken;
   if (describes_search(o)) {
     StudyDimension searched = searched_dimension(o);
@@ -247,6 +162,7 @@ void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& stu
       axes.add_listed(std::move(dimension), count);
     }
   }
+  axes.finish_design();
   if (axes.runs() > most_runs)
     throw InputError(fmt::format(
         "study_vary: {:.4g} runs ({}); allowed: at most {:g}. They would take {} even at {}", axes.runs(), axes.sizes(),
@@ -256,6 +172,7 @@ void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& stu
 void read_statistics(const Options& o, Study& study) {
   study.quantiles = o.numbers("study_statistics_quantiles");
   study.confidence = o.number("study_statistics_confidence");
+  if (study.sensitivity) return;  // the points of a design are no sample
   const auto add = [&](std::size_t axis) {
     if (std::find(study.over.begin(), study.over.end(), axis) == study.over.end()) study.over.push_back(axis);
   };
@@ -351,9 +268,7 @@ void check_study(const Options& o, Scene& scene) {
 
 }  // namespace
 
-bool describes_study(const Options& o) {
-  return o.first_with_prefix(study_prefix) != nullptr || describes_search(o);
-}
+bool describes_study(const Options& o) { return o.first_with_prefix(study_prefix) != nullptr || describes_search(o); }
 
 Scene read_study(const Options& given) {
   Options o = given;
@@ -397,8 +312,8 @@ Scene read_scene_of_study(const options::Options& given,
                           const std::vector<std::pair<std::string, std::string>>& values) {
   options::Entries entries;
   for (const options::Entry& entry : given.entries())
-    if (!entry.name.starts_with("study_") && !entry.name.starts_with("find_") && entry.name != "sweep_speed" && entry.name != "sweep_refine" &&
-        entry.name != "sweep_hslm_a")
+    if (!entry.name.starts_with("study_") && !entry.name.starts_with("find_") && entry.name != "sweep_speed" &&
+        entry.name != "sweep_refine" && entry.name != "sweep_hslm_a")
       entries.set(entry);
   for (const auto& [name, value] : values) entries.set({name, value, "a value of the study", 0});
   Options o(std::move(entries));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "base/random_stream.hpp"
@@ -95,7 +96,7 @@ std::string VaryReader::law() const {
   return "";
 }
 
-std::vector<double> VaryReader::draws(std::uint64_t seed, std::size_t count) const {
+VaryReader::Parameters VaryReader::parameters() const {
   const std::string of = law(), given = name(of);
   const std::vector<std::string> words = o_.texts(given);
   const double a = number(given, words[0]), b = number(given, words[1]);
@@ -104,6 +105,31 @@ std::vector<double> VaryReader::draws(std::uint64_t seed, std::size_t count) con
     o_.refuse(given, uniform ? "allowed: the least, then the greatest value" : "allowed: a deviation above 0");
   if (of == "lognormal" && !(a > 0.0)) o_.refuse(given, "allowed: a mean above 0");
   if (whole() && !uniform) o_.refuse(given, "the option has whole numbers; allowed: uniform, or a list");
+  return {a, b};
+}
+
+double VaryReader::mean() const {
+  const auto [a, b] = parameters();
+  return law() == "uniform" ? 0.5 * (a + b) : a;
+}
+
+double VaryReader::deviation() const {
+  const auto [a, b] = parameters();
+  return law() == "uniform" ? (b - a) / std::sqrt(12.0) : b;
+}
+
+double VaryReader::quantile(double probability) const {
+  const auto [a, b] = parameters();
+  if (law() == "uniform") return a + probability * (b - a);
+  const double normal = boost::math::quantile(boost::math::normal(), probability);
+  const double wide = std::sqrt(std::log1p(b * b / (a * a)));
+  return law() == "normal" ? a + b * normal : a * std::exp(wide * normal - 0.5 * wide * wide);
+}
+
+std::vector<double> VaryReader::draws(std::uint64_t seed, std::size_t count) const {
+  const std::string of = law(), given = name(of);
+  const auto [a, b] = parameters();
+  const bool uniform = of == "uniform";
   const double wide = std::sqrt(std::log1p(b * b / (a * a)));
   const base::RandomStream stream(seed, option_);
   std::vector<double> values;

@@ -36,12 +36,21 @@ class VaryReader {
   std::string law() const;
   /// Draws `count` values from the law.
   std::vector<double> draws(std::uint64_t seed, std::size_t count) const;
+  /// Mean, standard deviation and quantiles of the law.
+  double mean() const;
+  double deviation() const;
+  double quantile(double probability) const;
   /// Checks that the values are given in one way only.
   void check_one_way() const;
   /// A number in the option's unit, the text `word` of the option `given`; speeds may be given in km/h.
   double number(const std::string& given, const std::string& word) const;
 
  private:
+  /// The two numbers of the law, checked.
+  struct Parameters {
+    double a = 0.0, b = 0.0;
+  };
+  Parameters parameters() const;
   double number(std::string_view how) const { return number(name(how), o_.text(name(how))); }
   std::vector<double> range(const std::string& given, double from, double to, double step, double& count) const;
 

@@ -36,10 +36,11 @@ constexpr double long_duration = 10.0;  // s: estimated duration from which mode
 constexpr double quicker_ratio = 0.2;   // relative duration that modes must not exceed to be suggested
 
 /// "track_seed: 1000 values from 1 to 1000".
-std::string description(const StudyDimension& d) {
+std::string description(const StudyDimension& d, bool of_design) {
   const auto [least, greatest] = std::minmax_element(d.values.begin(), d.values.end());
   if (d.law != "list")
-    return fmt::format("{}: {} draws ({}) from {:g} to {:g}", d.name(), d.values.size(), d.law, *least, *greatest);
+    return fmt::format("{}: {} {} ({}) from {:g} to {:g}", d.name(), d.values.size(),
+                       of_design ? "values of the design" : "draws", d.law, *least, *greatest);
   if (static_cast<double>(d.values.size()) > max_listed)
     return fmt::format("{}: {} values from {:g} to {:g}", d.name(), d.values.size(), *least, *greatest);
   std::string list;
@@ -61,7 +62,7 @@ void describe_runs(const Study& study, std::vector<std::string>& notes) {
       axes += fmt::format("{}{} of {}", axes.empty() ? "" : " times ", axis.length, axis.name);
     notes.push_back(
         fmt::format("study of {} runs ({}); the values above are those of the first run", study.runs(), axes));
-    for (const StudyDimension& d : study.dimensions) notes.push_back(description(d));
+    for (const StudyDimension& d : study.dimensions) notes.push_back(description(d, study.sensitivity.has_value()));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <string_view>
 
+#include "results/sensitivity.hpp"
 #include "results/study_statistics.hpp"
 #include "results/sweep.hpp"
 #include "run/model_record.hpp"
@@ -238,6 +239,8 @@ void StudyFile::finish(const StudyCourse& course, const std::vector<results::Ver
   if (course.refined && table_.study().sweep)
     recorder_.datasets({{"/sweep/added", {course.refined->added.size()}, course.refined->added, "1"}});
   if (findings != nullptr) findings->record(recorder_);
+  if (table_.study().sensitivity && table_.finished_runs() == table_.runs())
+    results::SensitivityAnalysis(table_).record(recorder_);
   if (table_.study().find) record_answers(table_, answers_of(table_), recorder_);
   results::record_verdicts(recorder_, verdicts);
   std::vector<results::Attribute> summary = results::summary_of(table_);
@@ -259,6 +262,7 @@ void print_study_course(const results::StudyTable& table, const results::RunMode
     sweep ? results::print_sweep(table) : results::print_study(table);
     if (course.refined) results::print(*course.refined);
     if (findings != nullptr) findings->print();
+    if (table.study().sensitivity && table.finished_runs() == table.runs()) results::SensitivityAnalysis(table).print();
     if (table.study().find) print_answers(table, answers_of(table));
     results::StudyStatistics(table).print();
     results::print_verdicts(verdicts, scene.unusual);

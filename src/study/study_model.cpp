@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "error_control/trial_runs.hpp"
 
@@ -21,18 +22,27 @@ std::optional<Choice> unbatched(const Scene& scene, std::vector<std::string>& no
 std::optional<Choice> choose_at_extremes(const StudyScenes& scenes, Choose choose, std::vector<std::string>& notes) {
   const std::vector<std::size_t> bases = scenes.extreme_bases();
   std::optional<Choice> all;
+  std::vector<std::vector<std::string>> notes_of_bases;
   for (const std::size_t base : bases) {
     std::vector<std::string> own;
     const std::optional<Choice> one = choose(scenes.base(base), own);
-    if (bases.size() > 1 && !own.empty()) notes.push_back(fmt::format("scene {} of {}:", base + 1, scenes.bases()));
-    notes.insert(notes.end(), own.begin(), own.end());
-    if (!one) return std::nullopt;
+    if (!one) {
+      notes.insert(notes.end(), own.begin(), own.end());
+      return std::nullopt;
+    }
+    notes_of_bases.push_back(std::move(own));
     if (all) {
       all->model = finer(all->model, one->model);
       all->accuracy.merge(one->accuracy);
     } else {
       all = one;
     }
+  }
+  const bool same = std::equal(notes_of_bases.begin() + 1, notes_of_bases.end(), notes_of_bases.begin());
+  for (std::size_t i = 0; i < (same ? 1 : bases.size()); ++i) {
+    const std::vector<std::string>& own = notes_of_bases[i];
+    if (!same && !own.empty()) notes.push_back(fmt::format("scene {} of {}:", bases[i] + 1, scenes.bases()));
+    notes.insert(notes.end(), own.begin(), own.end());
   }
   return all;
 }

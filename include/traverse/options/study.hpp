@@ -18,6 +18,7 @@ struct StudyDimension {
   std::string law;             // "list", "uniform", "normal" or "lognormal"
   std::vector<double> values;  // values by the index along the axis
   std::size_t axis = 0;
+  double deviation = 0.0;  // standard deviation of a distribution
 
   /// The name of the dimension: the first of its options.
   const std::string& name() const { return options.front(); }
