@@ -77,6 +77,25 @@ TEST(StudyInput, DrawsAreCheckedToo) {
   expect_refusal(unvaried, unvaried.run({"-study_statistics_over", "beam_EI"}), {"study_statistics_over", "beam_EI"});
 }
 
+TEST(StudyInput, SensitivityAnalysesNeedDistributionsAndSamples) {
+  const auto refused = [](const char* vary, const std::vector<std::string>& words,
+                          const std::vector<std::string>& parts) {
+    SCOPED_TRACE(vary);
+    const Workplace workplace(study(vary));
+    expect_refusal(workplace, workplace.run(words), parts);
+  };
+  refused("beam_mass: [1000, 2000]", {"-study_sensitivity", "sobol"},
+          {"study_sensitivity", "no option has a distribution"});
+  refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "sobol"}, {"study_draws is missing"});
+  refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "all"}, {"study_sensitivity", "morris"});
+  refused("beam_mass: {normal: [1.0, 5.0]}", {"-study_sensitivity", "morris", "-study_draws", "9"},
+          {"study_vary_beam_mass_normal", "value of the design"});
+  refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "local", "-study_combine", "random"},
+          {"study_combine", "grid"});
+  refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "sobol", "-study_draws", "400000"},
+          {"1.2e+06 runs", "points of the design"});
+}
+
 TEST(StudyInput, SpeedsToRefineAreAListOfTheirOwn) {
   const struct {
     const char* vary;
