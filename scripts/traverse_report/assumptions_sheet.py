@@ -99,7 +99,8 @@ def foundation(source, kind, data):
 def of_damping(source):
     options = source.options
     stated = noted(source, r"^damping ([\d.e-]+) %")
-    value = f"ζ = {num(float(stated))} %" if stated else ""
+    value = t("ζ = {value} % at the first two natural frequencies, Rayleigh damping at all others",
+              value=num(float(stated))) if stated else ""
     for name, words in (("model_damping_bound", "lower bound of EN 1991-2, Table 6.6: {value}"),
                         ("beam_damping_ratios", "ratios of the first natural modes: {value}"),
                         ("model_damping_ratios", "ratio of each natural mode: {value}"),
