@@ -102,7 +102,7 @@ def with_coordinates(variables):
 
 def _attributes(file):
     attributes = dict(file.attrs)
-    for group in ("summary", "modes", "sweep", "study"):
+    for group in ("summary", "modes", "sweep", "study", "find", "sensitivity"):
         if group in file:
             attributes |= {f"{group}_{name}": value for name, value in file[group].attrs.items()}
     if "options" in file:

@@ -31,6 +31,56 @@ def study(scene, vary=None, *, folder=None, ranks=1, output=None, **options):
     return _computed([scene] if vary is None else [scene, {"study": {"vary": vary}}], folder, ranks, output, options)
 
 
+def find(scene, option, between, keep="limits", quantity=None, equals=None, *, folder=None, ranks=1, output=None,
+         **options):
+    """Searches the values of an option with which all runs keep their limits, with the arguments of `run`.
+
+    option: the name of the option, such as "beam_EI" or "load_speed".
+    between: the least and the greatest value, in the unit of the option; texts such as "250 km/h" for speeds in km/h.
+    keep: "limits" for all limits of runs (limits="FILE"), or the quantity of one of them.
+    quantity, equals: instead of limits a quantity, such as "peak_deflection", and the value in its SI unit that it does
+        not exceed.
+    options: also those of the search: find_for_each=["load_hslm_a"], find_points=50, find_accuracy=1e-4, ...
+
+    Returns the Dataset of the study of all v searched values, which are the coordinate `find_value` and, like every
+    varied option, a coordinate by the name of the option. Coordinate `answer` [a]: the values of find_for_each, and
+    last "all". Variables:
+    find_ratio [a, v]: the greatest ratio of a run to its bound, 1; NaN: unknown.
+    find_run, find_limit [a, v]: numbers of the run and the limit of this ratio.
+    find_interval [i, 2]: first and last value of each interval within the bound, in the unit of the option;
+        find_interval_answer [i]: number of its answer; find_interval_at_end [i, 2]: 1 where the search ends.
+    attrs: find_option, find_condition, find_accuracy. Raises Error if the intervals are not known to find_accuracy.
+    """
+    asked = {"find_option": option, "find_between": between, "find_keep": keep, "find_quantity": quantity,
+             "find_equals": equals}
+    if quantity is not None and keep == "limits":
+        del asked["find_keep"]  # its default
+    given = {name: value for name, value in asked.items() if value is not None}
+    return _computed([scene], folder, ranks, output, given | options)
+
+
+def sensitivity(scene, vary=None, method="sobol", draws=None, *, folder=None, ranks=1, output=None, **options):
+    """Computes the effects of uncertain options on the peaks, with the arguments of `study`.
+
+    vary: distributions of the options, {"beam_EI": {"normal": [2.5e10, 2.0e9]}, "load_spread": {"uniform": [0.5, 0.7]}},
+        and lists of others, over whose runs each quantity is the greatest. None: those of the scene.
+    method: "local": derivatives at the means; "morris": elementary effects; "sobol": indices of variances.
+    draws: the number of trajectories ("morris") or of base samples ("sobol"); None: that of the scene.
+
+    Returns the Dataset of the study, with the coordinates `quantity` [q] and `factor` [f], the options with a
+    distribution. Variables [q, f]:
+    sobol: sensitivity_first, sensitivity_total, 1, with ..._low and ..._high, the ends of their intervals.
+    morris: sensitivity_mean_effect, sensitivity_effect_deviation, sensitivity_effect_magnitude (with ..._low and
+        ..._high), in the unit of the quantity over the range of the factor.
+    local: sensitivity_derivative, sensitivity_derivative_error, in the unit of the quantity over that of the factor;
+        sensitivity_elasticity, 1; sensitivity_effect_of_deviation, in the unit of the quantity.
+    sensitivity_units [q, 2]: each quantity and its unit. attrs: sensitivity_method, sensitivity_base_samples,
+    sensitivity_confidence. Raises Error with the last message of the program.
+    """
+    asked = {"study_sensitivity": method} | ({} if draws is None else {"study_draws": draws})
+    return study(scene, vary, folder=folder, ranks=ranks, output=output, **asked, **options)
+
+
 def _computed(scenes, folder, ranks, output, options):
     with words.of_scenes(*scenes) as (files, scratch):
         kept = pathlib.Path(folder or ".", output) if output is not None else pathlib.Path(scratch, "results.h5")

@@ -88,6 +88,50 @@ class Runs(InFolder):
         self.assertEqual(results["load_speed"].dims, ("row",))
         self.assertEqual(results["probes_x"].values[:, 0].tolist(), [10.0, 12.5])
 
+    def test_a_search_with_an_answer_for_each_stiffness(self):
+        scene, bound = FORCES | {"model": {"modes": 1}}, 1.7e-3  # m
+        results = traverse.find(scene, "load_speed", [20.0, 60.0], quantity="peak_deflection", equals=bound, find_points=9,
+                                study_vary_beam_EI=[2.5e10, 3.0e10])
+        self.assertEqual(results["answer"].values.tolist(), ["beam_EI 2.5e+10", "beam_EI 3e+10", "all"])
+        self.assertEqual(results["find_ratio"].dims, ("answer", "find_value"))
+        self.assertEqual(results["find_value"].values.tolist(), results["load_speed"].values.tolist())
+        peaks = results["peak_deflection"].max("x").transpose("beam_EI", "load_speed").values
+        np.testing.assert_allclose(results["find_ratio"][:2], peaks / bound)
+        np.testing.assert_array_equal(results["find_ratio"][2], results["find_ratio"][:2].max("answer"))
+        self.assertEqual((results.attrs["find_option"], results.attrs["find_accuracy"]), ("load_speed", 1e-3))
+        ends = [(int(answer), speed) for answer, interval, at_end in zip(
+            results["find_interval_answer"], results["find_interval"].values, results["find_interval_at_end"].values)
+            for speed, is_end in zip(interval, at_end) if not is_end and answer < 2]
+        self.assertGreater(len(ends), 1)
+        for answer, speed in ends:
+            alone = traverse.run(scene, load_speed=speed, beam_EI=[2.5e10, 3.0e10][answer])
+            self.assertAlmostEqual(abs(alone.attrs["summary_deflection"]) / bound, 1.0, delta=5e-3)
+
+    def test_sensitivity_analyses(self):
+        scene = FORCES | {"model": {"modes": 1}}
+        vary = {"beam_EI": {"normal": [3e10, 1e9]}, "beam_rotary_inertia": {"uniform": [0.0, 1.0]}}
+        local = traverse.sensitivity(scene, vary, "local").sel(quantity="peak_deflection")
+        self.assertEqual(local["factor"].values.tolist(), ["beam_EI", "beam_rotary_inertia"])
+        low, high = (traverse.run(scene, beam_EI=EI).attrs["summary_deflection"] for EI in (2.99e10, 3.01e10))
+        slope = (abs(high) - abs(low)) / 2e8
+        self.assertAlmostEqual(local["sensitivity_derivative"].sel(factor="beam_EI").item() / slope, 1.0, delta=0.05)
+        morris = traverse.sensitivity(scene, vary, "morris", draws=4)
+        self.assertEqual(morris["sensitivity_effect_magnitude"].dims, ("quantity", "factor"))
+        self.assertEqual((morris.sizes["point"], morris.attrs["sensitivity_base_samples"]), (4 * (2 + 1), 4))
+        sobol = traverse.sensitivity(scene, vary, draws=16)
+        self.assertEqual((sobol.sizes["point"], sobol.attrs["sensitivity_method"]), (16 * (2 + 2), "sobol"))
+        total = sobol["sensitivity_total"].sel(quantity="peak_deflection")
+        self.assertGreater(total.sel(factor="beam_EI").item(), 10.0 * total.sel(factor="beam_rotary_inertia").item())
+
+    def test_refusals_of_searches_and_sensitivity_analyses(self):
+        between, uncertain = [1e10, 1e11], {"beam_EI": {"normal": [3e10, 1e9]}}
+        self.refused(2, "no limits of runs", traverse.find, FORCES, "beam_EI", between)
+        self.refused(2, "find_equals need each other", traverse.find, FORCES, "beam_EI", between, quantity="peak_deflection")
+        self.refused(2, "not above the first", traverse.find, FORCES, "beam_EI", between[::-1], "limits", "peak_deflection", 1e-3)
+        self.refused(2, "give either", traverse.find, FORCES, "beam_EI", between, "end_rotation", "peak_deflection", 1e-3)
+        self.refused(2, "study_draws is missing", traverse.sensitivity, FORCES, uncertain)
+        self.refused(2, "none, local, morris, sobol", traverse.sensitivity, FORCES, uncertain, "best")
+
     def test_modes(self):
         results = traverse.run({"beam": BRIDGE, "scene": {"analysis": "modes"}, "modes": {"count": 2}})
         first = np.pi / (2.0 * 20.0**2) * np.sqrt(3.0e10 / 1.8e4)  # Hz, of a simple beam
