@@ -3,7 +3,8 @@
 
 The page contains the parts that are in the file: the shape of the bridge at the largest deflection, deflections, wheel
 forces, accelerations and sensors over time; or mode shapes; or the peaks of a sweep or a study over the speed and the
-varied options, with their limits. Each curve has a name. The CSV file contains the curves of the picture.
+varied options, with their limits; or the answers of a search; or the effects of uncertain options. Each curve has a
+name. The CSV file contains the curves of the picture.
 """
 
 import argparse
@@ -12,7 +13,9 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
+import picture_find  # noqa: E402
 import picture_page  # noqa: E402
+import picture_sensitivity  # noqa: E402
 from picture_data import Results, opened  # noqa: E402
 from picture_modes import draw_modes  # noqa: E402
 from picture_panels import MAY_BE_ASKED, panels  # noqa: E402
@@ -33,6 +36,11 @@ def heading_in_words(results, modes_only):
         title += ", rail and bridge together (UIC 774-3)"
     elif "sweep/speed" in results.file:
         title += f", {sweep_in_words(results)}"
+    elif "find/ratio" in results.file:
+        words = picture_find.Words(results)
+        return f"{title}: {words.title()}", words.intervals(words.search.answers[-1])
+    elif "sensitivity/units" in results.file:
+        return f"{title}, a sensitivity analysis", picture_sensitivity.method_in_words(results)
     elif "study/finished" in results.file:
         title += f", a study of {len(results.file['study/finished']):,} runs"
     elif speed:

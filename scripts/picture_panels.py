@@ -1,7 +1,9 @@
 """The panels of a picture from top to bottom: what a results file holds decides which there are."""
 
+import picture_find
 import picture_hanging
 import picture_rail
+import picture_sensitivity
 from picture_axes import Panel
 from picture_bridge import QUANTITIES, STATIC, draw_bearings, draw_probes, draw_shape, draw_static
 from picture_data import spring_gaps
@@ -83,7 +85,11 @@ def of_run(results, asked):
 def panels(results, asked=()):
     """All panels from top to bottom."""
     file, found = results.file, of_run(results, asked)
-    if "sweep/peak_deflection" in file or "study/finished" in file:
+    if "find/ratio" in file:
+        found += picture_find.panels_of(results)
+    elif "sensitivity/units" in file:
+        found += picture_sensitivity.panels_of(results, asked)
+    elif "sweep/peak_deflection" in file or "study/finished" in file:
         found += panels_of(results, asked)
     if not found and "static/x" in file:
         found += [over_time(draw_static, results, name) for name in STATIC]

@@ -140,10 +140,11 @@ class Runs:
             found.append(Axis(words, unit, factor * column, random, others))
         return found
 
-    def run_in_words(self, row):
-        """The values of the varied options in a run: 'bending stiffness EI 100 MN m², 280 km/h'."""
+    def run_in_words(self, row, without=()):
+        """The values of the varied options in a run: 'bending stiffness EI 100 MN m², 280 km/h'. without: the names of
+        axes that are left out."""
         places = zip(self.all_axes, np.unravel_index(row, self.shape))
-        return ", ".join(axis.full_words(i) for axis, i in places if len(axis.values) > 1)
+        return ", ".join(axis.full_words(i) for axis, i in places if len(axis.values) > 1 and axis.name not in without)
 
     def values(self, name):
         """[axes]: one value for each run in the unit of its panel, NaN without a result; None if the file has none."""

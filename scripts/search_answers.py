@@ -45,7 +45,7 @@ class Search:
         self.also = [name.strip() for name in options.get("find_also", "").split(",") if name.strip()]
         limited = file["criterion"].asstr()[:] if "criterion" in file else []
         self._tables = group["ratio"][:], group["run"][:].astype(int), group["limit"][:].astype(int)
-        self._quantities = [self.asked] if self.asked else list(limited)
+        self._limited = list(limited)
         rows = list(zip(group["interval_answer"][:].astype(int), group["interval"][:], group["interval_at_end"][:]))
         self.answers = [self._answer(i, parts_of(name), [row[1:] for row in rows if row[0] == i])
                         for i, name in enumerate(file["answer"].asstr()[:])]
@@ -53,7 +53,7 @@ class Search:
     def governing(self, answer, place):
         """What governs at the searched value number `place`."""
         ratio, run, limit = (table[answer, place] for table in self._tables)
-        return Governing(self._quantities[limit], float(ratio), int(run))
+        return Governing(self.asked or self._limited[limit], float(ratio), int(run))
 
     def digits(self):
         """Significant digits of the ends of intervals."""
