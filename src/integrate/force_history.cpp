@@ -44,15 +44,21 @@ ForceHistory::ForceHistory(const structure::PiecewiseCubic& influence, const tra
       std::unique(start.begin(), start.end(), [&](double a, double b) { return b - a <= same_distance * length; }),
       start.end());
   coefficients.assign(4 * channels * start.size(), 0.0);
-  for (std::size_t i = 0; i < start.size(); ++i) {
-    double middle = start[i];
-    if (load.speed > 0.0) middle = i + 1 < start.size() ? 0.5 * (start[i] + start[i + 1]) : start[i] + length;
-    for (std::size_t j = 0; j < load.positions.size(); ++j) {
-      const double x = load.positions[j] + middle;
-      const bool standing_at_end = load.speed == 0.0 && x == breaks.back();
-      if (x < breaks.front() || (x >= breaks.back() && !standing_at_end)) continue;
+  const auto middle = [&](std::size_t i) {
+    if (load.speed == 0.0) return start[i];
+    return i + 1 < start.size() ? 0.5 * (start[i] + start[i + 1]) : start[i] + length;
+  };
+  for (std::size_t j = 0; j < load.positions.size(); ++j) {
+    const double position = load.positions[j];
+    // The search begins one interval before the force enters, because equal starts were merged.
+    const auto entered = std::lower_bound(start.begin(), start.end(), breaks.front() - position);
+    for (auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(entered - start.begin() - 1, 0)); i < start.size();
+         ++i) {
+      const double x = position + middle(i);
+      if (x < breaks.front()) continue;
+      if (x >= breaks.back() && !(load.speed == 0.0 && x == breaks.back())) break;
       const auto next = std::upper_bound(breaks.begin(), breaks.end() - 1, x);
-      add(influence, static_cast<std::size_t>(next - breaks.begin()) - 1, load.forces[j], load.positions[j] + start[i],
+      add(influence, static_cast<std::size_t>(next - breaks.begin()) - 1, load.forces[j], position + start[i],
           &coefficients[4 * channels * i]);
     }
   }

@@ -239,9 +239,10 @@ void StudyFile::finish(const StudyCourse& course, const std::vector<results::Ver
   if (course.refined && table_.study().sweep)
     recorder_.datasets({{"/sweep/added", {course.refined->added.size()}, course.refined->added, "1"}});
   if (findings != nullptr) findings->record(recorder_);
-  if (table_.study().sensitivity && table_.finished_runs() == table_.runs())
-    results::SensitivityAnalysis(table_).record(recorder_);
-  if (table_.study().find) record_answers(table_, answers_of(table_), recorder_);
+  if (table_.finished_runs() == table_.runs()) {
+    if (table_.study().sensitivity) results::SensitivityAnalysis(table_).record(recorder_);
+    if (table_.study().find) record_answers(table_, answers_of(table_), recorder_);
+  }
   results::record_verdicts(recorder_, verdicts);
   std::vector<results::Attribute> summary = results::summary_of(table_);
   for (const auto& [quantity, error] : model_.expected_errors) summary.push_back({"expected_error_" + quantity, error});
@@ -262,8 +263,10 @@ void print_study_course(const results::StudyTable& table, const results::RunMode
     sweep ? results::print_sweep(table) : results::print_study(table);
     if (course.refined) results::print(*course.refined);
     if (findings != nullptr) findings->print();
-    if (table.study().sensitivity && table.finished_runs() == table.runs()) results::SensitivityAnalysis(table).print();
-    if (table.study().find) print_answers(table, answers_of(table));
+    if (table.finished_runs() == table.runs()) {
+      if (table.study().sensitivity) results::SensitivityAnalysis(table).print();
+      if (table.study().find) print_answers(table, answers_of(table));
+    }
     results::StudyStatistics(table).print();
     results::print_verdicts(verdicts, scene.unusual);
   }
