@@ -1,11 +1,14 @@
-"""Charts along the bridge or the track: envelopes, static effects, rail stresses, natural modes."""
+"""Charts along the bridge or the track: envelopes, static effects, rail stresses, natural modes; and the ratios of a
+search over its values."""
 
 import numpy as np
 from engineering_units import shown
 from picture_axes import legible
 from picture_data import MOST_CURVES
+from traverse_report import find_sheet
 from traverse_report.language import Chosen, known, t
 from traverse_report.rail_sheet import CASES
+from traverse_report.source import Source
 
 from .packing import Chart, Curve
 
@@ -96,6 +99,16 @@ def mode_charts(results):
                 t("position along the bridge"), "m")
 
 
+def search_charts(results):
+    """The ratio to the bound over the searched values; the page calls its section by what it contains."""
+    if "find/ratio" not in results.file:
+        return
+    words = find_sheet.Words(Source(results.file.filename))
+    curves = [Curve(name, ratio) for name, ratio in words.curves(find_sheet.MOST_DRAWN)]
+    yield Chart(t("Ratio to the bound"), "", curves, words.factor * words.search.value, words.option, words.unit,
+                ((t("bound"), 1.0),))
+
+
 def charts(results):
-    kinds = (rail_charts, rest_charts, envelope_charts, static_charts, mode_charts)
+    kinds = (search_charts, rail_charts, rest_charts, envelope_charts, static_charts, mode_charts)
     return [chart for kind in kinds for chart in kind(results)]

@@ -59,13 +59,14 @@ def collected(results):
     language.choose(asked if asked in language.LANGUAGES else "en")
     limits, verdicts = tables.limits(results), stored(results.file)
     shown = [tables.verdicts(results, limits, verdicts),
-             *(table(results) for table in (tables.norm, tables.rail, tables.rest, tables.envelope)),
+             *(table(results) for table in (tables.search, tables.sensitivity, tables.norm, tables.rail, tables.rest,
+                                            tables.envelope)),
              *tables.pairs(results)]
     of_runs = runs.packed_runs(results, limits)
     travels = of_runs is not None and of_runs["speeds"] is not None
     return {"title": results.scene(), "kind": kind_in_words(results), "about": about(results),
             "said": unfinished(results) or "; ".join(summary_in_words(results)), "verdict": overall(verdicts),
-            "words": words(),
+            "words": words("find/ratio" in results.file),
             "stage": stage.moving(results) if results.rows > 1 else stage.still(results, travels),
             "charts": packed_charts(histories.charts(results), results.time),
             "along": [packed_chart(chart, None) for chart in along.charts(results)],

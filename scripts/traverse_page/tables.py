@@ -1,16 +1,18 @@
-"""Tables of the page: verdicts, EN 1991-2 6.4.6.5, rail and bridge, forces at rest, envelopes, summary, options."""
+"""Tables of the page: verdicts, EN 1991-2 6.4.6.5, rail and bridge, forces at rest, envelopes, searches, sensitivity
+analyses, summary, options."""
 
 import re
 
 import numpy as np
 from engineering_units import shown
 from picture_vehicles import wheels_of
+from traverse_report import find_sheet, sensitivity_sheet
 from traverse_report.language import capital, known, num, percent, t
 from traverse_report.language import number as in_digits
 from traverse_report.limits import factors_of
 from traverse_report.quantities import QUANTITIES, shown_value, unit_of, unit_of_si, with_factor
 from traverse_report.rail_sheet import CASES, PEAKS
-from traverse_report.source import parameter_words
+from traverse_report.source import Source, parameter_words
 
 from .along import ENVELOPES, FEWEST_STATIONS
 from .histories import named
@@ -139,6 +141,24 @@ def rest(results):
         rows += [[t("support at x = {x} m", x=num(x, ".6g")), [number(factor * force), unit]]
                  for x, force in zip(results.supports, results.file["supports/reaction"][0, :, 1])]
     return {"title": t("Forces at rest"), "head": [t("wheel or support"), t("force")], "rows": rows} if rows else None
+
+
+def search(results):
+    """The values within the bound, for each answer of a search; None for another file."""
+    if "find/ratio" not in results.file:
+        return None
+    words = find_sheet.Words(Source(results.file.filename))
+    return {"title": t("Search for values"), "first": True, "head": [capital(name) for name in find_sheet.head()],
+            "rows": words.rows(), "note": capital(words.question())}
+
+
+def sensitivity(results):
+    """The measures of a sensitivity analysis; None for another file."""
+    if "sensitivity/units" not in results.file:
+        return None
+    words = sensitivity_sheet.Words(Source(results.file.filename))
+    return {"title": t("Sensitivity analysis"), "first": True, "head": [capital(name) for name in words.head()],
+            "rows": words.rows(), "note": words.explanation()}
 
 
 def plain(value):

@@ -3,8 +3,8 @@
 from traverse_report.language import Chosen, capital, t
 
 
-def words():
-    """{name: text} for page.html and the scripts."""
+def words(of_search):
+    """{name: text} for page.html and the scripts. of_search: whether the page shows a search, over its values."""
     return {
         "language": Chosen.language,
         "decimal": "." if Chosen.language == "en" else ",",
@@ -24,7 +24,8 @@ def words():
         "someRuns": t("Drawn: {count} of {all} runs, with the extremes of each interval."),
         "chosenRun": t("Chosen run: {run}"), "numbered": t("run {number}"), "chosen": t("chosen run"),
         "largest": t("largest of all runs"), "variedOption": t("varied option"), "at": t("at x"),
-        "bridge": t("position along the bridge"), "along": t("Along the bridge"), "histories": t("Over time"),
+        "bridge": t("position along the bridge"), "histories": t("Over time"),
+        "along": t("Search for values") if of_search else t("Along the bridge"),
         "reset": t("Reset zoom"),
         "chartsNote": t("Drag across a chart to zoom in all of them, click to go to an instant, click a name to hide "
                         "its curve. The numbers beside the names are the values at the instant of the drawing."),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import model_sheet, norm_sheet, rail_sheet, static_sheet
+from . import find_sheet, model_sheet, norm_sheet, rail_sheet, static_sheet
 from .language import capital, digits, known, num, percent, place_in_words, t
 from .limits import STATIC
 from .page import AMBER, GREEN, GREY, LEFT, RED, table
@@ -38,7 +38,7 @@ def outcome(verdicts):
 
 def outcome_of(source, verdicts):
     """The same of a results file; red if its computation has not reached its end."""
-    said, colour = outcome(verdicts)
+    said, colour = outcome(verdicts) if not source.is_search else (find_sheet.outcome(source), GREY)
     ended = source.summary.get("ended", t("it was killed"))
     if ended == "reached its end":
         return said, colour

@@ -6,6 +6,7 @@ import re
 import subprocess
 
 import numpy as np
+from search_answers import Search
 
 from .language import t
 from .limits import values_of
@@ -14,7 +15,7 @@ from .quantities import words_of
 STATIONS_A_SPAN, MOST_STATIONS = 20, 161
 LONGEST = 120.0  # s, limit for the run
 # Options of the sweep or study, or of the first run only.
-LEFT_OUT = re.compile(r"^(sweep|study|output|limits|report|scene_name|options_file|restart|checkpoint|log_view|"
+LEFT_OUT = re.compile(r"^(sweep|study|find|output|limits|report|scene_name|options_file|restart|checkpoint|log_view|"
                       r"malloc_debug|skip_petscrc)")
 
 
@@ -40,7 +41,8 @@ def options_of(source, run):
         elif name == "speed":
             options["train_speed" if vehicles else "load_speed"] = text
         else:
-            for one in [name] + source.options.get(f"study_vary_{name}_also", "").split(","):
+            also = "find_also" if name == source.options.get("find_option") else f"study_vary_{name}_also"
+            for one in [name] + source.options.get(also, "").split(","):
                 if one:
                     count = len(options.get(one, "").split(","))
                     options[one] = ",".join([text] * count)
@@ -82,7 +84,10 @@ def write_vehicles(options, folder):
 
 
 def governing_run(source, limits):
-    """The run with the least margin of a limit, otherwise the one with the largest deflection, and the reason."""
+    """The run with the least margin of a limit, otherwise the one with the largest deflection, and the reason. Of a
+    search, whose runs exceed limits on purpose, the run closest to its bound within it."""
+    if source.is_search:
+        return Search(source.results).run_at_bound(), t("of the values within the bound, it is the run closest to it")
     worst, margin = int(np.nanargmax(source.runs.of_run("peak_deflection"))), np.inf
     why = t("it has the greatest deflection")
     for limit in limits:

@@ -14,7 +14,8 @@ from traverse_check.rules import CheckError
 
 from . import (
     annex_sheet, assumptions_sheet, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet, fatigue_sheet,
-    front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, static_sheet, statistics, title_sheet, workbook_sheets)
+    find_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, sensitivity_sheet, static_sheet,
+    statistics, title_sheet, workbook_sheets)
 from . import governing as again
 from . import limits as judging
 from .language import LANGUAGES, choose, t
@@ -139,6 +140,8 @@ def add_pages(report, entry, asked, program):
     norm_sheet.sheet(report, source)
     static_sheet.sheet(report, source)
     rail_sheet.sheet(report, source)
+    find_sheet.sheet(report, source)
+    sensitivity_sheet.sheet(report, source)
     if source.runs is not None:
         curve_sheet.line_sheet(report, source, limits)
         curve_sheet.curve_sheets(report, source, limits)

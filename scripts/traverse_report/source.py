@@ -152,6 +152,7 @@ class Source:
             self.runs = self._study()
         self.is_run = self.runs is None and "probes/deflection" in self.file and self.results.rows > 0
         self.is_rail = "rail_forces/x" in self.file
+        self.is_search, self.is_sensitivity = "find/ratio" in self.file, "sensitivity/units" in self.file
         self.is_static = self.runs is None and not self.is_run and not self.is_rail and "static/x" in self.file
         self.is_dynamic = self.runs is not None or self.is_run
         if not self.is_dynamic and not self.is_rail and not self.is_static:
@@ -194,6 +195,7 @@ class Source:
                   if name not in skipped and not name.endswith("_time") and hasattr(data, "shape")}
         kept = set(group["statistics"]) if "statistics" in group else set(names)
         over = [name for name in parameters if name not in kept and name in names]
+        over += self.file["factor"].asstr()[:].tolist() if "factor" in self.file else []
         units = {name: str(group[name].attrs.get("unit", "1")) for name in names}
         return self._judged(Runs(parameters, values, group["probes_x"][:], group["static_deflection"][:], over, units))
 
