@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "results/engineering_units.hpp"
 #include "results/sweep.hpp"
@@ -13,8 +14,10 @@
 namespace traverse::results {
 
 StudyTable::StudyTable(const options::Study& study, std::size_t probes, bool wheels,
-                       const std::vector<options::VerdictLimit>& limits)
+                       const std::vector<options::VerdictLimit>& limits, const options::Study* all)
     : study_(study),
+      all_(all),
+      missing_(all != nullptr ? study.runs() : 0, all != nullptr ? all->runs() / study.runs() : 0),
       runs_(study.runs()),
       probes_(probes),
       limits_(limits),
@@ -30,12 +33,47 @@ StudyTable::StudyTable(const options::Study& study, std::size_t probes, bool whe
   }
 }
 
-void StudyTable::put(std::size_t run, const double* row) {
+void StudyTable::put(std::size_t run, const double* numbers) {
+  if (all_ != nullptr) {
+    const std::size_t row = all_->place(run, all_->sensitivity->axis);
+    merge(row, numbers);
+    if (--missing_[row] == 0) finished_[row] = 1.0;
+    return;
+  }
   for (Column& column : columns_) {
-    std::copy_n(row, column.width, column.values.begin() + static_cast<std::ptrdiff_t>(run * column.width));
-    row += column.width;
+    std::copy_n(numbers, column.width, column.values.begin() + static_cast<std::ptrdiff_t>(run * column.width));
+    numbers += column.width;
   }
   finished_[run] = 1.0;
+}
+
+/// Numbers that are equal in several runs get the least of their times or stations, in any order of the runs.
+void StudyTable::merge(std::size_t row, const double* numbers) {
+  std::vector<char> replaced;  // numbers of the last column that is no time or station: 1: replaced, 2: equal
+  for (Column& column : columns_) {
+    const std::string_view name = column.what->name;
+    const bool follows = name.ends_with("_time") || name == "judged_x", least = name.starts_with("least_");
+    if (!follows) replaced.assign(column.width, 0);
+    for (std::size_t k = 0; k < column.width; ++k, ++numbers) {
+      double& value = column.values[row * column.width + k];
+      if (!follows)
+        replaced[k] = *numbers == value                                                    ? 2
+                      : std::isnan(value) || (least ? *numbers < value : *numbers > value) ? 1
+                                                                                           : 0;
+      if (replaced[k] == 1 || (follows && replaced[k] == 2 && *numbers < value)) value = *numbers;
+    }
+  }
+}
+
+options::Study rows_of(const options::Study& study) {
+  if (!study.sensitivity) return study;
+  options::Study rows = study;
+  const std::size_t axis = study.sensitivity->axis;
+  std::erase_if(rows.dimensions, [axis](const options::StudyDimension& d) { return d.axis != axis; });
+  for (options::StudyDimension& d : rows.dimensions) d.axis = 0;
+  rows.axes = {study.axes[axis]};
+  rows.sensitivity->axis = 0;
+  return rows;
 }
 
 std::size_t StudyTable::finished_runs() const {

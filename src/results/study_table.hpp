@@ -42,8 +42,9 @@ class StudyTable {
  public:
   static constexpr double not_run = std::numeric_limits<double>::quiet_NaN();
 
+  /// study: the study of the rows; all: the study of the runs, if it has more; both must outlive this object.
   StudyTable(const options::Study& study, std::size_t probes, bool wheels,
-             const std::vector<options::VerdictLimit>& limits = {});
+             const std::vector<options::VerdictLimit>& limits = {}, const options::Study* all = nullptr);
 
   const options::Study& study() const { return study_; }
   const std::vector<options::VerdictLimit>& limits() const { return limits_; }
@@ -53,13 +54,16 @@ class StudyTable {
   std::size_t probes() const { return probes_; }
   /// Numbers in a row, in the order of the columns; a column has one number, or one number for each probe.
   std::size_t width() const { return width_; }
-  void put(std::size_t run, const double* row);
+  /// The numbers of a run of the study from which rows_of made that of the table. A row of several runs is finished
+  /// after the last one and has their greatest values, for least forces their least values.
+  void put(std::size_t run, const double* numbers);
   /// Sets the reason why runs cannot evaluate the quantity of a limit, in words.
   void set_reason(std::size_t limit, const std::string& why) { reasons_[limit] = why; }
   /// The reason that was set last; empty if there is none.
   std::string reason(std::size_t limit) const { return limit < reasons_.size() ? reasons_[limit] : ""; }
   bool finished(std::size_t run) const { return finished_[run] != 0.0; }
   std::size_t finished_runs() const;
+  std::size_t runs_of_a_row() const { return all_ != nullptr ? all_->runs() / runs_ : 1; }
 
   struct Column {
     const StudyColumn* what;
@@ -81,13 +85,21 @@ class StudyTable {
   Recorder::Dataset finished() const;
 
  private:
+  void merge(std::size_t row, const double* numbers);
+
   const options::Study& study_;
+  const options::Study* all_;         // the study of the runs if a row has several of them, otherwise null
+  std::vector<std::size_t> missing_;  // runs of each row that have not ended
   std::size_t runs_, probes_, width_ = 0;
   std::vector<options::VerdictLimit> limits_;
   std::vector<Column> columns_;
   std::vector<double> finished_;
   std::vector<std::string> reasons_;  // reason for each limit
 };
+
+/// The study whose runs are the rows of its table: without the options that are no factors of a sensitivity analysis. A
+/// row then has the greatest values of all their combinations.
+options::Study rows_of(const options::Study& study);
 
 /// The run and probe with the largest (or least) value of a column; false if no run has ended.
 struct StudyPlace {

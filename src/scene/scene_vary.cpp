@@ -8,6 +8,7 @@
 #include <set>
 #include <string_view>
 
+#include "results/study_table.hpp"
 #include "results/terminal.hpp"
 #include "scene_parts.hpp"
 #include "study_axes.hpp"
@@ -21,7 +22,7 @@ using options::Options;
 using options::Row;
 
 constexpr std::string_view study_prefix = VaryReader::prefix;
-constexpr double most_runs = VaryReader::most_values, most_study_peaks = 1e8;
+constexpr double most_study_peaks = 1e8;
 constexpr double quickest_run = 5e-3;  // s: computing time of a train over a bridge in a SIMD batch
 
 /// The option that an option study_vary_... varies.
@@ -163,10 +164,11 @@ void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& stu
     }
   }
   axes.finish_design();
-  if (axes.runs() > most_runs)
-    throw InputError(fmt::format(
-        "study_vary: {:.4g} runs ({}); allowed: at most {:g}. They would take {} even at {}", axes.runs(), axes.sizes(),
-        most_runs, results::duration_text(quickest_run * axes.runs()), results::duration_text(quickest_run) + " each"));
+  if (axes.runs() > axes.most_runs())
+    throw InputError(fmt::format("study_vary: {:.4g} runs ({}); allowed: at most {:g}. They would take {} even at {}",
+                                 axes.runs(), axes.sizes(), axes.most_runs(),
+                                 results::duration_text(quickest_run * axes.runs()),
+                                 results::duration_text(quickest_run) + " each"));
 }
 
 void read_statistics(const Options& o, Study& study) {
@@ -260,7 +262,8 @@ void check_study(const Options& o, Scene& scene) {
     if (d.name() == "track_seed" && !scene.roughness)
       o.refuse(first, fmt::format("track_seed has no effect: track_profile is {}", o.text("track_profile")));
   record_coarse_speeds(scene);
-  const double peaks = static_cast<double>(study.runs()) * static_cast<double>(scene.output.probes.size());
+  const double peaks =
+      static_cast<double>(results::rows_of(study).runs()) * static_cast<double>(scene.output.probes.size());
   if (peaks > most_study_peaks)
     o.refuse(first, fmt::format("{} runs with {} probes each; allowed: at most {:g} runs times probes", study.runs(),
                                 scene.output.probes.size(), most_study_peaks));
@@ -284,6 +287,8 @@ Scene read_study(const Options& given) {
   read_statistics(o, study);
   read_refinement(o, study);
   read_search(o, study);
+  if (study.sensitivity && o.flag("study_resume"))
+    o.refuse("study_resume", "not with study_sensitivity, whose file has no single runs");
   study.resume = o.flag("study_resume");
   std::vector<std::pair<std::string, std::string>> values = values_of_run(study, 0);
   Scene scene = read_scene_of_study(given, values);

@@ -81,7 +81,10 @@ void StudyAxes::finish_design() {
                       static_cast<double>(std::max<std::size_t>(analysis.base_samples, 1));
   runs_ *= points;
   sizes_ += fmt::format("{}{:g} points of the design", sizes_.empty() ? "" : " times ", points);
-  if (runs_ > VaryReader::most_values) return;
+  if (points > VaryReader::most_values)
+    o_.refuse("study_draws",
+              fmt::format("{:g} points of the design; allowed: at most {:g}", points, VaryReader::most_values));
+  if (runs_ > most_runs()) return;
   study_.axes[analysis.axis].length = static_cast<std::size_t>(points);
   const std::vector<double> cube =
       analysis.method == Method::sobol    ? base::saltelli_design(analysis.base_samples, factors, seed_)

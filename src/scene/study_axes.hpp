@@ -26,6 +26,8 @@ class StudyAxes {
   void finish_design();
   /// The number of all runs, which may be too great for an integer, and its factors in words.
   double runs() const { return runs_; }
+  /// The allowed number. A sensitivity analysis stores the points of its design only.
+  double most_runs() const { return study_.sensitivity ? 1e8 : VaryReader::most_values; }
   const std::string& sizes() const { return sizes_; }
 
  private:

@@ -105,7 +105,8 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
         "0 adds none");
   double motion = 0.0;
   for (const StudyRun& run : scenes.runs()) motion += first.duration(run.train, run.own.speed);
-  const double part = static_cast<double>(study.runs() - known) / static_cast<double>(study.runs());
+  const double rows = static_cast<double>(results::rows_of(study).runs());
+  const double part = (rows - static_cast<double>(known)) / rows;
   const double seconds = part * first.cost() * motion / ranks;
   const bool has_cost = model.modes > 0 || model.time_step > 0.0;
   notes.push_back(fmt::format("the {} is computed {}{}", study.sweep ? "sweep" : "study", results::method_of(model),
@@ -150,6 +151,7 @@ class Rounds {
   }
   /// Collective. Copies the results of earlier runs from the file and returns their number.
   std::size_t copy_stored() {
+    if (scenes_.study().sensitivity) return 0;  // its file has no single runs
     known_ = copy_known(comm_, stored_, *table_);
     return static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 1));
   }
@@ -184,8 +186,10 @@ class Rounds {
  private:
   void begin(const Study& study) {
     scenes_.enumerate(study);
-    table_.emplace(scenes_.study(), scene_.output.probes.size(), has_wheels(scene_), scene_.limits);
-    known_.assign(table_->runs(), 0);
+    rows_ = results::rows_of(study);
+    const Study* const all = study.sensitivity ? &scenes_.study() : nullptr;
+    table_.emplace(rows_, scene_.output.probes.size(), has_wheels(scene_), scene_.limits, all);
+    known_.assign(scenes_.study().runs(), 0);
   }
   /// Collective. The speeds or searched values to be added, by the table of rank 0. Empty: the results are known well
   /// enough, or the number of values would exceed its limit.
@@ -221,6 +225,7 @@ class Rounds {
   results::StoredStudy stored_;  // runs of an earlier, interrupted study
   const std::vector<std::string>& notes_;
   std::vector<double> given_;  // first values of the extended dimension, ascending
+  Study rows_;                 // of the table
   std::optional<results::StudyTable> table_;
   std::vector<char> known_;  // 1 for each run whose results are known
   std::optional<StudyFile> file_;

@@ -247,8 +247,9 @@ void StudyFile::finish(const StudyCourse& course, const std::vector<results::Ver
   std::vector<results::Attribute> summary = results::summary_of(table_);
   for (const auto& [quantity, error] : model_.expected_errors) summary.push_back({"expected_error_" + quantity, error});
   if (course.refined) results::add_to(summary, *course.refined);
-  summary.push_back({"runs", static_cast<long>(table_.finished_runs())});
-  summary.push_back({"runs_planned", static_cast<long>(table_.runs())});
+  const auto of_a_row = static_cast<long>(table_.runs_of_a_row());
+  summary.push_back({"runs", of_a_row * static_cast<long>(table_.finished_runs())});
+  summary.push_back({"runs_planned", of_a_row * static_cast<long>(table_.runs())});
   if (!table_.study().sweep) summary.push_back({"runs_known", course.known});
   summary.push_back({"wall_seconds", course.wall_seconds});
   summary.push_back({"ended", course.ended});
@@ -273,9 +274,10 @@ void print_study_course(const results::StudyTable& table, const results::RunMode
   if (const std::string warning = results::extrapolation_note(model, table.find("unseen")->values); !warning.empty())
     fmt::print("  note: {}\n", warning);
   fmt::print("{}", results::separate_runs_note(course.separate_runs));
-  const long done = static_cast<long>(table.finished_runs()) - course.known;
+  const auto of_a_row = static_cast<long>(table.runs_of_a_row());
+  const long done = of_a_row * static_cast<long>(table.finished_runs()) - course.known;
   fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each{}\n  {:<22}{}\nresults  {}\n", done,
-             static_cast<long>(table.runs()) - course.known, results::method_of(model), course.wall_seconds,
+             of_a_row * static_cast<long>(table.runs()) - course.known, results::method_of(model), course.wall_seconds,
              1e3 * course.wall_seconds / static_cast<double>(std::max(done, 1L)),
              course.known > 0 ? fmt::format(", and {} known before", course.known) : "",
              sweep ? "the sweep" : "the study", course.ended, scene.output.file.empty() ? "none" : scene.output.file);

@@ -93,7 +93,9 @@ TEST(StudyInput, SensitivityAnalysesNeedDistributionsAndSamples) {
   refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "local", "-study_combine", "random"},
           {"study_combine", "grid"});
   refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "sobol", "-study_draws", "400000"},
-          {"1.2e+06 runs", "points of the design"});
+          {"study_draws", "1.2e+06 points of the design"});
+  refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "local", "-study_resume"},
+          {"study_resume", "study_sensitivity"});
 }
 
 TEST(StudyInput, SpeedsToRefineAreAListOfTheirOwn) {
