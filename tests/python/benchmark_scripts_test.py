@@ -171,6 +171,13 @@ class Scripts(InAFolder):
         self.assert_errors(rows, "error of moment", 1e-2)
         self.assert_errors(rows[8:], "error of wheel force", 5e-2)
 
+    def test_questions(self):
+        self.run_smallest("questions")
+        rows = self.table("questions.csv", ["question", "runs", "seconds", "answer", "uncertainty"])
+        self.assertEqual([row["question"] for row in rows], ["least EI", "Sobol' indices"])
+        self.assert_positive(rows, "seconds")
+        self.assert_errors(rows[:1], "uncertainty", 1e-3)
+
     def test_long_bridge(self):
         self.run_smallest("long_bridge")
         rows = self.table("long_bridge.csv", ["bridge", "method", "times real time, 1 rank", "2 ranks",
