@@ -260,6 +260,8 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   const Scene scene = with(scenes.base(scenes.extreme_bases().front()), choice.model);
   const results::RunModel model = stored_model(scene, choice.accuracy);
   const CaseRunner& first = *scenes.runner(0, &notes).runs;
+  std::vector<std::string> of_others;
+  for (const std::size_t base : scenes.extreme_bases()) scenes.runner(base, &of_others);
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
   for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
   std::optional<SweepFindings> findings;

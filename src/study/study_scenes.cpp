@@ -152,8 +152,8 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
   }
   std::vector<std::string> ignored;
   const bool same_beam = model != nullptr && scene.beam->axial == model->axial();
-  auto made =
-      std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored, same_beam ? model->beam() : nullptr);
+  auto made = std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored,
+                                           same_beam ? model->beam() : nullptr, notes != nullptr);
   const bool merged = model == nullptr || (same_beam && made->merge(*model));
   return runners_.emplace_back(Runner{wanted, merged, std::move(made)});
 }

@@ -47,7 +47,7 @@ class StudyScenes {
     bool merged = false;  // its runs are compatible with the runs of the other merged bases on its bridge
     std::shared_ptr<CaseRunner> runs;
   };
-  /// The last used runners are stored.
+  /// The last used runners are stored. With `notes`, which get the description of the model, its runs are checked.
   Runner runner(std::size_t base, std::vector<std::string>* notes = nullptr);
   /// Whether runs of two bases can be computed in one batch.
   bool compatible(const Runner& a, const Runner& b) const;
