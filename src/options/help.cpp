@@ -44,6 +44,8 @@ constexpr Heading headings[] = {
     {"report", "report", "Title page and language of the report (scripts/traverse-report)"},
     {"sweep", "sweep", "Sweeps over speeds and trains"},
     {"study", "study", "Studies of varied options"},
+    {"fit", "fit", "Fit of options to measurements"},
+    {"tao", "fit", ""},
     {"log", "petsc", "Other options of PETSc than ts_..."},
     {"malloc", "petsc", ""},
     {"skip", "petsc", ""},
@@ -121,6 +123,9 @@ std::vector<HelpGroup> help_groups() {
   groups.push_back({"vary", "Each option NAME that a study varies", {}});
   add("study_vary_NAME", {&vary_list_row(), 1});
   add("study_vary_NAME_", vary_rows());
+  groups.push_back({"measured", "Each option NAME that a fit estimates, and each measurement NAME", {}});
+  add("fit_vary_NAME", {&fit_bounds_row(), 1});
+  add("fit_to_NAME_", fit_rows());
   return groups;
 }
 

@@ -99,6 +99,12 @@ std::vector<double> read_speeds(const options::Options& options);
 bool describes_study(const options::Options& options);
 /// The scene of a study's first run, with the study.
 Scene read_study(const options::Options& options);
+/// The reason why runs cannot have different values of an option; empty if they can.
+std::string why_not_varied(const options::Options& options, const std::string& option);
+/// Whether the options describe a fit to measurements.
+bool describes_fit(const options::Options& options);
+/// The scene at the start of a fit, with the fit.
+Scene read_fit(const options::Options& options);
 /// The one given option that selects the forces of a load; empty if there is none.
 std::string load_option(const options::Options& options, const std::string& load = "load");
 /// Whether there are any moving forces.
