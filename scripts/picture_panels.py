@@ -1,5 +1,6 @@
 """The panels of a picture from top to bottom: what a results file holds decides which there are."""
 
+import picture_fit
 import picture_hanging
 import picture_rail
 from picture_axes import Panel
@@ -85,6 +86,8 @@ def panels(results, asked=()):
     file, found = results.file, of_run(results, asked)
     if "sweep/peak_deflection" in file or "study/finished" in file:
         found += panels_of(results, asked)
+    if "fit" in file:
+        found += picture_fit.panels_of(results)
     if not found and "static/x" in file:
         found += [over_time(draw_static, results, name) for name in STATIC]
     if not found and "rail_forces/x" in file:
