@@ -18,7 +18,7 @@ import h5py
 import numpy
 import runs
 
-SPAN, STATION, MODES = 30.0, 13.0, 8  # m, m
+SPAN, STATION, MODES, EXACT_MODES = 30.0, 13.0, 8, 60  # m, m; of the scene and of the measurement
 FORCE, SPACING, COUNT, SPEED = 1.7e5, 18.0, 6, 29.0  # N, m, m/s
 SAMPLES, INTERVAL, NOISE = 500, 0.012, 0.02  # s; relative to the largest deflection
 OPTIONS = ("beam_EI", "beam_mass", "model_damping_ratios")
@@ -34,7 +34,7 @@ fit:
 """
 
 
-def deflection(t, EI, mass, ratio, span=SPAN, x=STATION, modes=MODES, forces=((FORCE, 0.0),), speed=SPEED):
+def deflection(t, EI, mass, ratio, span=SPAN, x=STATION, modes=EXACT_MODES, forces=((FORCE, 0.0),), speed=SPEED):
     """The deflection (m, downward) at x of a simply supported beam at the instants t (s).
 
     Every mode is an oscillator under sin(n pi v tau/L) while a force is on the beam: the particular solution, and free

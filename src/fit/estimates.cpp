@@ -12,15 +12,16 @@
 namespace traverse::app {
 namespace {
 
-constexpr double singular = 1e-4;      // relative to the largest singular value of the scaled Jacobian
-constexpr double insensitive = 1e-10;  // sensitivity relative to the largest one: the data do not depend on it
-constexpr double member = 0.1;         // part of a singular vector from which an unknown belongs to it
-constexpr double hardly = 0.98;        // correlation from which two unknowns are hardly told apart
-constexpr double chance = 3.0;         // standard deviations of the sum of squares that chance explains
-constexpr double dependent = 0.3;      // correlation of neighbouring residuals from which a sentence warns
-constexpr double same_place = 1e-3;    // of the range between the bounds
-constexpr double same_misfit = 0.01;   // difference of sums of squares, over their mean square, explained by rounding
-constexpr double infinite = std::numeric_limits<double>::infinity(), unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double singular = 1e-4;         // relative to the largest singular value of the scaled Jacobian
+constexpr double without_effect = 1e-10;  // sensitivity relative to the largest one: the data do not depend on it
+constexpr double member = 0.1;            // part of a singular vector from which an unknown belongs to it
+constexpr double hardly = 0.98;           // correlation from which two unknowns are hardly told apart
+constexpr double chance = 3.0;            // standard deviations of the sum of squares that chance explains
+constexpr double dependent = 0.3;         // correlation of neighbouring residuals from which a sentence warns
+constexpr double same_place = 1e-3;       // of the range between the bounds
+constexpr double same_misfit = 0.01;  // difference of sums of squares, over their mean square, explained by rounding
+constexpr double infinite = std::numeric_limits<double>::infinity(),
+                 undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// The values of the columns of `free` unknowns only.
 struct Scaled {
@@ -33,7 +34,7 @@ Scaled scaled(const Minimum& minimum, const std::vector<char>& held) {
   Scaled found;
   const Eigen::VectorXd norm = minimum.jacobian.colwise().norm();
   for (Eigen::Index j = 0; j < norm.size(); ++j)
-    if (held[static_cast<std::size_t>(j)] == 0 && norm[j] > insensitive * norm.maxCoeff()) found.index.push_back(j);
+    if (held[static_cast<std::size_t>(j)] == 0 && norm[j] > without_effect * norm.maxCoeff()) found.index.push_back(j);
   const auto count = static_cast<Eigen::Index>(found.index.size());
   found.norm.resize(count);
   found.jacobian.resize(minimum.jacobian.rows(), count);
@@ -79,7 +80,7 @@ class Writer {
   void set_ratio() {
     const double sum = minimum_.residuals.squaredNorm();
     const double freedom = residuals_.independent() - static_cast<double>(free_.index.size());
-    found_.ratio = freedom > 0.0 ? sum / freedom : unknown;
+    found_.ratio = freedom > 0.0 ? sum / freedom : undefined;
     if (freedom > 0.0 && found_.ratio > 1.0 + chance * std::sqrt(2.0 / freedom)) {
       scale_ = std::sqrt(found_.ratio);
       say(
@@ -92,7 +93,7 @@ class Writer {
   void set_values() {
     for (Eigen::Index j = 0; j < minimum_.u.size(); ++j) {
       const bool held = held_[static_cast<std::size_t>(j)] != 0;
-      found_.of.push_back({unknown_of(j).value(minimum_.u[j]), held ? unknown : infinite, held});
+      found_.of.push_back({unknown_of(j).value(minimum_.u[j]), held ? undefined : infinite, held});
       if (held)
         say(fmt::format("{} is at its {} bound, and the misfit decreases beyond it.", name(j),
                         minimum_.u[j] < 0.5 ? "lower" : "upper"));
@@ -103,7 +104,7 @@ class Writer {
 
   void set_covariance() {
     const auto count = static_cast<Eigen::Index>(free_.index.size());
-    found_.correlation = Eigen::MatrixXd::Constant(minimum_.u.size(), minimum_.u.size(), unknown);
+    found_.correlation = Eigen::MatrixXd::Constant(minimum_.u.size(), minimum_.u.size(), undefined);
     if (count == 0) return;
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(free_.jacobian.transpose() * free_.jacobian, Eigen::ComputeFullV);
     const Eigen::VectorXd square = svd.singularValues();

@@ -21,7 +21,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr double samples_per_period = 20.0;  // of the fastest mode that is exact in time
+constexpr double samples_per_period = 8.0;  // of the fastest mode that is exact in time
 constexpr double most_samples = 2e6;         // of a run
 
 /// The beam of one run, with everything that a passage needs.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "fit/spline.hpp"
 #include "run/low_pass.hpp"
@@ -112,7 +113,7 @@ std::vector<double> Residuals::values(const Eigen::VectorXd& u) const {
 std::vector<double> Residuals::computed(std::size_t s, const std::vector<double>& response, double shift) const {
   const options::MeasuredSeries& series = fit_.series[s];
   const std::size_t count = (response.size() - fit_.frequencies.size()) / fit_.series.size();
-  const Spline spline(std::span(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
+  const Spline spline(std::span<const double>(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
   std::vector<double> values;
   values.reserve(series.time.size());
   for (const double t : series.time) values.push_back(spline(t - shift));
@@ -149,7 +150,7 @@ double Residuals::least_misfit_shift(std::size_t s, const std::vector<double>& r
                                      double high) const {
   const options::MeasuredSeries& series = fit_.series[s];
   const std::size_t count = (response.size() - fit_.frequencies.size()) / fit_.series.size();
-  const Spline spline(std::span(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
+  const Spline spline(std::span<const double>(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
   const std::size_t stride = series.time.size() / most_compared + 1;
   const auto shifts = static_cast<std::size_t>(
       std::clamp((high - low) / interval_of(series.time), 1.0, static_cast<double>(most_shifts)));
