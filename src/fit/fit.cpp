@@ -103,10 +103,8 @@ void align_clocks(ForwardModel& model, const options::Fit& fit, Residuals& resid
   const auto aligned = [](const options::MeasuredSeries& series) { return series.align; };
   std::vector<double> response;
   if (std::any_of(fit.series.begin(), fit.series.end(), aligned)) {
-    std::vector<double> start;
-    for (const options::FitParameter& parameter : fit.parameters) start.push_back(parameter.start);
     model.set_end(model.duration());
-    response = model.run(start);
+    response = model.run(model.start());
   }
   residuals.align(response, model.interval(), shift_range * model.duration());
   model.set_end(residuals.end());
@@ -144,10 +142,10 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   describe(fit, model, notes);
   print_notes(comm, scene, notes);
+  const DeferredSignals deferred;
   FitFile file(comm, std::move(place), scene, residuals, notes);
   Evaluator evaluator(comm, fit.parameters.size(), model.size(),
                       [&](const std::vector<double>& values) { return model.run(values); });
-  const DeferredSignals deferred;
   const auto begin = Clock::now();
   const results::Stage stage("fit");
   FitCourse course;

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "error_control/accuracy.hpp"
 #include "error_control/mode_mesh.hpp"
@@ -22,7 +24,7 @@ namespace traverse::app {
 namespace {
 
 constexpr double samples_per_period = 8.0;  // of the fastest mode that is exact in time
-constexpr double most_samples = 2e6;         // of a run
+constexpr double most_samples = 2e6;        // of a run
 
 /// The beam of one run, with everything that a passage needs.
 SharedBeam& prepared(SharedBeam& shared, const Scene& scene, std::vector<std::string>& notes) {
@@ -57,20 +59,29 @@ std::vector<std::string> controlled_peaks(const options::Fit& fit) {
 ForwardModel::ForwardModel(const Scene& scene, std::vector<std::string>& notes) : fit_(*scene.fit), name_(scene.name) {
   choose(notes);
   if (!fit_.series.empty()) set_interval();
+  if (fit_.frequencies.empty()) return;
+  std::vector<double> checked;
+  add_frequencies(start(), checked);
+}
+
+std::vector<double> ForwardModel::start() const {
+  std::vector<double> values;
+  for (const options::FitParameter& parameter : fit_.parameters) values.push_back(parameter.start);
+  return values;
 }
 
 void ForwardModel::choose(std::vector<std::string>& notes) {
   const results::Stage stage("choice of the model of the fit");
-  std::vector<double> start, low, high;
+  const std::vector<double> first = start();
+  std::vector<double> low, high;
   for (const options::FitParameter& parameter : fit_.parameters) {
-    start.push_back(parameter.start);
     low.push_back(parameter.low);
     high.push_back(parameter.high);
   }
   const options::Options given(options::in_force());
   const auto finest = [&](bool modes, auto choose_one) {
     std::optional<NumericalModel> all;
-    for (const std::vector<double>* values : {&start, &low, &high}) {
+    for (const std::vector<double>* values : std::array{&first, &std::as_const(low), &std::as_const(high)}) {
       Scene scene = read_scene_of_fit(given, fit_, *values, modes);
       if (scene.accuracy_of.empty()) scene.accuracy_of = controlled_peaks(fit_);
       std::vector<std::string> own;
@@ -106,9 +117,7 @@ Scene ForwardModel::scene(const std::vector<double>& values, bool modes) const {
 
 /// The samples are as dense as the rows of the densest series, and as the steps or the fastest mode need.
 void ForwardModel::set_interval() {
-  std::vector<double> start;
-  for (const options::FitParameter& parameter : fit_.parameters) start.push_back(parameter.start);
-  const Scene first = scene(start, false);
+  const Scene first = scene(start(), false);
   std::vector<std::string> ignored;
   SharedBeam shared(PETSC_COMM_SELF, first, ignored);
   const Passage passage(first, prepared(shared, first, ignored), ignored);

@@ -17,6 +17,8 @@ class ForwardModel {
   /// values of the options. InputError if the scene of one of them cannot be computed. The scene must have a fit.
   ForwardModel(const Scene& scene, std::vector<std::string>& notes);
 
+  /// The values at the start of the fit.
+  std::vector<double> start() const;
   /// The duration of the run at the start of the fit, s.
   double duration() const { return duration_; }
   /// Sets the end of all runs, s. They have samples up to there.

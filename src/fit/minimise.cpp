@@ -15,7 +15,8 @@ namespace {
 constexpr double gradient = 1e-4;     // at the end, over the least sensitivity: in standard errors
 constexpr double insensitive = 1e-8;  // relative to the largest sensitivity
 constexpr double relative_gradient = 1e-8;
-constexpr double allowed_decrease = 1e-2;  // of the sum of squares, by the linearised residuals, over their mean
+constexpr double allowed_decrease = 1e-2;  // of the sum of squares by the linearised residuals, over their mean
+constexpr double least_mean = 1e-2;        // smallest mean square that is distinguished from 0
 constexpr long most_iterations = 50;
 
 using Vector = Eigen::Map<Eigen::VectorXd>;
@@ -94,7 +95,7 @@ bool has_converged(const Minimum& minimum) {
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(free);
   const double decrease = (free * decomposition.solve(minimum.residuals)).squaredNorm();
   const double mean = minimum.residuals.squaredNorm() / static_cast<double>(minimum.residuals.size());
-  return decrease <= allowed_decrease * std::max(mean, 1e-12);
+  return decrease <= allowed_decrease * std::max(mean, least_mean);
 }
 
 }  // namespace

@@ -231,12 +231,19 @@ void check_fit(const Options& o, const Scene& scene) {
     o.refuse(name_of(fit.frequencies.front().name, "frequency"),
              "the frequencies of a bridge by given modes are input; allowed: bridges by beam_spans");
   for (const options::MeasuredSeries& series : fit.series) {
-    if (series.x > scene.beam->length())
-      o.refuse(name_of(series.name, "x"),
-               fmt::format("is outside the bridge; allowed: from 0 to {:g} m", scene.beam->length()));
     if (scene.by_given_modes() && (series.quantity == "moment" || series.quantity == "shear"))
       o.refuse(name_of(series.name, "quantity"), "given modes have no moments and no shear forces");
   }
+}
+
+/// Checks the stations of the series before they are the probes of the scene.
+void check_stations(const Options& o, const Fit& fit) {
+  if (!o.has("beam_spans")) return;
+  double length = 0.0;
+  for (const double span : o.numbers("beam_spans")) length += span;
+  for (const options::MeasuredSeries& series : fit.series)
+    if (series.x > length)
+      o.refuse(name_of(series.name, "x"), fmt::format("is outside the bridge; allowed: from 0 to {:g} m", length));
 }
 
 /// The stations of the series in place of the scene's probes.
@@ -266,6 +273,7 @@ Scene read_fit(const Options& given) {
   for (const char* other : {"sweep_speed", "sweep_hslm_a", "restart"})
     if (o.has(other)) o.refuse(other, "is not allowed in a fit, which computes single runs of one scene");
   const Fit fit = read_measurements(o);
+  check_stations(o, fit);
   std::vector<double> start;
   for (const FitParameter& parameter : fit.parameters) start.push_back(parameter.start);
   Scene scene = read_scene_of_fit(given, fit, start, fit.series.empty());

