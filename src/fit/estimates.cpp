@@ -64,7 +64,7 @@ class Writer {
     set_covariance();
     add_pairs();
     add_dependence();
-    if (!minimum_.converged)
+    if (!has_converged(minimum_))
       say(fmt::format("The minimisation has not converged ({}): -tao_max_it, fit_starts or narrower bounds may help.",
                       minimum_.reason));
     return std::move(found_);

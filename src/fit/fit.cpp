@@ -70,7 +70,7 @@ class Search {
                              [](const Minimum& a, const Minimum& b) { return a.misfit() < b.misfit(); });
   }
 
-  /// Weights of several measurements decide the estimates, so that the minimisation is repeated with new ones.
+  /// The weights of several measurements decide the estimates, so that the minimisation is repeated with new ones.
   void estimate_sd(std::vector<Minimum>& minima) {
     for (int round = 0; round < most_rounds; ++round) {
       const Eigen::VectorXd factors = residuals_.estimate_sd(best_of(minima).residuals);
@@ -79,8 +79,9 @@ class Search {
         one.jacobian = factors.asDiagonal() * one.jacobian;
       }
       const double change = (factors.array() - 1.0).abs().maxCoeff();
-      if (fit_.series.size() + fit_.frequencies.size() == 1 || change < settled) return;
+      const bool single = fit_.series.size() + fit_.frequencies.size() == 1;
       Minimum& best = best_of(minima);
+      if ((single || change < settled) && has_converged(best)) return;
       best = minimise(problem_, best.u);
     }
   }

@@ -160,7 +160,7 @@ void FitFile::finish(const FitCourse& course) {
   if (!course.minima.empty()) {
     summary.push_back({"misfit", course.minima[course.best].misfit()});
     summary.push_back({"residual_ratio", course.estimates.ratio});
-    summary.push_back({"converged", course.minima[course.best].converged ? 1L : 0L});
+    summary.push_back({"converged", has_converged(course.minima[course.best]) ? 1L : 0L});
     summary.push_back({"minima", static_cast<long>(distinct_minima(course.minima).size())});
     std::string text;
     for (const std::string& sentence : course.estimates.sentences) text += (text.empty() ? "" : "\n") + sentence;

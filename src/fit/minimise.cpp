@@ -6,14 +6,14 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "base/petsc.hpp"
 
 namespace traverse::app {
 namespace {
 
-constexpr double gradient = 1e-4;     // at the end, over the least sensitivity: in standard errors
-constexpr double insensitive = 1e-8;  // relative to the largest sensitivity
+constexpr double gradient = 5e-3;  // at the end, in standard errors
 constexpr double relative_gradient = 1e-8;
 constexpr double allowed_decrease = 1e-2;  // of the sum of squares by the linearised residuals, over their mean
 constexpr double least_mean = 1e-2;        // smallest mean square that is distinguished from 0
@@ -50,13 +50,26 @@ Eigen::VectorXd copy_of(Vec vector) {
   return copy;
 }
 
-PetscErrorCode find_residuals(Tao, Vec u, Vec r, void* problem) {
-  return base::guard([&] { Entries(r).get() = static_cast<Problem*>(problem)->evaluate(copy_of(u)); });
+/// The unknowns of TAO are the changes of the unknowns u from their start times their sensitivity there: numbers of
+/// standard errors. So is the gradient. The regularisation of TAO's method begins at 0.
+struct Scaled {
+  Problem& problem;
+  Eigen::VectorXd start, scale;
+
+  Eigen::VectorXd u(Vec x) const { return (start + copy_of(x).cwiseQuotient(scale)).cwiseMax(0.0).cwiseMin(1.0); }
+};
+
+PetscErrorCode find_residuals(Tao, Vec x, Vec r, void* context) {
+  return base::guard([&] {
+    const auto& scaled = *static_cast<const Scaled*>(context);
+    Entries(r).get() = scaled.problem.evaluate(scaled.u(x));
+  });
 }
 
-PetscErrorCode find_jacobian(Tao, Vec u, Mat J, Mat, void* problem) {
+PetscErrorCode find_jacobian(Tao, Vec x, Mat J, Mat, void* context) {
   return base::guard([&] {
-    const Eigen::MatrixXd found = static_cast<Problem*>(problem)->jacobian(copy_of(u));
+    const auto& scaled = *static_cast<const Scaled*>(context);
+    const Eigen::MatrixXd found = scaled.problem.jacobian(scaled.u(x)) * scaled.scale.cwiseInverse().asDiagonal();
     double* array = nullptr;
     base::check(MatDenseGetArray(J, &array));
     std::copy_n(found.data(), found.size(), array);
@@ -66,23 +79,23 @@ PetscErrorCode find_jacobian(Tao, Vec u, Mat J, Mat, void* problem) {
   });
 }
 
-base::Handle<Vec> vector_of(Eigen::Index size, double value) {
+base::Handle<Vec> vector_of(Eigen::Index size) {
   base::Handle<Vec> vector;
   base::check(VecCreateSeq(PETSC_COMM_SELF, static_cast<PetscInt>(size), vector.out()));
-  base::check(VecSet(vector, value));
+  base::check(VecSet(vector, 0.0));
   return vector;
 }
 
-/// The gradient of the misfit at which a minimisation ends.
-double gradient_limit(const Eigen::MatrixXd& jacobian) {
-  const Eigen::VectorXd sensitivity = jacobian.colwise().norm();
-  double least = sensitivity.maxCoeff();
-  for (const double one : sensitivity)
-    if (one > insensitive * sensitivity.maxCoeff()) least = std::min(least, one);
-  return gradient * least;
+/// The scale of the unknowns for TAO's method; POUNDERS has no derivatives, and a first step that suits u.
+Eigen::VectorXd scale_of(Tao tao, const Problem& problem, const Eigen::VectorXd& u) {
+  TaoType type = nullptr;
+  base::check(TaoGetType(tao, &type));
+  if (std::string(type) == TAOPOUNDERS) return Eigen::VectorXd::Ones(u.size());
+  return problem.jacobian(u).colwise().norm().transpose().cwiseMax(1.0);
 }
 
-/// Whether the linearised residuals promise no noteworthy decrease of the misfit within the bounds.
+}  // namespace
+
 bool has_converged(const Minimum& minimum) {
   const std::vector<char> held = at_bounds(minimum);
   Eigen::MatrixXd free(minimum.jacobian.rows(), 0);
@@ -98,8 +111,6 @@ bool has_converged(const Minimum& minimum) {
   return decrease <= allowed_decrease * std::max(mean, least_mean);
 }
 
-}  // namespace
-
 std::vector<char> at_bounds(const Minimum& minimum) {
   const Eigen::VectorXd slope = minimum.jacobian.transpose() * minimum.residuals;
   std::vector<char> held;
@@ -111,34 +122,35 @@ std::vector<char> at_bounds(const Minimum& minimum) {
 Minimum minimise(Problem& problem, const Eigen::VectorXd& start) {
   problem.set_steps(start);
   const Eigen::Index size = start.size(), count = static_cast<Eigen::Index>(problem.residuals().size());
-  const base::Handle<Vec> u = vector_of(size, 0.0), low = vector_of(size, 0.0), high = vector_of(size, 1.0),
-                          r = vector_of(count, 0.0);
-  Entries(u).get() = start;
+  Scaled scaled{problem, start, Eigen::VectorXd::Ones(size)};
+  const base::Handle<Vec> x = vector_of(size), low = vector_of(size), high = vector_of(size), r = vector_of(count);
   base::Handle<Mat> J;
   base::check(
       MatCreateSeqDense(PETSC_COMM_SELF, static_cast<PetscInt>(count), static_cast<PetscInt>(size), nullptr, J.out()));
   base::Handle<Tao> tao;
   base::check(TaoCreate(PETSC_COMM_SELF, tao.out()));
   base::check(TaoSetType(tao, TAOBRGN));
-  base::check(TaoSetSolution(tao, u));
+  base::check(TaoSetSolution(tao, x));
   base::check(TaoSetVariableBounds(tao, low, high));
-  base::check(TaoSetResidualRoutine(tao, r, find_residuals, &problem));
-  base::check(TaoSetJacobianResidualRoutine(tao, J, J, find_jacobian, &problem));
-  base::check(TaoSetTolerances(tao, gradient_limit(problem.jacobian(start)), relative_gradient, 0.0));
+  base::check(TaoSetResidualRoutine(tao, r, find_residuals, &scaled));
+  base::check(TaoSetJacobianResidualRoutine(tao, J, J, find_jacobian, &scaled));
+  base::check(TaoSetTolerances(tao, gradient, relative_gradient, 0.0));
   base::check(TaoSetMaximumIterations(tao, most_iterations));
   base::check(TaoSetFromOptions(tao));
+  scaled.scale = scale_of(tao, problem, start);
+  Entries(low).get() = -start.cwiseProduct(scaled.scale);
+  Entries(high).get() = scaled.scale - start.cwiseProduct(scaled.scale);
   base::check(TaoSolve(tao));
   Minimum minimum;
   PetscInt iterations = 0;
   TaoConvergedReason reason = TAO_CONTINUE_ITERATING;
   base::check(TaoGetIterationNumber(tao, &iterations));
   base::check(TaoGetConvergedReason(tao, &reason));
-  minimum.u = copy_of(u).cwiseMax(0.0).cwiseMin(1.0);
+  minimum.u = scaled.u(x);
   minimum.residuals = problem.evaluate(minimum.u);
   minimum.jacobian = problem.jacobian(minimum.u);
   minimum.iterations = iterations;
   minimum.reason = TaoConvergedReasons[reason];
-  minimum.converged = has_converged(minimum);
   return minimum;
 }
 

@@ -15,8 +15,7 @@ struct Minimum {
   Eigen::VectorXd residuals;  // over their standard deviations
   Eigen::MatrixXd jacobian;   // d residuals / d u
   long iterations = 0;
-  std::string reason;      // PETSc's name of the reason of the end
-  bool converged = false;  // no better point is near, by the linearised residuals
+  std::string reason;  // PETSc's name of the reason of the end
 
   double misfit() const { return 0.5 * residuals.squaredNorm(); }
 };
@@ -47,6 +46,8 @@ class Problem {
 /// Minimises from u, with PETSc's options -tao_...
 Minimum minimise(Problem& problem, const Eigen::VectorXd& u);
 
+/// Whether the linearised residuals promise no noteworthy decrease of the misfit within the bounds.
+bool has_converged(const Minimum& minimum);
 /// Which unknowns are at a bound towards which the misfit decreases.
 std::vector<char> at_bounds(const Minimum& minimum);
 

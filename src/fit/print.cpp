@@ -18,6 +18,11 @@ std::string error_text(const Estimate& estimate) {
                      estimate.value != 0.0 && relative < 1.0 ? fmt::format(" ({:.2g} %)", 100.0 * relative) : "");
 }
 
+void print_estimate(const Unknown& unknown, const Estimate& estimate) {
+  const std::string unit = unknown.unit == "1" ? "" : " " + unknown.unit;
+  fmt::print("  {:<30}{:.7g}{}, {}\n", unknown.name, estimate.value, unit, error_text(estimate));
+}
+
 void print_correlations(const Residuals& residuals, const Eigen::MatrixXd& correlation) {
   if (correlation.rows() < 2 || correlation.rows() > most_printed) return;
   fmt::print("  correlations\n");
@@ -68,8 +73,7 @@ void print_fit(const options::Fit& fit, const Residuals& residuals, const FitCou
   if (!course.minima.empty()) {
     fmt::print("estimates\n");
     for (std::size_t j = 0; j < residuals.unknowns().size(); ++j)
-      fmt::print("  {:<30}{:.7g} {}, {}\n", residuals.unknowns()[j].name, course.estimates.of[j].value,
-                 residuals.unknowns()[j].unit, error_text(course.estimates.of[j]));
+      print_estimate(residuals.unknowns()[j], course.estimates.of[j]);
     print_correlations(residuals, course.estimates.correlation);
     print_measurements(fit, residuals, course);
     print_minima(fit, residuals, course.minima);

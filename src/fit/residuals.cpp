@@ -15,7 +15,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr double first_sd = 0.05;                                // relative to the variation of a series
+constexpr double first_sd = 0.005;                               // relative to the variation of a series
 constexpr double logarithmic_from = 10.0;                        // ratio of the bounds from which u is logarithmic
 constexpr std::size_t most_shifts = 4000, most_compared = 2000;  // of the search for the difference of the clocks
 constexpr double least_sd = 1e-12;  // relative to the variation of a series, for measurements without noise

@@ -37,7 +37,7 @@ struct ComparedSeries {
 
 class Residuals {
  public:
-  /// Series without a standard deviation get one for the first iterations, a twentieth of their variation.
+  /// Series without a standard deviation get one for the first iterations, a small part of their variation.
   explicit Residuals(const options::Fit& fit);
 
   /// Aligns the clocks by the computed samples at the start: the shift of each aligned series is the one with the

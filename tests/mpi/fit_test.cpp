@@ -12,7 +12,8 @@ namespace {
 TEST(Ranks, FitToAFrequencyAndASeries) {
   const std::string yaml = "options_file: " TRAVERSE_SOURCE_DIR
                            "/options/studies/fit_to_a_passage.yml\n"
-                           "fit: {to: {first: {frequency: 1, value: 1.85, sd: 0.01}}, starts: 2}\n";
+                           "fit: {to: {first: {frequency: 1, value: 1.85, sd: 0.01}}, starts: 2}\n"
+                           "model_modes: 2\nfit_to_midspan_to: 3.0\n";
   Results all = run_yaml(yaml, {}, MPI_COMM_WORLD);
   Results one = run_yaml(yaml, {}, MPI_COMM_SELF);
   for (const char* name : {"estimate", "standard_error", "starts/misfit", "series/midspan/computed"}) {

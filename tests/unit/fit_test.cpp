@@ -49,7 +49,6 @@ Minimum minimum(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual
   one.u = Eigen::Vector2d(0.5, 0.5);
   one.residuals = residuals;
   one.jacobian = jacobian;
-  one.converged = true;
   return one;
 }
 
