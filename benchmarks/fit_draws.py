@@ -18,7 +18,7 @@ import h5py
 import numpy
 import runs
 
-SPAN, STATION, MODES, EXACT_MODES = 30.0, 13.0, 8, 60  # m, m; of the scene and of the measurement
+SPAN, STATION, MODES, EXACT_MODES = 30.0, 13.0, 5, 60  # m, m; of the scene and of the measurement
 FORCE, SPACING, COUNT, SPEED = 1.7e5, 18.0, 6, 29.0  # N, m, m/s
 SAMPLES, INTERVAL, NOISE = 500, 0.012, 0.02  # s; relative to the largest deflection
 OPTIONS = ("beam_EI", "beam_mass", "model_damping_ratios")

@@ -20,6 +20,7 @@ MOST_ITERATIONS = 60
 SMALLEST_STEP = 1e-12   # relative change of the parameters at which the iteration ends
 FEWEST_MAXIMA = 3
 LEAST_MAXIMUM = 0.05    # relative to the largest value
+LEAST_OVER_NOISE = 5.0
 
 
 class Mode(NamedTuple):
@@ -115,23 +116,25 @@ def modes_of(values, interval, count):
     return sorted(found), factors[-1], np.sqrt(residuals @ residuals / len(values))
 
 
-def decrement_of(values, interval):
+def decrement_of(values, interval, frequency, noise=0.0):
     """The logarithmic decrement of the maxima above rest, which is 0; None with fewer than three maxima.
 
-    The maxima between the values are those of parabolas through three values.
+    A maximum is the largest value within 0.4 periods of the frequency (Hz) on either side, in place and height that of a
+    parabola through the values within a tenth of a period. Maxima below five times the noise are left out.
     """
-    numbers, logs = [], []
-    for i in range(1, len(values) - 1):
-        before, here, after = values[i - 1:i + 2]
-        if here < LEAST_MAXIMUM * values.max() or not before < here >= after:
+    beside, near = (max(1, round(part / (frequency * interval))) for part in (0.4, 0.1))
+    least, places, logs = max(LEAST_MAXIMUM * values.max(), LEAST_OVER_NOISE * noise), [], []
+    for i in range(near, len(values) - near):
+        if values[i] < least or values[i] < values[max(i - beside, 0):i + beside + 1].max():
             continue
-        bend, slope = before - 2.0 * here + after, 0.5 * (after - before)
-        numbers.append(i - slope / bend)
-        logs.append(np.log(here - 0.5 * slope**2 / bend))
+        bend, slope, height = np.polyfit(np.arange(-near, near + 1), values[i - near:i + near + 1], 2)
+        places.append(i - 0.5 * slope / bend)
+        logs.append(np.log(height - 0.25 * slope**2 / bend))
     if len(logs) < FEWEST_MAXIMA:
         return None
-    value = -np.polyfit(np.arange(len(logs)), logs, 1)[0]
-    return Decrement(value, len(logs), 1.0 / (np.polyfit(np.arange(len(logs)), numbers, 1)[0] * interval),
+    numbers = np.arange(len(logs))
+    value = -np.polyfit(numbers, logs, 1)[0]
+    return Decrement(value, len(logs), 1.0 / (np.polyfit(numbers, places, 1)[0] * interval),
                      value / np.sqrt(4.0 * np.pi**2 + value**2))
 
 
@@ -175,7 +178,7 @@ def main():
         print(f"{number:4d} {mode.frequency:12.6g} +- {mode.frequency_error:8.2g} {mode.ratio:12.5g} +- "
               f"{mode.ratio_error:8.2g} {mode.amplitude:12.4g}")
     print(f"root mean square of the residuals {rest:.3g}, of {len(values)} values")
-    decrement = decrement_of(values - constant, interval) if given.modes == 1 else None
+    decrement = decrement_of(values - constant, interval, modes[0].frequency, rest) if given.modes == 1 else None
     if decrement:
         print(f"logarithmic decrement {decrement.value:.4g} of {decrement.maxima} maxima: damping ratio "
               f"{decrement.ratio:.4g}, frequency {decrement.frequency:.5g} Hz")

@@ -195,6 +195,7 @@ std::vector<DistinctMinimum> distinct_minima(const std::vector<Minimum>& minima)
                    [](const Minimum* a, const Minimum* b) { return a->misfit() < b->misfit(); });
   std::vector<DistinctMinimum> found;
   for (const Minimum* one : sorted) {
+    if (one != sorted.front() && !has_converged(*one)) continue;
     const auto same = std::find_if(found.begin(), found.end(), [&](const DistinctMinimum& other) {
       const Eigen::VectorXd between = one->u - other.best->u;
       const double mean = other.best->residuals.squaredNorm() / static_cast<double>(one->residuals.size());

@@ -34,7 +34,7 @@ struct DistinctMinimum {
   int count = 0;  // minimisations that ended there
 };
 /// The minima that differ from each other, by ascending misfit: those of which the linearised residuals of one do not
-/// explain the other.
+/// explain the other. Minimisations that have not converged are left out, except for the one with the least misfit.
 std::vector<DistinctMinimum> distinct_minima(const std::vector<Minimum>& minima);
 
 }  // namespace traverse::app

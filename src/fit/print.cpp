@@ -1,6 +1,7 @@
 // Prints estimates with standard errors and correlations, the residuals of each measurement, and the minima.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fit/fit_file.hpp"
@@ -56,8 +57,10 @@ void print_measurements(const options::Fit& fit, const Residuals& residuals, con
 void print_minima(const options::Fit& fit, const Residuals& residuals, const std::vector<Minimum>& minima) {
   if (fit.starts == 1) return;
   const std::vector<DistinctMinimum> distinct = distinct_minima(minima);
-  fmt::print("  {} of {} starts reached the least misfit, {:.6g}{}\n", distinct.front().count, minima.size(),
-             distinct.front().best->misfit(), distinct.size() == 1 ? "; there were no other minima" : "");
+  const auto stopped = std::count_if(minima.begin(), minima.end(), [](const Minimum& m) { return !has_converged(m); });
+  fmt::print("  {} of {} starts reached the least misfit, {:.6g}{}{}\n", distinct.front().count, minima.size(),
+             distinct.front().best->misfit(), distinct.size() == 1 ? "; there were no other minima" : "",
+             stopped > 0 ? fmt::format("; {} did not converge", stopped) : "");
   if (distinct.size() == 1) return;
   fmt::print("  {} other minim{} met; the lowest has the misfit {:.6g} at", distinct.size() - 1,
              distinct.size() == 2 ? "um was" : "a were", distinct[1].best->misfit());

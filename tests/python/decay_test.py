@@ -48,11 +48,13 @@ class Decay(unittest.TestCase):
         self.assertAlmostEqual(np.mean(squares), 1.0, delta=5.0 * np.sqrt(2.0 / len(squares)))
 
     def test_logarithmic_decrement(self):
-        found = decay.decrement_of(free(MODES[0]), INTERVAL)
+        found = decay.decrement_of(free(MODES[0]), INTERVAL, 1.7)
         self.assertAlmostEqual(found.value, 2.0 * np.pi * 0.02 / np.sqrt(1.0 - 0.02**2), delta=1e-5)
         self.assertAlmostEqual(found.ratio, 0.02, delta=2e-6)
         self.assertAlmostEqual(found.frequency, 1.7 * np.sqrt(1.0 - 0.02**2), delta=1e-4)
-        self.assertIsNone(decay.decrement_of(np.linspace(1.0, 0.0, 50), INTERVAL))
+        noisy = free(MODES[0]) + 5e-5 * np.random.default_rng(3).standard_normal(TIME.size)
+        self.assertAlmostEqual(decay.decrement_of(noisy, INTERVAL, 1.7, 5e-5).ratio, 0.02, delta=5e-4)
+        self.assertIsNone(decay.decrement_of(np.linspace(1.0, 0.0, 50), INTERVAL, 10.0))
 
 
 class Program(unittest.TestCase):

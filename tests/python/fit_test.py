@@ -52,17 +52,16 @@ class Fits(InFolder):
         self.assertLess(total, 3.0 * 22.5)  # 0.999 of chi-squared with 6 degrees of freedom, for three equal errors
 
     def test_several_minima_are_counted(self):
-        """Far from the true mass the oscillation is met a period early or late."""
-        self.record(0.01)
-        scene = yaml.safe_load(fit_draws.SCENE.replace(", sd: SD", "").replace("align: true", "align: false"))
+        """With the stiffness known, other masses meet the oscillation a period early or late."""
         self.record(0.01, shift=0.0)
-        scene["beam"] |= {"EI": 1.9e10, "mass": 4.6e3}
-        scene["fit"]["starts"] = 6
+        scene = yaml.safe_load(fit_draws.SCENE.replace(", sd: SD", "").replace("align: true", "align: false"))
+        scene["beam"]["EI"], scene["model"]["damping_ratios"] = TRUE[0], TRUE[2]
+        scene["fit"] |= {"vary": {"beam_mass": [1.0e3, 9.0e4]}, "starts": 12}
         results = traverse.fit(scene, folder=self.folder)
         misfits = results["starts_misfit"].values
-        self.assertEqual(misfits.size, 6)
-        self.assertAlmostEqual(results["estimate"].sel(unknown="beam_mass") / TRUE[1], 1.0, delta=0.02)
-        self.assertGreaterEqual(results.attrs["summary_minima"], 1)
+        self.assertAlmostEqual(results["estimate"].sel(unknown="beam_mass") / TRUE[1], 1.0, delta=1e-3)
+        self.assertGreater(results.attrs["summary_minima"], 2)
+        self.assertGreater(np.sort(misfits)[-1], 10.0 * misfits.min())
         self.assertAlmostEqual(misfits.min(), results.attrs["summary_misfit"], delta=1e-9 * misfits.min())
 
 
@@ -73,7 +72,7 @@ class Module(InFolder):
         results = traverse.fit(scene, {"beam_EI": [5e9, 2e10]}, {"first": {"frequency": 1, "value": f1, "sd": 0.01}})
         self.assertAlmostEqual(results["estimate"].sel(unknown="beam_EI") / 1.2e10, 1.0, delta=2e-3)
         self.assertEqual(results["frequencies_measured"].values.tolist(), [f1])
-        self.assertAlmostEqual(results["frequencies_computed"].sel(measured_frequency="first") / f1, 1.0, delta=1e-6)
+        self.assertAlmostEqual(results["frequencies_computed"].sel(measured_frequency="first") / f1, 1.0, delta=1e-5)
         with self.assertRaisesRegex(traverse.Error, "fit_to is missing"):
             traverse.fit(scene, {"beam_EI": [5e9, 2e10]})
 

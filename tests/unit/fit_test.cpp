@@ -97,10 +97,12 @@ TEST(Estimates, AtABoundHaveNoStandardError) {
 TEST(Minima, AreDistinctIfTheLinearisedResidualsDoNotExplainThem) {
   Eigen::MatrixXd jacobian(3, 2);
   jacobian << 1.0, -2.0, 2.0, -4.0, 3.0, -6.0;
-  std::vector<Minimum> minima(3, minimum(jacobian, Eigen::Vector3d(1.0, 1.0, 1.0)));
-  minima[1].u = Eigen::Vector2d(0.7, 0.6);  // along the valley
+  std::vector<Minimum> minima(4, minimum(jacobian, Eigen::Vector3d(1.0, 1.0, -1.0)));  // no slope
+  minima[1].u = Eigen::Vector2d(0.7, 0.6);                                             // along the valley
   minima[2].u = Eigen::Vector2d(0.9, 0.1);
   minima[2].residuals *= 2.0;
+  minima[3].u = Eigen::Vector2d(0.1, 0.9);
+  minima[3].residuals = Eigen::Vector3d(3.0, 3.0, 3.0);  // has not converged
   const std::vector<DistinctMinimum> found = distinct_minima(minima);
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].count, 2);
