@@ -13,7 +13,8 @@ install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_
 file(GLOB pictures CONFIGURE_DEPENDS scripts/picture*.py)
 install(FILES ${pictures} scripts/animate.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
         scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_tables.py
-        scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py DESTINATION ${share}/python)
+        scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py
+        DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
 install(FILES examples/three_span_train.py DESTINATION ${share}/examples)

@@ -3,8 +3,8 @@
 
 The page contains the parts that are in the file: the shape of the bridge at the largest deflection, deflections, wheel
 forces, accelerations and sensors over time; or mode shapes; or the peaks of a sweep or a study over the speed and the
-varied options, with their limits; or the answers of a search; or the effects of uncertain options. Each curve has a
-name. The CSV file contains the curves of the picture.
+varied options, with their limits; or the answers of a search; or the effects of uncertain options; or the measurements
+of a fit with their computed counterparts. Each curve has a name. The CSV file contains the curves of the picture.
 """
 
 import argparse
@@ -14,6 +14,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import picture_find  # noqa: E402
+import picture_fit  # noqa: E402
 import picture_page  # noqa: E402
 import picture_sensitivity  # noqa: E402
 from picture_data import Results, opened  # noqa: E402
@@ -43,9 +44,11 @@ def heading_in_words(results, modes_only):
         return f"{title}, a sensitivity analysis", picture_sensitivity.method_in_words(results)
     elif "study/finished" in results.file:
         title += f", a study of {len(results.file['study/finished']):,} runs"
+    elif "fit" in results.file:
+        title += ", a fit to measurements"
     elif speed:
         title += f", {speed_in_words(speed)}"
-    said = summary_in_words(results)
+    said = summary_in_words(results) + (picture_fit.fit_in_words(results) if "fit" in results.file else [])
     if not summary and results.rows:
         said.append(f"the run did not reach its end; drawn up to {results.time[-1]:.4g} s")
     if modes_only and "modes/shape" in results.file:

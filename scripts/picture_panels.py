@@ -1,6 +1,7 @@
 """The panels of a picture from top to bottom: what a results file holds decides which there are."""
 
 import picture_find
+import picture_fit
 import picture_hanging
 import picture_rail
 import picture_sensitivity
@@ -91,6 +92,8 @@ def panels(results, asked=()):
         found += picture_sensitivity.panels_of(results, asked)
     elif "sweep/peak_deflection" in file or "study/finished" in file:
         found += panels_of(results, asked)
+    if "fit" in file:
+        found += picture_fit.panels_of(results)
     if not found and "static/x" in file:
         found += [over_time(draw_static, results, name) for name in STATIC]
     if not found and "rail_forces/x" in file:

@@ -9,14 +9,14 @@ from . import places
 
 # Omitted are the scene itself, and the state at an end between two samples; h5py reads these.
 _LEFT_OUT = ("options", "input", "model", "end", "study/shape", "study/row_digest")
-_BARE = re.compile(r"^/?(?:probes|sweep|study)/")
+_BARE = re.compile(r"^/?(?:probes|sweep|study|fit)/")
 _WITHOUT_COORDINATES = b"This is a netCDF dimension but not a netCDF variable."
 # The values along a dimension of quantities that no file contains: those of a Passage.
 _MEANINGS = {"coordinate": ["x", "y", "angle"], "component": ["fx", "fy", "moment"], "direction": ["x", "y"]}
 
 
 def name_of(path):
-    """The name of the dataset at a path: its path with "_" for "/", without a leading probes, sweep or study."""
+    """The name of the dataset at a path: its path with "_" for "/", without a leading probes, sweep, study or fit."""
     return _BARE.sub("", path).strip("/").replace("/", "_")
 
 

@@ -81,6 +81,19 @@ def sensitivity(scene, vary=None, method="sobol", draws=None, *, folder=None, ra
     return study(scene, vary, folder=folder, ranks=ranks, output=output, **asked, **options)
 
 
+def fit(scene, vary=None, to=None, *, folder=None, ranks=1, output=None, **options):
+    """Estimates options of a scene from measurements, with the arguments of `run`.
+
+    scene: that of a fit, or any scene with vary={"beam_EI": [5e9, 2e10], ...}, the bounds of each estimated option, and
+    to={"first": {"frequency": 1, "value": 4.1, "sd": 0.02}, "midspan": {"series": "midspan.csv", ...}}, the
+    measurements as in `fit: to:` of a scene file.
+    Returns a Dataset with estimate, standard_error and correlation along the dimension unknown, and the measured and
+    computed values: series_NAME_measured, series_NAME_computed, frequencies_measured, frequencies_computed.
+    """
+    given = {key: value for key, value in (("vary", vary), ("to", to)) if value is not None}
+    return _computed([scene, {"fit": given}] if given else [scene], folder, ranks, output, options)
+
+
 def _computed(scenes, folder, ranks, output, options):
     with words.of_scenes(*scenes) as (files, scratch):
         kept = pathlib.Path(folder or ".", output) if output is not None else pathlib.Path(scratch, "results.h5")

@@ -57,6 +57,22 @@ class Words:
         return f"{value} [{low}; {high}] {unit}".rstrip() if low != high else f"{value} {unit}".rstrip()
 
 
+def workbook_rows(source):
+    """Head and rows: each quantity with each option, the measures and the ends of their intervals."""
+    if not source.is_sensitivity:
+        return [], []
+    words, rows = Words(source), []
+    names = [t(names[words.method]) for names in (MAIN, SECOND) if words.method in names]
+    for quantity in words.analysis.units:
+        (unit, factor), measures = words.unit(quantity), [words.analysis.main(quantity)]
+        measures += [words.analysis.second(quantity)] if len(names) > 1 else []
+        for i in words.analysis.order(quantity):
+            numbers = [float(factor * one[i]) for measure in measures for one in measure]
+            rows.append([words_of(quantity), words.runs.words(words.analysis.factors[i])[0], unit or "1", *numbers])
+    heads = [f"{name}{end}" for name in names for end in ("", f", {t('least')}", f", {t('greatest')}")]
+    return [t("quantity"), t("option"), t("unit"), *heads], rows
+
+
 def sheet(report, source):
     if not source.is_sensitivity:
         return

@@ -2,7 +2,9 @@
 
 from openpyxl.styles import Font, PatternFill
 
-from . import annex_sheet, assumptions_sheet, checks_sheet, loads_sheet, norm_sheet, rail_sheet, workbook_results
+from . import (
+    annex_sheet, assumptions_sheet, checks_sheet, find_sheet, loads_sheet, norm_sheet, rail_sheet, sensitivity_sheet,
+    workbook_results)
 from .front_sheet import WORDS, peak_rows
 from .language import known, t
 from .limits import stored
@@ -54,7 +56,10 @@ def add_source(book, prefix, entry, asked, program):
     for name, (head, rows) in (("EN 1991-2 6.4.6.5", norm_sheet.workbook_rows(source)),
                                (t("static effects"), norm_sheet.static_rows(source)),
                                (t("track and bridge"), rail_sheet.rows(source)),
-                               (t("rail stresses"), rail_sheet.envelope_rows(source))):
+                               (t("rail stresses"), rail_sheet.envelope_rows(source)),
+                               (t("Search for values"), find_sheet.interval_rows(source)),
+                               (t("Ratio to the bound"), find_sheet.ratio_rows(source)),
+                               (t("Sensitivity analysis"), sensitivity_sheet.workbook_rows(source))):
         if rows:
             book.add(f"{prefix}{name}", head, rows)
     if source.runs is not None:

@@ -8,6 +8,7 @@
 #include "base/notes.hpp"
 #include "check/check.hpp"
 #include "error_control/trial_runs.hpp"
+#include "fit/fit.hpp"
 #include "prepare.hpp"
 #include "results/stage.hpp"
 #include "run/active_ranks.hpp"
@@ -54,11 +55,13 @@ int run(MPI_Comm comm, const Scene& given) {
   MPI_Comm_rank(comm, &rank);
   const results::Heartbeat heartbeat(given.quiet || rank != 0);
   if (given.check) return run_check(comm, given);
-  if (given.study && has_own_contact_law(given))
-    throw InputError("study_vary: a study reads its scenes from the options, without contact laws of the program");
+  if ((given.study || given.fit) && has_own_contact_law(given))
+    throw InputError(fmt::format("{}: its scenes are read from the options, without contact laws of the program",
+                                 given.study ? "study_vary" : "fit_vary"));
   Scene asked = given;
   const std::optional<results::Checkpoint> earlier = earlier_of(comm, asked);
   results::Place place = claim_outputs(comm, asked);
+  if (given.fit) return run_fit(comm, given, std::move(place));
   if (given.study || given.sweep) return run_study(comm, given, std::move(place));
   // The number is selected before the trial runs, and again for the model that they select.
   const RankChoice at_first = ranks_for(comm, given, earlier);

@@ -16,6 +16,7 @@ constexpr double same_sample = 1e-6;  // relative to the interval: times closer 
 
 void check_goes_in_time(const Scene& scene) {
   const char* other = scene.study                                      ? "a study"
+                      : scene.fit                                      ? "a fit"
                       : scene.sweep                                    ? "a sweep"
                       : scene.check                                    ? "-check"
                       : options::in_force().find("restart") != nullptr ? "-restart"

@@ -45,6 +45,8 @@ constexpr Heading headings[] = {
     {"sweep", "sweep", "Sweeps over speeds and trains"},
     {"study", "study", "Studies of varied options"},
     {"find", "find", "Values of an option that keep limits"},
+    {"fit", "fit", "Fit of options to measurements"},
+    {"tao", "fit", ""},
     {"log", "petsc", "Other options of PETSc than ts_..."},
     {"malloc", "petsc", ""},
     {"skip", "petsc", ""},
@@ -122,6 +124,9 @@ std::vector<HelpGroup> help_groups() {
   groups.push_back({"vary", "Each option NAME that a study varies", {}});
   add("study_vary_NAME", {&vary_list_row(), 1});
   add("study_vary_NAME_", vary_rows());
+  groups.push_back({"measured", "Each option NAME that a fit estimates, and each measurement NAME", {}});
+  add("fit_vary_NAME", {&fit_bounds_row(), 1});
+  add("fit_to_NAME_", fit_rows());
   return groups;
 }
 

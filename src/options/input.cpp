@@ -98,7 +98,8 @@ bool flag_of(const Entry& entry) {
 
 /// The option as PETSc reads it; none for a viewer that is switched off.
 std::optional<PetscOption> for_petsc(const Entry& entry) {
-  constexpr std::array viewers = {"ts_monitor", "ts_view", "log_view"};  // a value would name a kind of output
+  constexpr std::array viewers = {"ts_monitor",           "ts_view", "tao_monitor", "tao_view",
+                                  "tao_converged_reason", "log_view"};  // a value would name a kind of output
   PetscOption option{"-" + name_in_petsc(entry.name), entry.value};
   if (std::find(viewers.begin(), viewers.end(), entry.name) == viewers.end()) return option;
   if (!flag_of(entry)) return std::nullopt;
@@ -106,7 +107,7 @@ std::optional<PetscOption> for_petsc(const Entry& entry) {
   return option;
 }
 
-bool is_read_by_ts(const Entry& entry) { return entry.name.starts_with("ts_"); }
+bool is_read_by_solvers(const Entry& entry) { return entry.name.starts_with("ts_") || entry.name.starts_with("tao_"); }
 
 void put(const Entry& entry) {
   if (const std::optional<PetscOption> option = for_petsc(entry))
@@ -218,7 +219,7 @@ Arguments::Arguments(std::vector<std::string> words) : words_(std::move(words)) 
 
 void put_into_petsc(const Input& input) {
   for (const Entry& entry : input.entries)
-    if (is_read_by_ts(entry)) put(entry);
+    if (is_read_by_solvers(entry)) put(entry);
   last_put = input.entries;
   last_notes = input.notes;
 }
@@ -250,7 +251,7 @@ std::vector<std::string> notes_on_unused(const Entries& entries) {
   for (const Entry& entry : entries) {
     if (!vehicles && (entry.name.starts_with("train_") || entry.name.starts_with("contact_")))
       notes.push_back(entry.given() + " has no effect: no vehicles run in this scene");
-    if (!is_read_by_ts(entry)) continue;
+    if (!is_read_by_solvers(entry)) continue;
     if (std::find(left.begin(), left.end(), entry.name) != left.end())
       notes.push_back(entry.given() + " has no effect in this scene");
     else if (is_without_control(entry, entries))
@@ -264,7 +265,7 @@ void refuse_by_petsc(const std::string& message) {
   std::string mentioned, all;
   const auto add = [](std::string& list, const Entry& entry) { list += (list.empty() ? "" : ", ") + entry.given(); };
   for (const Entry& entry : last_put) {
-    if (!is_read_by_ts(entry)) continue;
+    if (!is_read_by_solvers(entry)) continue;
     add(all, entry);
     const bool value = !entry.value.empty() && mentions(reason, entry.value);
     if (value || mentions(reason, "-" + name_in_petsc(entry.name))) add(mentioned, entry);

@@ -266,6 +266,17 @@ constexpr Row later_rows[] = {
 
   {"study_resume", flag, "", "false", any, "", 0, "uses the finished runs of the same study in the existing results file"},
 
+  {"fit_starts", integer, "", "1", {1, 1000}, "", 0, "number of minimisations from different starts within the bounds; more than one finds out whether the misfit has several minima"},
+  {"fit_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "seed of the starts after the first one"},
+  {"tao_type", choice, "", "brgn", any, "brgn pounders", 0, "least-squares method of PETSc's TAO for fits; brgn: regularised Gauss-Newton; pounders: without derivatives"},
+  {"tao_max_it", integer, "", "50", {0, 100000}, "", 0, "largest number of iterations of a minimisation"},
+  {"tao_gatol", number, "1", "(from the sensitivities)", not_negative, "", 0, "gradient of the misfit at which a minimisation ends"},
+  {"tao_grtol", number, "1", "1e-8", not_negative, "", 0, "the same, relative to the misfit"},
+  {"tao_gttol", number, "1", "0", not_negative, "", 0, "the same, relative to the gradient at the start"},
+  {"tao_monitor", flag, "", "false", any, "", 0, "prints each iteration"},
+  {"tao_converged_reason", flag, "", "false", any, "", 0, "prints why each minimisation ended"},
+  {"tao_view", flag, "", "false", any, "", 0, "prints PETSc's description of the method"},
+
   {"check", flag, "", "false", any, "", 0, "reads everything, shows model, static loads, selected methods, cost and unusual input, and stops without a run"},
   {"help", text, "", "", any, "", 0, "prints this list; -help beam, -help wheel, ...: one group; -help beam_EI: one option"},
 
@@ -284,10 +295,26 @@ constexpr Row vary[] = {
   {"lognormal", texts, "", "", any, "", 2, "draws from the lognormal distribution (values above 0) with this mean and standard deviation"},
   {"also", texts, "", "", any, "", 0, "other options that take the value of this one in every run"},
 };
+constexpr Row fit[] = {
+  {"frequency", integer, "", "", {1, 100}, "", 0, "number of the measured natural frequency, 1: the lowest, as -scene_analysis modes lists them"},
+  {"value", number, "Hz", "", positive, "", 0, "measured frequency"},
+  {"sd", number, "", "(of series: from the residuals)", positive, "", 0, "standard deviation of the measured value, or of each value of a series after its factor"},
+  {"series", file, "", "", any, "", 0, "table of a measured series, the time in its first column (s)"},
+  {"column", integer, "", "2", {2, 1000}, "", 0, "column of the measured values"},
+  {"quantity", choice, "", "", any, "deflection velocity acceleration moment shear", 0, "measured quantity; deflection, velocity and acceleration upward, moment in sagging"},
+  {"x", number, "m", "", not_negative, "", 0, "station of the measurement on the bridge"},
+  {"factor", number, "", "1", any, "", 0, "number by which the measured values are multiplied: 1e-3 from mm to m, negative for values that are positive downward"},
+  {"from", number, "s", "(the first row)", any, "", 0, "time of the first row that is used, by the clock of the measurement"},
+  {"to", number, "s", "(the last row)", any, "", 0, "time of the last row that is used"},
+  {"align", flag, "", "false", any, "", 0, "the difference of the clocks of measurement and scene is estimated; false: they are the same"},
+  {"offset", flag, "", "false", any, "", 0, "a constant in the measured values is estimated, such as the zero of a gauge"},
+  {"lowpass", number, "Hz", "(no filter)", positive, "", 0, "cut-off frequency of a low-pass for measured and computed values"},
+};
+constexpr Row fit_bounds = {"", texts, "", "", any, "", 2, "lowest and highest value of the option; speeds may be in km/h"};
 constexpr Row vary_list = {"", texts, "", "", any, "", 0, "values: a list, from:to for whole numbers, or from:to:step; speeds may be in km/h"};
 
 constexpr std::string_view petsc_prefixes[] = {
-  "ts_", "snes_", "ksp_", "pc_", "mat_", "vec_", "eps_", "st_", "svd_", "pep_", "nep_", "bv_", "ds_", "rg_", "fn_",
+  "ts_", "tao_", "snes_", "ksp_", "pc_", "mat_", "vec_", "eps_", "st_", "svd_", "pep_", "nep_", "bv_", "ds_", "rg_", "fn_",
   "beam_ksp_", "beam_pc_", "beam_mat_", "beam_eps_", "beam_st_", "log_", "options_", "malloc", "info", "on_error_",
   "fp_trap", "start_in_debugger", "stop_for_debugger", "debug", "petsc", "version", "viewer_", "view", "display",
   "draw_", "x_", "memory_", "objects_dump", "citations", "python", "saws", "is_", "sf_", "dm_", "cuda_", "device",
@@ -311,6 +338,9 @@ std::span<const Row> fixed_rows() {
 
 std::span<const Row> vary_rows() { return vary; }
 const Row& vary_list_row() { return vary_list; }
+
+std::span<const Row> fit_rows() { return fit; }
+const Row& fit_bounds_row() { return fit_bounds; }
 
 bool owned_by_petsc(std::string_view name) {
   for (const std::string_view prefix : petsc_prefixes) {

@@ -95,6 +95,18 @@ constexpr Row rows[] = {
     {"find/interval_at_end", "interval end", "whether the end is one of the searched range"},
     {"sensitivity/units", "quantity column", "quantity and unit"},
     {"sensitivity/*", "quantity factor", ""},
+    {"fit/correlation", "unknown other_unknown", "correlation of two estimates"},
+    {"fit/standard_error", "unknown", "standard error of the estimate"},
+    {"fit/frequencies/measured", "measured_frequency", "measured natural frequency"},
+    {"fit/frequencies/computed", "measured_frequency", "natural frequency computed with the estimates"},
+    {"fit/frequencies/sd", "measured_frequency", "standard deviation of the measured frequency"},
+    {"fit/series/*/time", "fit/series/*/time", "time by the clock of the measurement"},
+    {"fit/series/*/measured", "fit/series/*/time", "measured value"},
+    {"fit/series/*/computed", "fit/series/*/time", "value computed with the estimates"},
+    {"fit/series_sd", "measured_series", "standard deviation of a measured value"},
+    {"fit/starts/misfit", "fit_start", "misfit at the end of the minimisation"},
+    {"fit/starts/estimate", "fit_start unknown", "values at the end of the minimisation"},
+    {"fit/*", "unknown", ""},
     {"quantities/peaks", "quantity_of_peaks column", "quantity and unit"},
     {"quantities/limits", "quantity_of_limits column", "quantity and unit"},
     {"verdicts/*", "criterion column", ""},
@@ -183,7 +195,7 @@ DatasetWords words_of(std::string_view path, std::size_t rank) {
 
 std::string name_of_dimension(std::string_view path) {
   path.remove_prefix(1);
-  for (const std::string_view group : {"probes/", "sweep/", "study/"})
+  for (const std::string_view group : {"probes/", "sweep/", "study/", "fit/"})
     if (path.starts_with(group)) path.remove_prefix(group.size());
   return flat(path);
 }

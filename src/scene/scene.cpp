@@ -174,7 +174,10 @@ std::vector<double> wheels_at_start(const Scene& scene) {
 }
 
 Scene read_scene(Options o) {
+  if (describes_study(o) && describes_fit(o))
+    o.refuse(o.first_with_prefix("fit_")->name, "a scene is either a study or a fit; remove study_vary or fit_vary");
   if (describes_study(o)) return read_study(o);
+  if (describes_fit(o)) return read_fit(o);
   Scene scene;
   declare_blocks(o);
   const NamedVehicles vehicles = declare_vehicles(o);
@@ -202,6 +205,10 @@ Scene read_scene(Options o) {
   check_scene(o, scene);
   if (const options::Entry* study = o.first_with_prefix("study_"))
     scene.notes.push_back(study->name + " has no effect: study_vary names no option to vary");
+  if (const options::Entry* find = o.first_with_prefix("find_"))
+    scene.notes.push_back(find->name + " has no effect: find_option names no option to search");
+  if (const options::Entry* fit = o.first_with_prefix("fit_"))
+    scene.notes.push_back(fit->name + " has no effect: fit_vary names no option to estimate");
   check_plausibility(o, vehicles, scene);
   check_size(o, scene);
   scene.options = o.all();

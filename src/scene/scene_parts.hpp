@@ -99,7 +99,7 @@ std::vector<double> read_speeds(const options::Options& options);
 bool describes_study(const options::Options& options);
 /// The scene of a study's first run, with the study.
 Scene read_study(const options::Options& options);
-/// The reason why a study cannot vary an option; empty if it can.
+/// The reason why runs cannot have different values of an option; empty if they can.
 std::string why_not_varied(const options::Options& options, const std::string& option);
 /// The least given damping ratio of the bridge; 0 if none is given.
 double least_damping(const Scene& scene);
@@ -111,6 +111,10 @@ StudyDimension searched_dimension(const options::Options& options);
 void read_search(const options::Options& options, Study& study);
 /// Sets the first values of a search and its condition, by the limits of the scene.
 void finish_search(const options::Options& options, Scene& scene);
+/// Whether the options describe a fit to measurements.
+bool describes_fit(const options::Options& options);
+/// The scene at the start of a fit, with the fit.
+Scene read_fit(const options::Options& options);
 /// The one given option that selects the forces of a load; empty if there is none.
 std::string load_option(const options::Options& options, const std::string& load = "load");
 /// Whether there are any moving forces.

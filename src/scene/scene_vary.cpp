@@ -61,23 +61,6 @@ void declare_study(Options& o) {
   }
 }
 
-}  // namespace
-
-std::string why_not_varied(const Options& o, const std::string& option) {
-  const Row& row = *o.find_known(option);
-  for (const char* own : {"study_", "sweep_", "find_", "output_", "scene_", "options_", "accuracy", "modes_"})
-    if (option.starts_with(own)) return "it applies to the whole study, not to a single run";
-  const bool of_petsc = options::owned_by_petsc(option);
-  if (of_petsc && option != "ts_dt" && option != "ts_max_time") return "PETSc reads it once, for all runs";
-  if (of_petsc && o.entries().has(option)) return "it is given for all runs too; remove that option";
-  const bool number = row.kind == Kind::number || row.kind == Kind::integer || row.kind == Kind::number_or_file ||
-                      ((row.kind == Kind::numbers || row.kind == Kind::integers) && row.count <= 1);
-  if (number) return "";
-  return row.count > 1 ? fmt::format("it needs {}, not one number", options::allowed(row)) : "it is not a number";
-}
-
-namespace {
-
 /// The options that study_vary_... names, in the given order.
 std::vector<std::string> varied_options(const Options& o) {
   std::vector<std::string> names;
@@ -270,6 +253,20 @@ void check_study(const Options& o, Scene& scene) {
 }
 
 }  // namespace
+
+std::string why_not_varied(const Options& o, const std::string& option) {
+  const Row& row = *o.find_known(option);
+  for (const char* own :
+       {"study_", "find_", "fit_", "tao_", "sweep_", "output_", "scene_", "options_", "accuracy", "modes_"})
+    if (option.starts_with(own)) return "it applies to all runs, not to a single one";
+  const bool of_petsc = options::owned_by_petsc(option);
+  if (of_petsc && option != "ts_dt" && option != "ts_max_time") return "PETSc reads it once, for all runs";
+  if (of_petsc && o.entries().has(option)) return "it is given for all runs too; remove that option";
+  const bool number = row.kind == Kind::number || row.kind == Kind::integer || row.kind == Kind::number_or_file ||
+                      ((row.kind == Kind::numbers || row.kind == Kind::integers) && row.count <= 1);
+  if (number) return "";
+  return row.count > 1 ? fmt::format("it needs {}, not one number", options::allowed(row)) : "it is not a number";
+}
 
 bool describes_study(const Options& o) { return o.first_with_prefix(study_prefix) != nullptr || describes_search(o); }
 

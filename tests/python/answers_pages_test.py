@@ -96,6 +96,20 @@ class Answers(Reported):
                 self.assertIn("bending stiffness EI", words)
                 self.assertIn("greatest bending moment", words)
 
+    def test_the_workbooks_have_the_numbers(self):
+        file, book = self.results("search"), self.book_of("search", "--no-governing-run")
+        found = self.columns(book["Search for values"])
+        np.testing.assert_allclose(found["Greatest (km/h)"], 3.6 * file["find/interval"][:, 1])
+        ratios = self.columns(book["Ratio to the bound"])
+        np.testing.assert_allclose(ratios["Speed (km/h)"], 3.6 * file["find/value"][:])
+        np.testing.assert_allclose(ratios["Ratio to the bound: all runs"], file["find/ratio"][-1])
+        file = self.results("morris")
+        found = self.columns(self.book_of("morris", "--no-governing-run")["Sensitivity analysis"])
+        expected = 1e3 * file["sensitivity/effect_magnitude_high"][0]  # mm
+        order = np.argsort(-file["sensitivity/effect_magnitude"][0])
+        np.testing.assert_allclose(found["Size of the effect, greatest"][:2], expected[order])
+        self.assertEqual(found["Unit"][:2], ["mm", "mm"])
+
     def test_the_pages_have_the_curve_and_the_tables(self):
         found, file = data.collect(self.folder / "search.h5"), self.results("search")
         chart, = (one for one in found["along"] if one["title"] == "Ratio to the bound")

@@ -171,6 +171,16 @@ class Scripts(InAFolder):
         self.assert_errors(rows, "error of moment", 1e-2)
         self.assert_errors(rows[8:], "error of wheel force", 5e-2)
 
+    def test_fit_draws(self):
+        self.assertIn("2 of 2 true values", self.run_smallest("fit_draws"))
+        names = ["beam_EI", "beam_mass", "model_damping_ratios", "midspan_shift"]
+        rows = self.table("fit_draws.csv", ["draw", "seconds", *(f"{name}{what}" for name in names
+                                                                for what in ("", " estimate", " error"))])
+        self.assert_positive(rows, "seconds")
+        for row in rows:
+            self.assert_errors([{"error": float(row[f"{name} estimate"]) / float(row[name]) - 1.0} for name in names[:2]],
+                               "error", 0.03)
+
     def test_questions(self):
         self.run_smallest("questions")
         rows = self.table("questions.csv", ["question", "runs", "seconds", "answer", "uncertainty"])

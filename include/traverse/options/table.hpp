@@ -71,6 +71,10 @@ std::span<const Row> stretch_rows();
 std::span<const Row> vary_rows();
 const Row& vary_list_row();
 
+/// The options fit_to_<name>_<row>, and the row of fit_vary_<option>.
+std::span<const Row> fit_rows();
+const Row& fit_bounds_row();
+
 /// The row of a name; null for an unknown name.
 const Row* find_row(std::span<const Row> rows, std::string_view name);
 

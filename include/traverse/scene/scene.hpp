@@ -12,6 +12,7 @@
 
 #include "traverse/beam/model.hpp"
 #include "traverse/options/analyses.hpp"
+#include "traverse/options/fit.hpp"
 #include "traverse/options/norm_rules.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/options/rail_loads.hpp"
@@ -112,6 +113,7 @@ struct Scene {
       damping_of_modes;  // damping ratio of each mode, the last one for all further modes; empty: Rayleigh damping
   std::optional<Sweep> sweep;
   std::optional<Study> study;
+  std::optional<options::Fit> fit;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
   double sampling_interval =
@@ -178,5 +180,8 @@ std::vector<std::pair<std::string, std::string>> values_of_run(const Study& stud
 /// The scene of a study with these values, given as texts, of some of its options; it is a sweep of a single run.
 Scene read_scene_of_study(const options::Options& given,
                           const std::vector<std::pair<std::string, std::string>>& values);
+/// The scene of a fit with these values of its parameters: its run, or its natural modes.
+Scene read_scene_of_fit(const options::Options& given, const options::Fit& fit, const std::vector<double>& values,
+                        bool modes);
 
 }  // namespace traverse::app

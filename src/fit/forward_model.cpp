@@ -1,0 +1,199 @@
+// Reads a scene with the values of a fit, and computes its natural frequencies and its run with samples at the stations
+// of the measured series.
+#include "fit/forward_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "error_control/accuracy.hpp"
+#include "error_control/mode_mesh.hpp"
+#include "modes/modes.hpp"
+#include "results/stage.hpp"
+#include "run/passage.hpp"
+#include "run/run_observer.hpp"
+#include "run/signals.hpp"
+#include "traverse/base/error.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double samples_per_period = 8.0;  // of the fastest mode that is exact in time
+constexpr double most_samples = 2e6;        // of a run
+
+/// The beam of one run, with everything that a passage needs.
+SharedBeam& prepared(SharedBeam& shared, const Scene& scene, std::vector<std::string>& notes) {
+  shared.damp(scene, !scene.model.step || scene.model.modes > 0, notes);
+  shared.prepare(scene, notes);
+  return shared;
+}
+
+double number_of(const beam::Response& probe, const std::string& quantity) {
+  if (quantity == "velocity") return probe.velocity;
+  if (quantity == "acceleration") return probe.acceleration;
+  if (quantity == "moment") return probe.moment;
+  return quantity == "shear" ? probe.shear : probe.deflection;
+}
+
+/// The peaks whose error decides the accuracy of these quantities.
+std::vector<std::string> controlled_peaks(const options::Fit& fit) {
+  std::vector<std::string> peaks;
+  const auto add = [&](const std::string& peak) {
+    if (std::find(peaks.begin(), peaks.end(), peak) == peaks.end()) peaks.push_back(peak);
+  };
+  for (const options::MeasuredSeries& series : fit.series) {
+    if (series.quantity != "velocity") add(series.quantity);
+    if (series.quantity == "velocity") add("deflection");
+    if (series.quantity == "velocity") add("acceleration");
+  }
+  return peaks;
+}
+
+}  // namespace
+
+ForwardModel::ForwardModel(const Scene& scene, std::vector<std::string>& notes) : fit_(*scene.fit), name_(scene.name) {
+  choose(notes);
+  if (!fit_.series.empty()) set_interval();
+  if (fit_.frequencies.empty()) return;
+  std::vector<double> checked;
+  add_frequencies(start(), checked);
+}
+
+std::vector<double> ForwardModel::start() const {
+  std::vector<double> values;
+  for (const options::FitParameter& parameter : fit_.parameters) values.push_back(parameter.start);
+  return values;
+}
+
+void ForwardModel::choose(std::vector<std::string>& notes) {
+  const results::Stage stage("choice of the model of the fit");
+  const std::vector<double> first = start();
+  std::vector<double> low, high;
+  for (const options::FitParameter& parameter : fit_.parameters) {
+    low.push_back(parameter.low);
+    high.push_back(parameter.high);
+  }
+  const options::Options given(options::in_force());
+  const auto finest = [&](bool modes, auto choose_one) {
+    std::optional<NumericalModel> all;
+    for (const std::vector<double>* values : std::array{&first, &std::as_const(low), &std::as_const(high)}) {
+      Scene scene = read_scene_of_fit(given, fit_, *values, modes);
+      if (scene.accuracy_of.empty()) scene.accuracy_of = controlled_peaks(fit_);
+      std::vector<std::string> own;
+      const NumericalModel one = choose_one(scene, own);
+      if (!all) notes.insert(notes.end(), own.begin(), own.end());
+      all = all ? finer(*all, one) : one;
+    }
+    return *all;
+  };
+  if (!fit_.series.empty())
+    model_ = finest(false, [](const Scene& scene, std::vector<std::string>& own) {
+      return app::choose(PETSC_COMM_SELF, scene, own).model;
+    });
+  if (!fit_.frequencies.empty())
+    model_of_modes_ = finest(true, [](const Scene& scene, std::vector<std::string>& own) {
+      return chooses_mode_mesh(scene) ? choose_mode_mesh(PETSC_COMM_SELF, scene, own).model : scene.model;
+    });
+}
+
+Scene ForwardModel::scene(const std::vector<double>& values, bool modes) const {
+  Scene scene = with(read_scene_of_fit(options::Options(options::in_force()), fit_, values, modes),
+                     modes ? model_of_modes_ : model_);
+  scene.name = name_;
+  if (modes) {
+    for (const options::MeasuredFrequency& frequency : fit_.frequencies)
+      scene.mode_count = std::max(scene.mode_count, frequency.number);
+    return scene;
+  }
+  if (interval_ > 0.0) scene.output.interval = interval_;
+  if (end_ > 0.0) scene.end_time = end_;
+  return scene;
+}
+
+/// The samples are as dense as the rows of the densest series, and as the steps or the fastest mode need.
+void ForwardModel::set_interval() {
+  const Scene first = scene(start(), false);
+  std::vector<std::string> ignored;
+  SharedBeam shared(PETSC_COMM_SELF, first, ignored);
+  const Passage passage(first, prepared(shared, first, ignored), ignored);
+  duration_ = passage.plan().end_time;
+  double measured = duration_;
+  for (const options::MeasuredSeries& series : fit_.series)
+    measured =
+        std::min(measured, (series.time.back() - series.time.front()) / static_cast<double>(series.time.size() - 1));
+  const double needed = first.exact_in_time()
+                            ? 2.0 * std::numbers::pi / shared.modal->omega().back() / samples_per_period
+                            : passage.plan().time_step;
+  interval_ = measured / std::ceil(measured / needed * (1.0 - 1e-9));
+}
+
+void ForwardModel::set_end(double end) {
+  if (fit_.series.empty()) return;
+  instants_ = static_cast<std::size_t>(std::ceil(end / interval_ * (1.0 - 1e-12))) + 1;
+  if (static_cast<double>(instants_) > most_samples)
+    throw InputError(
+        fmt::format("the measured series last until {:g} s of the scene, {} samples of {:g} s; allowed: at most {:g} "
+                    "(fit_to_{}_to)",
+                    end, instants_, interval_, most_samples, fit_.series.front().name));
+  end_ = static_cast<double>(instants_ - 1) * interval_;
+}
+
+std::vector<double> ForwardModel::run(const std::vector<double>& values) const {
+  const options::WithoutMonitors without_monitors;
+  std::vector<double> response;
+  response.reserve(size());
+  if (!fit_.frequencies.empty()) add_frequencies(values, response);
+  if (!fit_.series.empty()) add_series(values, response);
+  return response;
+}
+
+void ForwardModel::add_frequencies(const std::vector<double>& values, std::vector<double>& response) const {
+  const Scene modal = scene(values, true);
+  std::vector<std::string> ignored;
+  const SharedBeam shared(PETSC_COMM_SELF, modal, ignored);
+  const std::vector<double> omega = modes::natural_modes(*shared.beam, modal.mode_count, false).omega;
+  for (const options::MeasuredFrequency& frequency : fit_.frequencies) {
+    const auto i = static_cast<std::size_t>(frequency.number - 1);
+    if (i >= omega.size())
+      throw InputError(fmt::format("fit_to_{}_frequency = {}: the bridge by elements has {} modes only", frequency.name,
+                                   frequency.number, omega.size()));
+    response.push_back(omega[i] / (2.0 * std::numbers::pi));
+  }
+}
+
+void ForwardModel::add_series(const std::vector<double>& values, std::vector<double>& response) const {
+  const Scene own = scene(values, false);
+  std::vector<std::string> ignored;
+  SharedBeam shared(PETSC_COMM_SELF, own, ignored);
+  Passage passage(own, prepared(shared, own, ignored), ignored);
+  passage.start(ignored);
+  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
+  RunObserver observer(own, passage.system(), shared.bridge(), none);
+  std::vector<std::size_t> probes;
+  for (const options::MeasuredSeries& series : fit_.series)
+    probes.push_back(static_cast<std::size_t>(std::find(own.output.probes.begin(), own.output.probes.end(), series.x) -
+                                              own.output.probes.begin()));
+  const std::size_t first = response.size();
+  response.resize(first + fit_.series.size() * instants_);
+  std::size_t k = 0;
+  const auto sample = [&](const integrate::Instant& instant) {
+    observer.sample(instant);
+    if (instant.purpose == integrate::Purpose::peaks || k == instants_) return;
+    for (std::size_t s = 0; s < probes.size(); ++s)
+      response[first + s * instants_ + k] = number_of(observer.observed().probes[probes[s]], fit_.series[s].quantity);
+    ++k;
+  };
+  const auto step = [&](double t, long) {
+    observer.step(t);
+    return caught_signal() == 0;
+  };
+  passage.run(sample, step);
+  if (k < instants_) throw SolverError(fmt::format("the run ended after {} of {} samples", k, instants_));
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,50 @@
+// The computed counterparts of the measurements of a fit, as functions of its options.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traverse/options/fit.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// Mesh, step, modes and the instants of the samples are the same for all values of the options, so that the computed
+/// values are smooth functions of the options.
+class ForwardModel {
+ public:
+  /// Chooses the numerical model on this rank, the finest of those for the start and for all lowest and all highest
+  /// values of the options. InputError if the scene of one of them cannot be computed. The scene must have a fit.
+  ForwardModel(const Scene& scene, std::vector<std::string>& notes);
+
+  /// The values at the start of the fit.
+  std::vector<double> start() const;
+  /// The duration of the run at the start of the fit, s.
+  double duration() const { return duration_; }
+  /// Sets the end of all runs, s. They have samples up to there.
+  void set_end(double end);
+  double interval() const { return interval_; }  // s, between samples
+  std::size_t instants() const { return instants_; }
+
+  /// The frequencies (Hz) of all measured frequencies, then the samples of each series. SolverError if the run fails or
+  /// ends early.
+  std::vector<double> run(const std::vector<double>& values) const;
+  std::size_t size() const { return fit_.frequencies.size() + fit_.series.size() * instants_; }
+
+  /// The scene of the run or of the modes at these values, with the chosen model.
+  Scene scene(const std::vector<double>& values, bool modes) const;
+
+ private:
+  void choose(std::vector<std::string>& notes);
+  void set_interval();
+  void add_frequencies(const std::vector<double>& values, std::vector<double>& response) const;
+  void add_series(const std::vector<double>& values, std::vector<double>& response) const;
+
+  const options::Fit fit_;
+  std::string name_;
+  NumericalModel model_, model_of_modes_;
+  double duration_ = 0.0, interval_ = 0.0, end_ = 0.0;
+  std::size_t instants_ = 0;
+};
+
+}  // namespace traverse::app

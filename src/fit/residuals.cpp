@@ -1,0 +1,224 @@
+// Interpolates computed series at the measured times, filters both, and finds the difference of their clocks.
+#include "fit/residuals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+
+#include "fit/spline.hpp"
+#include "run/low_pass.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double first_sd = 0.005;                               // relative to the variation of a series
+constexpr double logarithmic_from = 10.0;                        // ratio of the bounds from which u is logarithmic
+constexpr std::size_t most_shifts = 4000, most_compared = 2000;  // of the search for the difference of the clocks
+constexpr double least_sd = 1e-12;  // relative to the variation of a series, for measurements without noise
+
+double interval_of(const std::vector<double>& time) {
+  return (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+}
+
+/// The root mean square deviation from the mean; 1 for a constant 0.
+double variation(const std::vector<double>& values) {
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  const double found = std::sqrt(sum / static_cast<double>(values.size()));
+  return found > 0.0 ? found : std::abs(mean) > 0.0 ? std::abs(mean) : 1.0;
+}
+
+void filter(const options::MeasuredSeries& series, std::vector<double>& values) {
+  if (series.low_pass) LowPass(*series.low_pass, interval_of(series.time)).apply(values);
+}
+
+}  // namespace
+
+std::string unit_of(const std::string& quantity) {
+  return quantity == "deflection"     ? "m"
+         : quantity == "velocity"     ? "m/s"
+         : quantity == "acceleration" ? "m/s2"
+         : quantity == "moment"       ? "N m"
+                                      : "N";
+}
+
+double Unknown::value(double u) const { return logarithmic ? low * std::pow(high / low, u) : low + u * (high - low); }
+double Unknown::u(double value) const {
+  const double at = logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+  return std::clamp(at, 0.0, 1.0);
+}
+double Unknown::slope(double u) const { return logarithmic ? value(u) * std::log(high / low) : high - low; }
+
+Residuals::Residuals(const options::Fit& fit) : fit_(fit), size_(fit.frequencies.size()) {
+  for (const options::FitParameter& p : fit.parameters)
+    unknowns_.push_back({Unknown::Kind::option, p.option, p.unit, p.low, p.high, p.start, 0,
+                         p.low > 0.0 && p.high >= logarithmic_from * p.low});
+  for (const options::MeasuredSeries& series : fit.series) {
+    measured_.push_back(series.value);
+    filter(series, measured_.back());
+    sd_.push_back(series.sd.value_or(first_sd * variation(series.value)));
+    size_ += series.time.size();
+  }
+}
+
+void Residuals::align(const std::vector<double>& response, double interval, double range) {
+  interval_ = interval;
+  for (std::size_t s = 0; s < fit_.series.size(); ++s) {
+    const options::MeasuredSeries& series = fit_.series[s];
+    if (!series.align) continue;
+    const double half =
+        0.5 * interval * static_cast<double>((response.size() - fit_.frequencies.size()) / fit_.series.size() - 1);
+    const double first = least_misfit_shift(s, response, series.time.front() - half, series.time.back() - half);
+    unknowns_.push_back({Unknown::Kind::shift, series.name + "_shift", "s", first - range, first + range, first, s});
+  }
+  for (std::size_t s = 0; s < fit_.series.size(); ++s) {
+    if (!fit_.series[s].offset) continue;
+    const auto [least, greatest] = std::minmax_element(measured_[s].begin(), measured_[s].end());
+    const double bound = 2.0 * std::max({std::abs(*least), std::abs(*greatest), *greatest - *least, sd_[s]});
+    unknowns_.push_back({Unknown::Kind::offset, fit_.series[s].name + "_offset", unit_of(fit_.series[s].quantity),
+                         -bound, bound, 0.0, s});
+  }
+}
+
+double Residuals::end() const {
+  double last = 0.0;
+  std::vector<double> shift(fit_.series.size(), 0.0);
+  for (const Unknown& unknown : unknowns_)
+    if (unknown.kind == Unknown::Kind::shift) shift[unknown.series] = unknown.low;
+  for (std::size_t s = 0; s < fit_.series.size(); ++s) last = std::max(last, fit_.series[s].time.back() - shift[s]);
+  return last;
+}
+
+Eigen::VectorXd Residuals::start() const {
+  Eigen::VectorXd u(static_cast<Eigen::Index>(unknowns_.size()));
+  for (Eigen::Index j = 0; j < u.size(); ++j) {
+    const Unknown& unknown = unknowns_[static_cast<std::size_t>(j)];
+    u[j] = unknown.u(unknown.start);
+  }
+  return u;
+}
+
+std::vector<double> Residuals::values(const Eigen::VectorXd& u) const {
+  std::vector<double> values;
+  for (std::size_t j = 0; j < options(); ++j) values.push_back(unknowns_[j].value(u[static_cast<Eigen::Index>(j)]));
+  return values;
+}
+
+/// The computed samples at the measured times, filtered.
+std::vector<double> Residuals::computed(std::size_t s, const std::vector<double>& response, double shift) const {
+  const options::MeasuredSeries& series = fit_.series[s];
+  const std::size_t count = (response.size() - fit_.frequencies.size()) / fit_.series.size();
+  const Spline spline(std::span<const double>(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
+  std::vector<double> values;
+  values.reserve(series.time.size());
+  for (const double t : series.time) values.push_back(spline(t - shift));
+  filter(series, values);
+  return values;
+}
+
+ComparedSeries Residuals::compared(std::size_t s, const std::vector<double>& response, const Eigen::VectorXd& u) const {
+  double shift = 0.0, offset = 0.0;
+  for (std::size_t j = options(); j < unknowns_.size(); ++j) {
+    if (unknowns_[j].series != s) continue;
+    (unknowns_[j].kind == Unknown::Kind::shift ? shift : offset) = unknowns_[j].value(u[static_cast<Eigen::Index>(j)]);
+  }
+  ComparedSeries both{fit_.series[s].time, measured_[s], computed(s, response, shift)};
+  for (double& value : both.computed) value += offset;
+  return both;
+}
+
+Eigen::VectorXd Residuals::evaluate(const std::vector<double>& response, const Eigen::VectorXd& u) const {
+  Eigen::VectorXd r(static_cast<Eigen::Index>(size_));
+  Eigen::Index i = 0;
+  for (std::size_t f = 0; f < fit_.frequencies.size(); ++f)
+    r[i++] = (response[f] - fit_.frequencies[f].value) / fit_.frequencies[f].sd;
+  for (std::size_t s = 0; s < fit_.series.size(); ++s) {
+    const ComparedSeries both = compared(s, response, u);
+    for (std::size_t k = 0; k < both.measured.size(); ++k) r[i++] = (both.computed[k] - both.measured[k]) / sd_[s];
+  }
+  return r;
+}
+
+/// The shift with the least misfit if computed values may be multiplied by a factor and get an offset: the one with the
+/// largest correlation. At most most_shifts shifts are compared, by most_compared values each.
+double Residuals::least_misfit_shift(std::size_t s, const std::vector<double>& response, double low,
+                                     double high) const {
+  const options::MeasuredSeries& series = fit_.series[s];
+  const std::size_t count = (response.size() - fit_.frequencies.size()) / fit_.series.size();
+  const Spline spline(std::span<const double>(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
+  const std::size_t stride = series.time.size() / most_compared + 1;
+  const auto shifts = static_cast<std::size_t>(
+      std::clamp((high - low) / interval_of(series.time), 1.0, static_cast<double>(most_shifts)));
+  double best = -std::numeric_limits<double>::infinity(), found = 0.5 * (low + high);
+  for (std::size_t i = 0; i <= shifts; ++i) {
+    const double shift = low + (high - low) * static_cast<double>(i) / static_cast<double>(shifts);
+    double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+    for (std::size_t k = 0; k < series.time.size(); k += stride) {
+      const double x = measured_[s][k], y = spline(series.time[k] - shift);
+      n += 1.0, a += x, b += y, aa += x * x, bb += y * y, ab += x * y;
+    }
+    const double spread = std::sqrt(std::max((aa - a * a / n) * (bb - b * b / n), 0.0));
+    const double correlation = spread > 0.0 ? (ab - a * b / n) / spread : -1.0;
+    if (correlation > best) best = correlation, found = shift;
+  }
+  return found;
+}
+
+void Residuals::set_starts(const std::vector<double>& response, Eigen::VectorXd& u) const {
+  for (std::size_t j = options(); j < unknowns_.size(); ++j) {
+    const Unknown& unknown = unknowns_[j];
+    double& own = u[static_cast<Eigen::Index>(j)];
+    if (unknown.kind == Unknown::Kind::shift) {
+      own = unknown.u(least_misfit_shift(unknown.series, response, unknown.low, unknown.high));
+    } else {
+      own = unknown.u(0.0);
+      const ComparedSeries both = compared(unknown.series, response, u);
+      double sum = 0.0;
+      for (std::size_t k = 0; k < both.measured.size(); ++k) sum += both.measured[k] - both.computed[k];
+      own = unknown.u(sum / static_cast<double>(both.measured.size()));
+    }
+  }
+}
+
+double Residuals::independent(std::size_t s) const {
+  const options::MeasuredSeries& series = fit_.series[s];
+  const auto count = static_cast<double>(series.time.size());
+  return series.low_pass ? count * std::min(1.0, 2.0 * *series.low_pass * interval_of(series.time)) : count;
+}
+
+double Residuals::independent() const {
+  auto sum = static_cast<double>(fit_.frequencies.size());
+  for (std::size_t s = 0; s < fit_.series.size(); ++s) sum += independent(s);
+  return sum;
+}
+
+Eigen::VectorXd Residuals::of_series(std::size_t s, const Eigen::VectorXd& residuals) const {
+  std::size_t first = fit_.frequencies.size();
+  for (std::size_t i = 0; i < s; ++i) first += fit_.series[i].time.size();
+  return residuals.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(fit_.series[s].time.size()));
+}
+
+Eigen::VectorXd Residuals::estimate_sd(const Eigen::VectorXd& residuals) {
+  const double all = independent();
+  const double free = std::max(1.0 - static_cast<double>(unknowns_.size()) / all, 1.0 / all);
+  Eigen::VectorXd factors = Eigen::VectorXd::Ones(residuals.size());
+  auto first = static_cast<Eigen::Index>(fit_.frequencies.size());
+  for (std::size_t s = 0; s < fit_.series.size(); ++s) {
+    const auto count = static_cast<Eigen::Index>(fit_.series[s].time.size());
+    if (!fit_.series[s].sd) {
+      const double found = sd_[s] * residuals.segment(first, count).norm() / std::sqrt(independent(s) * free);
+      const double own = std::max(found, least_sd * variation(fit_.series[s].value));
+      factors.segment(first, count).setConstant(sd_[s] / own);
+      sd_[s] = own;
+    }
+    first += count;
+  }
+  return factors;
+}
+
+}  // namespace traverse::app
