@@ -53,7 +53,7 @@ int run(MPI_Comm comm, const Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const results::Heartbeat heartbeat(given.quiet || rank != 0);
-  if (given.check) return run_check(comm, given);
+  if (given.check) return given.screen ? check_screen(comm, given) : run_check(comm, given);
   if (given.study && has_own_contact_law(given))
     throw InputError("study_vary: a study reads its scenes from the options, without contact laws of the program");
   Scene asked = given;

@@ -1,0 +1,19 @@
+// The options of a screen: every formation of a fleet over every bridge of a stock.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace traverse::options {
+
+struct Screen {
+  std::string stock, fleet;    // paths of the table of bridges, and of the table or folder of formations
+  std::vector<double> speeds;  // m/s, ascending, with equal steps
+  int modes = 3;               // of each bridge
+  int parts = 10;              // of each span, between the stations
+  double samples = 20.0;       // per period of the highest mode
+  bool resume = false;         // bridges that are finished in the results file are not computed again
+  std::vector<std::string> pair;  // a bridge and a formation whose scene is written; empty: none
+};
+
+}  // namespace traverse::options
