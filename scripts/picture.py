@@ -31,6 +31,8 @@ def heading_in_words(results, modes_only):
         title += ", largest static effects"
     elif results.options.get("scene_analysis") == "rail":
         title += ", rail and bridge together (UIC 774-3)"
+    elif results.options.get("scene_analysis") == "screen":
+        title += ", bridges under trains"
     elif "sweep/speed" in results.file:
         title += f", {sweep_in_words(results)}"
     elif "study/finished" in results.file:

@@ -5,7 +5,8 @@
     results = traverse.run("options/scenes/three_span_train.yml", train_speed=70.0)
     results["deflection"].sel(x=12.5).plot()
 
-`run` computes a scene, `study` many runs of it, and `open` reads a results file. Each returns an xarray.Dataset.
+`run` computes a scene, `study` many runs of it, `screen` a stock of bridges under a fleet, and `open` reads a results
+file. Each returns an xarray.Dataset.
 `Passage` computes a scene step by step. A failed computation raises `Error` with the message of the program.
 doc/python.md contains examples.
 """
@@ -19,6 +20,6 @@ except ImportError as missing:
 from .dataset import open_results as open  # noqa: A004
 from .passage import Passage
 from .places import Error
-from .program import run, study
+from .program import run, screen, study
 
-__all__ = ["Error", "Passage", "open", "run", "study"]
+__all__ = ["Error", "Passage", "open", "run", "screen", "study"]

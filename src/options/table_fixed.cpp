@@ -216,6 +216,7 @@ constexpr Row later_rows[] = {
   {"screen_modes", integer, "", "3", {1, 8}, "", 0, "number of bending modes of each bridge; frequencies above them are left out of the deck acceleration, without any other filter"},
   {"screen_stations", integer, "", "10", {2, 50}, "", 0, "number of equal parts of each span; the response is computed between them"},
   {"screen_samples", number, "", "20", {8.0, 1000.0}, "", 0, "samples per period of the highest mode in a passage; peaks between samples are searched for exactly"},
+  {"screen_audit", integer, "", "0", {0, 1e6}, "", 0, "number of pairs, drawn at random, that are checked by passages at all speeds after the screen"},
   {"screen_resume", flag, "", "false", any, "", 0, "uses the finished bridges of the same screen in the existing results file"},
   {"screen_pair", texts, "", "", any, "", 2, "a bridge and a formation: instead of the screen, prints the scene of their passages"},
 

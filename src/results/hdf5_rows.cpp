@@ -1,8 +1,8 @@
 // Tables that are written row by row, in any order. All space is allocated at the start, so that a row changes no
 // metadata and a kill leaves every other row intact.
-#include "hdf5.hpp"
-
 #include <limits>
+
+#include "hdf5.hpp"
 
 namespace traverse::results::hdf5 {
 

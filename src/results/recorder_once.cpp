@@ -129,8 +129,7 @@ void Recorder::rewrite(const std::vector<Dataset>& sets) {
 void Recorder::empty_rows(const std::vector<Dataset>& sets) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {
-    for (const Dataset& set : sets)
-      impl_->file.empty_rows(set.name, {set.shape.begin(), set.shape.end()}, set.unit);
+    for (const Dataset& set : sets) impl_->file.empty_rows(set.name, {set.shape.begin(), set.shape.end()}, set.unit);
     impl_->file.flush();
   });
 }

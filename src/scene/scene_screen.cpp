@@ -30,6 +30,7 @@ void read_screen(const Options& o, Scene& scene) {
   screen.modes = o.integer("screen_modes");
   screen.parts = o.integer("screen_stations");
   screen.samples = o.number("screen_samples");
+  screen.audit = o.integer("screen_audit");
   screen.resume = o.flag("screen_resume");
   if (o.has("screen_pair")) screen.pair = o.texts("screen_pair");
   scene.screen = screen;

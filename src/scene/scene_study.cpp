@@ -23,10 +23,9 @@ std::vector<double> read_speeds(const Options& o, std::string_view name) {
   const double steps = std::floor((to - from) / step + speed_tolerance);
   if (to > from && steps < 1.0)
     o.refuse(name, fmt::format("the step of {:g} m/s is larger than the range from {:g} to {:g} m/s; allowed: "
-                                        "from, to, step",
-                                        step, from, to));
-  if (steps > most_speeds)
-    o.refuse(name, fmt::format("{:g} speeds; allowed: at most {:g}", steps, most_speeds));
+                               "from, to, step",
+                               step, from, to));
+  if (steps > most_speeds) o.refuse(name, fmt::format("{:g} speeds; allowed: at most {:g}", steps, most_speeds));
   return speeds_between(from, to, step);
 }
 

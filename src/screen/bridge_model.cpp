@@ -20,8 +20,8 @@ struct Motion {
 /// The particular solution under a unit force at xi on a span.
 Motion particular(const ModeOfBridge& mode, const SpanShape& shape, double L, double xi, double zeta, double v) {
   const double drive = mode.beta * v, omega = mode.omega, damping = 2.0 * zeta * omega * drive;
-  const Complex wave = Complex(shape.b, -shape.a) * std::polar(1.0, mode.beta * xi) /
-                       Complex(omega * omega - drive * drive, damping);
+  const Complex wave =
+      Complex(shape.b, -shape.a) * std::polar(1.0, mode.beta * xi) / Complex(omega * omega - drive * drive, damping);
   const double falling = shape.c * std::exp(-mode.beta * xi) / (omega * omega + drive * drive - damping),
                rising = shape.d * std::exp(-mode.beta * (L - xi)) / (omega * omega + drive * drive + damping);
   return {wave.real() + falling + rising, drive * (-wave.imag() - falling + rising)};

@@ -27,7 +27,8 @@ const LoadColumn& load_column(const HeaderTable& table) {
   const LoadColumn* found = nullptr;
   for (const LoadColumn& column : load_columns) {
     if (!table.has(column.name)) continue;
-    if (found != nullptr) table.refuse_columns(fmt::format("{} and {}; allowed: one of them", found->name, column.name));
+    if (found != nullptr)
+      table.refuse_columns(fmt::format("{} and {}; allowed: one of them", found->name, column.name));
     found = &column;
   }
   if (found == nullptr) table.refuse_columns("there is no column of the loads; allowed: load_kN, load_t or load_N");
@@ -72,8 +73,8 @@ Formation formation_of(const HeaderTable& table, std::size_t first, std::size_t 
   for (std::size_t row = first; row < last; ++row) {
     formation.loads.push_back(load.newton * table.positive(row, load.name));
     if (formation.loads.back() > heaviest)
-      table.refuse(row, fmt::format("an axle load of {:g} kN; allowed: at most {:g} kN",
-                                    1e-3 * formation.loads.back(), 1e-3 * heaviest));
+      table.refuse(row, fmt::format("an axle load of {:g} kN; allowed: at most {:g} kN", 1e-3 * formation.loads.back(),
+                                    1e-3 * heaviest));
     x.push_back(table.number(row, table.has("spacing") ? "spacing" : "position"));
   }
   set_distances(table, first, std::move(x), formation);

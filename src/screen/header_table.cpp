@@ -32,6 +32,17 @@ std::vector<std::string> cells_of(std::string_view line) {
   }
 }
 
+void check_names(const std::vector<std::string>& names, const std::vector<std::string_view>& allowed,
+                 const std::string& where) {
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (std::find(allowed.begin(), allowed.end(), *name) == allowed.end())
+      throw InputError(where + fmt::format("there is no column '{}'; the first line names the columns; allowed: {}",
+                                           *name, fmt::join(allowed, ", ")));
+    if (std::find(names.begin(), name, *name) != name)
+      throw InputError(where + fmt::format("the column {} is given twice", *name));
+  }
+}
+
 }  // namespace
 
 HeaderTable::HeaderTable(const std::string& path, const std::vector<std::string_view>& allowed) : path_(path) {
@@ -48,14 +59,7 @@ HeaderTable::HeaderTable(const std::string& path, const std::vector<std::string_
     if (trimmed(line).empty()) continue;
     std::vector<std::string> cells = cells_of(line);
     if (columns_.empty()) {
-      for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (std::find(allowed.begin(), allowed.end(), cells[i]) == allowed.end())
-          throw InputError(where + fmt::format("there is no column '{}'; the first line names the columns; allowed: {}",
-                                               cells[i], fmt::join(allowed, ", ")));
-        if (std::find(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(i), cells[i]) !=
-            cells.begin() + static_cast<std::ptrdiff_t>(i))
-          throw InputError(where + fmt::format("the column {} is given twice", cells[i]));
-      }
+      check_names(cells, allowed, where);
       columns_ = std::move(cells);
       header_line_ = number;
       continue;

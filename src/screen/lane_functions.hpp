@@ -31,9 +31,9 @@ struct LaneFunctions : engine::Lanes<W> {
     const Nearest n = nearest(x * 1.4426950408889634);
     const Lane r = (x - n.number * 6.93147180369123816490e-01) - n.number * 1.90821492927058770002e-10;
     Lane sum = fill(1.0 / 479001600.0);
-    constexpr double terms[] = {1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0, 1.0 / 40320.0,
-                                1.0 / 5040.0,     1.0 / 720.0,     1.0 / 120.0,    1.0 / 24.0,
-                                1.0 / 6.0,        0.5,             1.0,            1.0};
+    constexpr double terms[] = {
+        1.0 / 39916800.0, 1.0 / 3628800.0, 1.0 / 362880.0, 1.0 / 40320.0, 1.0 / 5040.0, 1.0 / 720.0,
+        1.0 / 120.0,      1.0 / 24.0,      1.0 / 6.0,      0.5,           1.0,          1.0};
     for (const double term : terms) sum = sum * r + term;
     return sum * (Lane)((n.word + 1023L) << 52);  // the exponent of the number 2^n
   }

@@ -87,10 +87,11 @@ void Pairs::bound_group(std::size_t group) {
   TRAVERSE_LANES_CALL(bound_responses(task_));
 }
 
-void Pairs::pass_group(std::size_t group) {
+void Pairs::pass_group(std::size_t group, bool every) {
   set_group(group);
   for (const bool search : {false, true}) {
     task_.search = search;
+    task_.every = every && !search;
     TRAVERSE_LANES_CALL(pass_bridge(task_));
     std::copy_n(result_.data(), lanes, limit_.data());
   }
@@ -113,7 +114,7 @@ std::vector<double> Pairs::passages(const Formation& formation) {
   const std::size_t count = permitted_speeds(formation);
   for (std::size_t group = 0; group * lanes < count; ++group) {
     std::fill_n(limit_.data(), lanes, 0.0);
-    pass_group(group);
+    pass_group(group, true);
     values.insert(values.end(), result_.data(), result_.data() + std::min(lanes, count - group * lanes));
   }
   return values;
@@ -128,37 +129,46 @@ Verdict Pairs::judge(const Formation& formation) {
   verdict.ratio_speed = model_.speed(static_cast<std::size_t>(largest - bounds_.begin()));
   verdict.permitted = model_.speed(bounds_.size() - 1);
   verdict.decided_by = DecidedBy::bound;
-  if (verdict.bound <= 1.0) return verdict;
+  if (verdict.bound > 1.0) decide_by_passages(verdict);
+  return verdict;
+}
+
+void Pairs::decide_by_passages(Verdict& verdict) {
   verdict.decided_by = DecidedBy::passages;
-  std::vector<std::pair<double, std::size_t>> order;  // the largest bound of each group
-  for (std::size_t first = 0; first < bounds_.size(); first += lanes) {
-    const auto begin = bounds_.begin() + static_cast<std::ptrdiff_t>(first);
-    order.emplace_back(-*std::max_element(begin, std::min(begin + lanes, bounds_.end())), first / lanes);
-  }
-  std::sort(order.begin(), order.end());
   verdict.ratio = 0.0;
-  for (const auto& [bound, group] : order) {
+  std::vector<std::pair<double, std::size_t>> groups;  // with their largest bound
+  for (std::size_t first = 0; first < bounds_.size(); first += lanes) {
+    const auto begin = bounds_.begin() + static_cast<std::ptrdiff_t>(first),
+               end = bounds_.begin() + static_cast<std::ptrdiff_t>(std::min(first + lanes, bounds_.size()));
+    groups.emplace_back(*std::max_element(begin, end), first / lanes);
+  }
+  std::sort(groups.begin(), groups.end(),
+            [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+  for (const auto& [bound, group] : groups) {
     const double interest = std::min(1.0, verdict.ratio);
-    if (-bound <= interest) break;
+    if (bound <= interest) return;
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::size_t i = group * lanes + lane;
       limit_.data()[lane] = i < bounds_.size() && bounds_[i] > interest ? interest : infinite;
     }
-    pass_group(group);
-    for (std::size_t lane = 0; lane < lanes && group * lanes + lane < bounds_.size(); ++lane) {
-      const double value = result_.data()[lane], speed = model_.speeds(group)[lane];
-      if (value == infinite) continue;
-      if (value > verdict.ratio) {
-        verdict.ratio = value;
-        verdict.ratio_speed = speed;
-      }
-      if (value <= 1.0) continue;
-      verdict.exceeding += 1.0;
-      const std::size_t i = group * lanes + lane;
-      verdict.permitted = std::min(verdict.permitted, i > 0 ? model_.speed(i - 1) : 0.0);
-    }
+    pass_group(group, false);
+    add_group(group, verdict);
   }
-  return verdict;
+}
+
+void Pairs::add_group(std::size_t group, Verdict& verdict) const {
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const std::size_t i = group * lanes + lane;
+    const double value = result_.data()[lane];
+    if (value == infinite) continue;  // the bound has decided
+    if (value > verdict.ratio) {
+      verdict.ratio = value;
+      verdict.ratio_speed = model_.speed(i);
+    }
+    if (value <= 1.0) continue;
+    verdict.exceeding += 1.0;
+    verdict.permitted = std::min(verdict.permitted, i > 0 ? model_.speed(i - 1) : 0.0);
+  }
 }
 
 }  // namespace traverse::screen

@@ -34,7 +34,7 @@ class Pairs {
   Verdict judge(const Formation& formation);
   /// The bound at each of the speeds permitted to both, relative to the limits.
   std::vector<double> bounds(const Formation& formation);
-  /// The computed value at each of these speeds, without use of the bound for the choice of passages.
+  /// The computed value at each of these speeds: every interval is sampled, whatever its bound.
   std::vector<double> passages(const Formation& formation);
   /// The number of intervals sampled so far.
   long sampled() const { return sampled_; }
@@ -44,8 +44,12 @@ class Pairs {
   std::size_t permitted_speeds(const Formation& formation) const;
   void set_group(std::size_t group);
   void bound_group(std::size_t group);
-  /// The largest fraction of a limit for each lane of a group, where it is above the lane's number in limit_.
-  void pass_group(std::size_t group);
+  /// The largest fraction of a limit for each lane of a group, where it is above the lane's number in limit_; by
+  /// samples of every interval, or of those whose bound is above it.
+  void pass_group(std::size_t group, bool every);
+  void decide_by_passages(Verdict& verdict);
+  /// Takes the results of a group into a verdict.
+  void add_group(std::size_t group, Verdict& verdict) const;
 
   const BridgeModel& model_;
   TrainEvents events_;

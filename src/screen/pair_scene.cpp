@@ -24,8 +24,8 @@ std::string pair_scene(const Problem& problem, const std::string& bridge_name, c
   const Bridge& bridge = find(problem.stock, bridge_name, "bridge");
   const Formation& formation = find(problem.fleet, formation_name, "formation");
   const options::Screen& screen = *problem.scene.screen;
-  const double fastest = std::min(formation.speed, bridge.speed), step =
-      screen.speeds.size() > 1 ? screen.speeds[1] - screen.speeds[0] : screen.speeds[0];
+  const double fastest = std::min(formation.speed, bridge.speed),
+               step = screen.speeds.size() > 1 ? screen.speeds[1] - screen.speeds[0] : screen.speeds[0];
   double last = screen.speeds.front();
   for (const double speed : screen.speeds)
     if (speed <= fastest * (1.0 + 1e-9)) last = speed;

@@ -105,8 +105,8 @@ double PeakSearch::peak(std::size_t group, int lane, long event, const double* z
   weights_.resize(mode_.size());
   double largest = 0.0;
   for (std::size_t s = 0; s < model_.stations(); ++s) {
-    const double *shape = &model_.shapes()[s * model_.modes().size()], of_acceleration = model_.bridge().of_acceleration,
-                 of_deflection = model_.of_deflection()[s];
+    const double *shape = &model_.shapes()[s * model_.modes().size()],
+                 of_acceleration = model_.bridge().of_acceleration, of_deflection = model_.of_deflection()[s];
     if (of_acceleration > 0.0) largest = peak_of(shape, acceleration_, of_acceleration, step, error, largest);
     if (of_deflection > 0.0) largest = peak_of(shape, q_, of_deflection, step, error, largest);
   }

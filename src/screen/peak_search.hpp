@@ -26,8 +26,8 @@ class PeakSearch {
   void set_samples(double step, std::size_t count);
   /// A response as a sum of exponentials with these weights, and its derivatives over x.
   double value(double x, double& slope, double& bend) const;
-  double peak_of(const double* shape, const std::vector<double>& coordinates, double factor, double step,
-                 double error, double largest);
+  double peak_of(const double* shape, const std::vector<double>& coordinates, double factor, double step, double error,
+                 double largest);
   void improve(double x, double low, double high, double& largest) const;
 
   const BridgeModel& model_;

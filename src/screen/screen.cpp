@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "ensemble/parallel_cases.hpp"
 #include "ensemble/result_gather.hpp"
@@ -14,6 +15,7 @@
 #include "results/terminal.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
+#include "screen/audit.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::screen {
@@ -66,6 +68,18 @@ app::RunFailure compute(MPI_Comm comm, const Problem& problem, const std::vector
   return app::first_of(comm, std::move(failure));
 }
 
+/// Collective. The bridges without a finished row, which only rank 0 knows.
+std::vector<std::size_t> open_bridges(MPI_Comm comm, const Problem& problem,
+                                      const std::map<std::size_t, std::vector<double>>& known) {
+  std::vector<char> done(problem.stock.size(), 0);
+  for (const auto& [bridge, row] : known) done[bridge] = 1;
+  MPI_Bcast(done.data(), static_cast<int>(done.size()), MPI_CHAR, 0, comm);
+  std::vector<std::size_t> open;
+  for (std::size_t b = 0; b < done.size(); ++b)
+    if (done[b] == 0) open.push_back(b);
+  return open;
+}
+
 void print_results(const Problem& problem, const Totals& totals, double seconds) {
   const double pairs = totals.by_bound() + totals.by_passages();
   fmt::print("pairs    {:.0f} of {:.0f}: {:.0f} decided by the bound, {:.0f} by passages; {:.0f} restricted; {}\n",
@@ -81,7 +95,8 @@ void print_results(const Problem& problem, const Totals& totals, double seconds)
   std::vector<std::vector<std::string>> rows = {{"bridge", "response / limit", "governing formation"}};
   for (const std::size_t b : order) {
     const Governing& governing = totals.of_bridges()[b];
-    rows.push_back({problem.stock[b].name, fmt::format("{}{:.3f}", governing.exact() ? "" : "at most ", governing.ratio()),
+    rows.push_back({problem.stock[b].name,
+                    fmt::format("{}{:.3f}", governing.exact() ? "" : "at most ", governing.ratio()),
                     problem.fleet[static_cast<std::size_t>(governing.other())].name});
   }
   if (!order.empty()) results::print_columns(std::move(rows));
@@ -92,25 +107,18 @@ void print_results(const Problem& problem, const Totals& totals, double seconds)
 std::vector<std::string> description(const Problem& problem) {
   const options::Screen& screen = *problem.scene.screen;
   const double kmh = 3.6;
-  return {fmt::format("{} bridges under {} formations at up to {} speeds from {:g} to {:g} km/h", problem.stock.size(),
-                      problem.fleet.size(), screen.speeds.size(), kmh * screen.speeds.front(),
-                      kmh * screen.speeds.back()),
-          fmt::format("moving forces on {} modes of each bridge, exact in time; deck accelerations have no other filter "
-                      "than these modes",
-                      screen.modes)};
+  return {
+      fmt::format("{} bridges under {} formations at up to {} speeds from {:g} to {:g} km/h", problem.stock.size(),
+                  problem.fleet.size(), screen.speeds.size(), kmh * screen.speeds.front(), kmh * screen.speeds.back()),
+      fmt::format("moving forces on {} modes of each bridge, exact in time; deck accelerations have no other filter "
+                  "than these modes",
+                  screen.modes)};
 }
 
 int run(MPI_Comm comm, results::Place place, const Problem& problem, const std::vector<std::string>& notes) {
   const auto begin = std::chrono::steady_clock::now();
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
   std::map<std::size_t, std::vector<double>> known = stored_rows(comm, problem);
-  std::vector<char> done(problem.stock.size(), 0);
-  for (const auto& [bridge, row] : known) done[bridge] = 1;
-  MPI_Bcast(done.data(), static_cast<int>(done.size()), MPI_CHAR, 0, comm);
-  std::vector<std::size_t> open;
-  for (std::size_t b = 0; b < done.size(); ++b)
-    if (done[b] == 0) open.push_back(b);
+  const std::vector<std::size_t> open = open_bridges(comm, problem, known);
   const app::DeferredSignals deferred;
   Totals totals(problem.stock.size(), problem.fleet.size());
   ScreenFile file(comm, std::move(place), problem, notes, known, totals);
@@ -122,13 +130,19 @@ int run(MPI_Comm comm, results::Place place, const Problem& problem, const std::
   const std::string ended = failure.failed() ? failure.message
                             : signal != 0    ? fmt::format("ended by signal {}", signal)
                                              : "reached its end";
+  std::optional<Audit> checked;
+  if (ended == "reached its end" && problem.scene.screen->audit > 0)
+    checked = audit(comm, problem, problem.scene.screen->audit);
   try {
-    file.finish(totals, finished, seconds, ended);
+    file.finish(totals, finished, seconds, ended, checked ? checked->attributes() : std::vector<results::Attribute>());
   } catch (const FileError& error) {
     app::leave_together(comm, error);
   }
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
   if (rank == 0) {
     print_results(problem, totals, seconds);
+    if (checked) fmt::print("{}\n", checked->text());
     if (!problem.scene.output.file.empty()) fmt::print("results  {}\n", problem.scene.output.file);
     if (ended != "reached its end")
       fmt::print("{}; screen_resume continues after {} of {} bridges\n", ended, finished, problem.stock.size());

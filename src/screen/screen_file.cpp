@@ -172,7 +172,8 @@ void ScreenFile::put(std::size_t bridge, const std::vector<double>& row) {
   }
 }
 
-void ScreenFile::finish(const Totals& totals, std::size_t bridges, double seconds, const std::string& ended) {
+void ScreenFile::finish(const Totals& totals, std::size_t bridges, double seconds, const std::string& ended,
+                        const std::vector<results::Attribute>& further) {
   const auto other = [](const Governing& g) { return g.other(); };
   const auto ratio = [](const Governing& g) { return g.ratio(); };
   const std::vector<Governing>&b = totals.of_bridges(), &f = totals.of_formations();
@@ -181,14 +182,15 @@ void ScreenFile::finish(const Totals& totals, std::size_t bridges, double second
                       {"/screen/governing_bridge", {f.size()}, values_of(f, other), "1"},
                       {"/screen/formation_ratio", {f.size()}, values_of(f, ratio), "1"}});
   const auto number = [](double value) { return static_cast<long>(value); };
-  recorder_.finish_with({{"bridges_finished", static_cast<long>(bridges)},
-                         {"pairs_by_bound", number(totals.by_bound())},
-                         {"pairs_by_passages", number(totals.by_passages())},
-                         {"pairs_restricted", number(totals.restricted())},
-                         {"pairs_without_speed", number(totals.not_run())},
-                         {"wall_seconds", seconds},
-                         {"ended", ended}},
-                        {"wall_seconds"});
+  std::vector<results::Attribute> summary = {{"bridges_finished", static_cast<long>(bridges)},
+                                             {"pairs_by_bound", number(totals.by_bound())},
+                                             {"pairs_by_passages", number(totals.by_passages())},
+                                             {"pairs_restricted", number(totals.restricted())},
+                                             {"pairs_without_speed", number(totals.not_run())},
+                                             {"wall_seconds", seconds},
+                                             {"ended", ended}};
+  summary.insert(summary.end(), further.begin(), further.end());
+  recorder_.finish_with(summary, {"wall_seconds"});
 }
 
 }  // namespace traverse::screen

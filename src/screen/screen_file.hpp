@@ -39,8 +39,9 @@ class ScreenFile {
              std::map<std::size_t, std::vector<double>>& rows, Totals& totals);
   /// Writes a finished row. If the disk is full, all ranks end with FileError.
   void put(std::size_t bridge, const std::vector<double>& row);
-  /// Writes what governs, and the summary. FileError.
-  void finish(const Totals& totals, std::size_t bridges, double seconds, const std::string& ended);
+  /// Writes what governs, and the summary with further attributes. FileError.
+  void finish(const Totals& totals, std::size_t bridges, double seconds, const std::string& ended,
+              const std::vector<results::Attribute>& further);
 
  private:
   void write(std::size_t bridge, const std::vector<double>& row);

@@ -1,7 +1,7 @@
-// A formation over a bridge at several speeds, one in each SIMD lane. All lanes share the events: the places at which an
-// axle passes a support. Between two events the modes' coordinates are the particular solution under the axles on the
-// bridge, plus free oscillations Re(Z), whose amplitudes |Z| can only decay. This gives a bound for each interval, from
-// numbers at its start; only intervals with a bound above the interest of some lane are sampled.
+// A formation over a bridge at several speeds, one in each SIMD lane. All lanes share the events: the places at which
+// an axle passes a support. Between two events the modes' coordinates are the particular solution under the axles on
+// the bridge, plus free oscillations Re(Z), whose amplitudes |Z| can only decay. This gives a bound for each interval,
+// from numbers at its start; only intervals with a bound above the interest of some lane are sampled.
 #pragma once
 
 #include "screen/bridge_numbers.hpp"
@@ -30,8 +30,8 @@ class ScreenBatch : LaneFunctions<W> {
 
  public:
   ScreenBatch(const ScreenTask& task, double* work) : task_(task), modes_(task.modes) {
-    Lane** const of_modes[] = {&z_real_, &z_imag_, &step_real_, &step_imag_, &acceleration_, &deflection_, &at_real_,
-                               &at_imag_};
+    Lane** const of_modes[] = {&z_real_,       &z_imag_,     &step_real_, &step_imag_,
+                               &acceleration_, &deflection_, &at_real_,   &at_imag_};
     for (Lane** own : of_modes) *own = allocate_from<Lane>(work, used_, W, modes_);
     Lane** const of_gaps[] = {&gap_real_, &gap_imag_};
     for (Lane** own : of_gaps) *own = allocate_from<Lane>(work, used_, W, static_cast<long>(modes_) * task.gaps);
@@ -58,7 +58,8 @@ class ScreenBatch : LaneFunctions<W> {
     for (long i = 0; i < task_.events; ++i) {
       pass_event(i);
       if (!is_interval(i)) continue;
-      if (i + 1 < task_.events && exceeds(bound_above(i, best_), best_)) sample(i, task_.length[i]);
+      if (i + 1 == task_.events) break;
+      if (task_.every || exceeds(bound_above(i, best_), best_)) sample(i, task_.length[i]);
     }
     decay_freely();
     *lanes(task_.result) = best_;
@@ -98,8 +99,7 @@ class ScreenBatch : LaneFunctions<W> {
     const int gap = i > 0 ? task_.gap[i - 1] : -1, row = coefficients + 2 * task_.support[i];
     const Lane load = fill(task_.load[i]);
     for (int n = 0; n < modes_; ++n) {
-      if (gap >= 0)
-        multiply(z_real_[n], z_imag_[n], gap_real_[n * task_.gaps + gap], gap_imag_[n * task_.gaps + gap]);
+      if (gap >= 0) multiply(z_real_[n], z_imag_[n], gap_real_[n * task_.gaps + gap], gap_imag_[n * task_.gaps + gap]);
       z_real_[n] += load * number(n, row);
       z_imag_[n] += load * number(n, row + 1);
     }
@@ -115,8 +115,7 @@ class ScreenBatch : LaneFunctions<W> {
       const Lane free = root(z_real_[n] * z_real_[n] + z_imag_[n] * z_imag_[n]);
       const Lane falling = number(n, falling_gain), rising = number(n, rising_gain);
       Lane forced = s[0] * magnitude(number(n, real_gain)) + s[1] * magnitude(number(n, imag_gain));
-      if (task_.continuous)
-        forced += 0.5 * (s[2] * (falling + rising) + s[3] * magnitude(falling - rising));
+      if (task_.continuous) forced += 0.5 * (s[2] * (falling + rising) + s[3] * magnitude(falling - rising));
       acceleration_[n] = task_.omega2[n] * free + number(n, omega2_drive) * forced;
       deflection_[n] = free + forced;
       coarse_acceleration += task_.largest[n] * acceleration_[n];
@@ -145,14 +144,14 @@ class ScreenBatch : LaneFunctions<W> {
   void sample(long i, double length) {
     const int parts = 1 + static_cast<int>(length / task_.spacing);
     const double step = length / parts;
+    const Lane time = fill(step) / *lanes(task_.speed), error = 0.125 * time * time * curvature(i);
     begin_samples(i, step);
-    Lane top = Lane{};
+    Lane top = greater(Lane{}, (best_ - error) * (1.0 - rounding));  // samples below cannot belong to a larger peak
     for (int k = 0; k <= parts; ++k) {
       if (k > 0) advance();
-      top = greater(top, response());
+      top = response_above(top);
     }
     ++*task_.sampled;
-    const Lane error = curvature(i) * (fill(step) / *lanes(task_.speed)) * (fill(step) / *lanes(task_.speed)) * 0.125;
     if (task_.search && exceeds(top + error, best_)) top = greater(top, peaks(i, length, parts, top, error));
     best_ = greater(best_, top);
   }
@@ -188,8 +187,9 @@ class ScreenBatch : LaneFunctions<W> {
     }
   }
 
-  /// The largest fraction of a limit at all stations.
-  Lane response() {
+  /// The greater of `least` and the largest fraction of a limit at all stations.
+  Lane response_above(Lane least) {
+    Lane coarse_acceleration = Lane{}, coarse_deflection = Lane{};
     for (int n = 0; n < modes_; ++n) {
       const double* wave = wave_ + 8 * n;
       const Lane harmonic = wave[0] * number(n, real_gain) - wave[1] * number(n, imag_gain);
@@ -198,8 +198,12 @@ class ScreenBatch : LaneFunctions<W> {
       acceleration_[n] = task_.lambda2[2 * n] * at_real_[n] - task_.lambda2[2 * n + 1] * at_imag_[n] +
                          number(n, omega2_drive) * (ends - harmonic);
       deflection_[n] = at_real_[n] + harmonic + ends;
+      coarse_acceleration += task_.largest[n] * magnitude(acceleration_[n]);
+      coarse_deflection += task_.largest[n] * magnitude(deflection_[n]);
     }
-    Lane top = Lane{};
+    const Lane coarse =
+        greater(task_.of_acceleration * coarse_acceleration, task_.largest_of_deflection * coarse_deflection);
+    if (!exceeds(coarse, least)) return least;
     for (int s = 0; s < task_.stations; ++s) {
       const double* shape = task_.shapes + s * modes_;
       Lane acceleration = Lane{}, deflection = Lane{};
@@ -207,10 +211,10 @@ class ScreenBatch : LaneFunctions<W> {
         acceleration += shape[n] * acceleration_[n];
         deflection += shape[n] * deflection_[n];
       }
-      top = greater(top, task_.of_acceleration * magnitude(acceleration));
-      top = greater(top, task_.of_deflection[s] * magnitude(deflection));
+      least = greater(least, task_.of_acceleration * magnitude(acceleration));
+      least = greater(least, task_.of_deflection[s] * magnitude(deflection));
     }
-    return top;
+    return least;
   }
 
   /// A bound of the second derivative in time of every fraction of a limit in an interval.
@@ -219,9 +223,8 @@ class ScreenBatch : LaneFunctions<W> {
     for (int n = 0; n < modes_; ++n) {
       const double* s = sums(i, n);
       const Lane free = root(z_real_[n] * z_real_[n] + z_imag_[n] * z_imag_[n]);
-      const Lane forced =
-          s[1] * (magnitude(number(n, real_gain)) + magnitude(number(n, imag_gain))) +
-          s[3] * greater(number(n, falling_gain), number(n, rising_gain));
+      const Lane forced = s[1] * (magnitude(number(n, real_gain)) + magnitude(number(n, imag_gain))) +
+                          s[3] * greater(number(n, falling_gain), number(n, rising_gain));
       const Lane drive = number(n, omega2_drive);
       const Lane bend = task_.omega2[n] * free + drive * forced;
       of_deflection += task_.largest[n] * bend;
@@ -239,8 +242,7 @@ class ScreenBatch : LaneFunctions<W> {
         copy_[2 * n] = numbers(z_real_[n])[lane];
         copy_[2 * n + 1] = numbers(z_imag_[n])[lane];
       }
-      numbers(found)[lane] =
-          task_.search_peak(task_.context, lane, i, copy_, length, parts, numbers(error)[lane]);
+      numbers(found)[lane] = task_.search_peak(task_.context, lane, i, copy_, length, parts, numbers(error)[lane]);
     }
     return found;
   }
@@ -263,10 +265,10 @@ class ScreenBatch : LaneFunctions<W> {
   const ScreenTask& task_;
   const int modes_;
   long used_ = 0;
-  Lane *z_real_ = nullptr, *z_imag_ = nullptr;        // Z of each mode at the last event
-  Lane *at_real_ = nullptr, *at_imag_ = nullptr;      // Z at a sample
-  Lane *step_real_ = nullptr, *step_imag_ = nullptr;  // the factor of Z from sample to sample
-  Lane *gap_real_ = nullptr, *gap_imag_ = nullptr;    // the factor of Z over each gap: [mode][gap]
+  Lane *z_real_ = nullptr, *z_imag_ = nullptr;            // Z of each mode at the last event
+  Lane *at_real_ = nullptr, *at_imag_ = nullptr;          // Z at a sample
+  Lane *step_real_ = nullptr, *step_imag_ = nullptr;      // the factor of Z from sample to sample
+  Lane *gap_real_ = nullptr, *gap_imag_ = nullptr;        // the factor of Z over each gap: [mode][gap]
   Lane *acceleration_ = nullptr, *deflection_ = nullptr;  // of each mode: q'' and q, or their bounds
   double* wave_ = nullptr;  // of each mode: the sums at a sample, and their factors from sample to sample
   double* copy_ = nullptr;

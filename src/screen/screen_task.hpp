@@ -28,6 +28,7 @@ struct ScreenTask {
 
   // Passages only.
   double spacing = 0.0, tail = 0.0;  // m: between samples; part of the free oscillation behind the train
+  bool every = false;                // every interval is sampled, also where the bound is below all interest
   bool search = false;               // peaks between samples are searched for
   /// The exact largest fraction of a limit in an interval of one lane. z: Z of each mode at its start, real and
   /// imaginary part; length: m; samples: parts of the interval.

@@ -108,7 +108,8 @@ void TrainEvents::set_bounds(double beta, std::size_t mode) {
     sums.harmonic = crest ? sums.amplitude : std::max(std::abs(E.real()), std::abs(end.real()));
     const double fall = std::max(std::exp(-angle), 1e-300), falling = sums.falling * fall, rising = sums.rising / fall;
     sums.ends = std::max(std::abs(sums.falling + sums.rising), std::abs(falling + rising));
-    sums.ends_amplitude = std::max(std::abs(sums.falling) + std::abs(sums.rising), std::abs(falling) + std::abs(rising));
+    sums.ends_amplitude =
+        std::max(std::abs(sums.falling) + std::abs(sums.rising), std::abs(falling) + std::abs(rising));
   }
 }
 

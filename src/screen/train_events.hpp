@@ -1,5 +1,5 @@
-// A formation on a bridge along its way, independent of the speed: the places at which an axle passes a support, and the
-// sums of the modal forces of the axles on the bridge between them.
+// A formation on a bridge along its way, independent of the speed: the places at which an axle passes a support, and
+// the sums of the modal forces of the axles on the bridge between them.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,9 @@ class TrainEvents {
   const std::vector<double>& load() const { return load_; }      // N, of the axle that passes
   const std::vector<int>& support() const { return support_; }   // that it passes
   const std::vector<double>& length() const { return length_; }  // m, to the next event; the last one: 0
-  const std::vector<int>& gap() const { return gap_; }  // index of the length in gaps(); -1: next event at the same place
+  const std::vector<int>& gap() const {
+    return gap_;
+  }  // index of the length in gaps(); -1: next event at the same place
   const std::vector<double>& gaps() const { return gaps_; }  // different lengths, m
   const ModeSums* sums(std::size_t event) const { return &sums_[event * modes_]; }
   const double* all_sums() const { return &sums_.front().harmonic; }
