@@ -13,6 +13,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import picture_page  # noqa: E402
+import picture_screen  # noqa: E402
 from picture_data import Results, opened  # noqa: E402
 from picture_modes import draw_modes  # noqa: E402
 from picture_panels import MAY_BE_ASKED, panels  # noqa: E402
@@ -39,7 +40,7 @@ def heading_in_words(results, modes_only):
         title += f", a study of {len(results.file['study/finished']):,} runs"
     elif speed:
         title += f", {speed_in_words(speed)}"
-    said = summary_in_words(results)
+    said = [picture_screen.in_words(results)] if "screen/ratio" in results.file else summary_in_words(results)
     if not summary and results.rows:
         said.append(f"the run did not reach its end; drawn up to {results.time[-1]:.4g} s")
     if modes_only and "modes/shape" in results.file:

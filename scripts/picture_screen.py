@@ -1,10 +1,10 @@
 """The panel of a screen: the response of every bridge under every formation, relative to its limit."""
 
 import numpy as np
-from picture_axes import RED
 from picture_table import keep
 
 MOST_NAMES = 40
+LONGEST_NAME = 14  # characters
 
 
 def draw(ax, results):
@@ -21,13 +21,16 @@ def draw(ax, results):
         keep(ax, bridges[i], np.array([formations[j] for j in worst_formations]), row, "ratio")
     ax.invert_yaxis()
     ax.grid(False)
-    exceeded = int((ratio > 1.0).sum())
-    ax.set(title="Largest response over its limit, the worst bridges above and the worst formations on the left",
-           xlabel=f"{len(formations)} formations", ylabel=f"{len(bridges)} bridges")
-    ax.text(0.0, -0.02, f"{exceeded} of {int(np.isfinite(ratio).sum())} pairs exceed a limit", color=RED, fontsize=8.5,
-            va="top", transform=ax.transAxes)
+    ax.set(title="Largest response over its limit, bridges by formations")
     bar = ax.figure.colorbar(mesh, cax=ax.inset_axes([1.035, 0.0, 0.02, 1.0]), extend="max")
     bar.set_label("response / limit")
+
+
+def in_words(results):
+    """How many pairs there are, and how many exceed a limit."""
+    ratio = results.values("screen/ratio")
+    return (f"{ratio.shape[0]:,} bridges, {ratio.shape[1]:,} formations; {int((ratio > 1.0).sum()):,} of "
+            f"{int(np.isfinite(ratio).sum()):,} pairs exceed a limit at some speed; the worst ones above and on the left")
 
 
 def names_of(results, dimension):
@@ -37,6 +40,6 @@ def names_of(results, dimension):
 def name_ticks(set_ticks, names, looks):
     """Names places along an axis, if there are few enough."""
     if len(names) <= MOST_NAMES:
-        set_ticks(np.arange(len(names)) + 0.5, names, fontsize=7.5, **looks)
+        set_ticks(np.arange(len(names)) + 0.5, [name[:LONGEST_NAME] for name in names], fontsize=7.5, **looks)
     else:
         set_ticks([])

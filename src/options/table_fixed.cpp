@@ -218,7 +218,7 @@ constexpr Row later_rows[] = {
   {"screen_samples", number, "", "20", {8.0, 1000.0}, "", 0, "samples per period of the highest mode in a passage; peaks between samples are searched for exactly"},
   {"screen_audit", integer, "", "0", {0, 1e6}, "", 0, "number of pairs, drawn at random, that are checked by passages at all speeds after the screen"},
   {"screen_resume", flag, "", "false", any, "", 0, "uses the finished bridges of the same screen in the existing results file"},
-  {"screen_pair", texts, "", "", any, "", 2, "a bridge and a formation: instead of the screen, prints the scene of their passages"},
+  {"screen_pair", texts, "", "", any, "", 0, "a bridge and a formation: instead of the screen, prints the scene of their passages; with an options file of the train as third entry, prints that of its vehicles on a rough track at the permitted speed"},
 
   {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},
   {"output_interval", number, "s", "(from the step)", positive, "", 0, "time between stored samples"},

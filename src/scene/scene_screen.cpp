@@ -7,6 +7,12 @@ namespace traverse::app {
 
 using options::Options;
 
+namespace {
+
+constexpr double slowest = 1.0;  // m/s
+
+}  // namespace
+
 void read_screen(const Options& o, Scene& scene) {
   if (scene.analysis != Analysis::screen) {
     if (const options::Entry* entry = o.first_with_prefix("screen_"))
@@ -27,12 +33,18 @@ void read_screen(const Options& o, Scene& scene) {
   constexpr double kmh = 1.0 / 3.6;
   screen.speeds =
       o.has("screen_speeds") ? read_speeds(o, "screen_speeds") : speeds_between(10.0 * kmh, 250.0 * kmh, kmh);
+  if (screen.speeds.front() < slowest)
+    o.refuse("screen_speeds", fmt::format("from {:g} m/s; allowed: from {:g} m/s on", screen.speeds.front(), slowest));
   screen.modes = o.integer("screen_modes");
   screen.parts = o.integer("screen_stations");
   screen.samples = o.number("screen_samples");
   screen.audit = o.integer("screen_audit");
   screen.resume = o.flag("screen_resume");
-  if (o.has("screen_pair")) screen.pair = o.texts("screen_pair");
+  if (o.has("screen_pair")) {
+    screen.pair = o.texts("screen_pair");
+    if (screen.pair.size() != 2 && screen.pair.size() != 3)
+      o.refuse("screen_pair", "allowed: a bridge, a formation, and optionally an options file of the train");
+  }
   scene.screen = screen;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <unordered_set>
 
+#include "options/input_texts.hpp"
 #include "screen/header_table.hpp"
 #include "traverse/base/error.hpp"
 
@@ -15,7 +16,7 @@ namespace traverse::screen {
 namespace {
 
 constexpr std::size_t most_axles = 5000, most_formations = 200'000;
-constexpr double longest = 5000.0, heaviest = 1e6;  // m, of a train; N, of an axle
+constexpr double longest = 2000.0, heaviest = 1e6;  // m, of a train; N, of an axle
 
 struct LoadColumn {
   const char* name;
@@ -96,10 +97,13 @@ void read_table(const std::string& path, std::vector<Formation>& fleet) {
   }
 }
 
+/// The tables of a folder, on the disk or of a results file that is run again.
 std::vector<std::string> tables_in(const std::string& folder) {
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.is_regular_file() && entry.path().extension() == ".csv") files.push_back(entry.path().string());
+  std::vector<std::string> files = options::mounted_in(folder);
+  if (files.empty())
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.is_regular_file()) files.push_back(entry.path().string());
+  std::erase_if(files, [](const std::string& file) { return std::filesystem::path(file).extension() != ".csv"; });
   std::sort(files.begin(), files.end());
   if (files.empty()) throw InputError("screen_fleet: the folder " + folder + " contains no .csv files");
   return files;
@@ -109,7 +113,7 @@ std::vector<std::string> tables_in(const std::string& folder) {
 
 std::vector<Formation> read_fleet(const std::string& path) {
   std::vector<Formation> fleet;
-  const bool folder = std::filesystem::is_directory(path);
+  const bool folder = !options::mounted_in(path).empty() || std::filesystem::is_directory(path);
   for (const std::string& file : folder ? tables_in(path) : std::vector<std::string>{path}) read_table(file, fleet);
   std::unordered_set<std::string> names;
   for (const Formation& formation : fleet)

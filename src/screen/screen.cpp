@@ -115,6 +115,14 @@ std::vector<std::string> description(const Problem& problem) {
                   screen.modes)};
 }
 
+double memory_of(const Problem& problem) {
+  constexpr double program = 7e7, a_row = 4.0 * sizeof(double) * pair_width;  // copies of a row, bytes a formation
+  double bytes = program + a_row * static_cast<double>(problem.fleet.size());
+  for (const Formation& formation : problem.fleet)
+    bytes += static_cast<double>(sizeof(Formation) + 2 * sizeof(double) * formation.loads.size());
+  return bytes + static_cast<double>(problem.stock.size() * sizeof(Bridge));
+}
+
 int run(MPI_Comm comm, results::Place place, const Problem& problem, const std::vector<std::string>& notes) {
   const auto begin = std::chrono::steady_clock::now();
   std::map<std::size_t, std::vector<double>> known = stored_rows(comm, problem);

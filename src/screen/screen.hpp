@@ -17,7 +17,11 @@ int run(MPI_Comm comm, results::Place place, const Problem& problem, const std::
 /// What a screen will compute, one line each.
 std::vector<std::string> description(const Problem& problem);
 
-/// The scene of the passages of a formation over a bridge, as an options file. InputError if the names are unknown.
-std::string pair_scene(const Problem& problem, const std::string& bridge, const std::string& formation);
+/// The memory that a rank needs, bytes: the program, the tables, and one row.
+double memory_of(const Problem& problem);
+
+/// The scene of a formation over a bridge as an options file, as screen_pair asks for it: moving forces at all speeds,
+/// or vehicles on a rough track at the permitted speed. InputError if the names are unknown.
+std::string pair_scene(const Problem& problem);
 
 }  // namespace traverse::screen

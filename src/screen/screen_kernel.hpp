@@ -66,8 +66,9 @@ class ScreenBatch : LaneFunctions<W> {
   }
 
  private:
-  static constexpr double rounding = 1e-9;  // of the bound
-  static constexpr int longest_tail = 40;   // periods of the first mode that are sampled behind the train
+  static constexpr double rounding = 1e-9;     // of the bound
+  static constexpr double most_samples = 1e7;  // of an interval
+  static constexpr int longest_tail = 40;      // periods of the first mode that are sampled behind the train
 
   static bool exceeds(Lane a, Lane b) { return Own::exceeds(a, b) != 0; }
   Lane number(int mode, int row) const {
@@ -142,7 +143,8 @@ class ScreenBatch : LaneFunctions<W> {
 
   /// Samples the interval after event i, from its start to its end.
   void sample(long i, double length) {
-    const int parts = 1 + static_cast<int>(length / task_.spacing);
+    const double wanted = length / task_.spacing;
+    const int parts = 1 + static_cast<int>(wanted < most_samples ? wanted : most_samples);
     const double step = length / parts;
     const Lane time = fill(step) / *lanes(task_.speed), error = 0.125 * time * time * curvature(i);
     begin_samples(i, step);

@@ -23,8 +23,9 @@ namespace traverse::screen {
 namespace {
 
 constexpr std::size_t most_spans = 20, most_bridges = 100'000;
-constexpr double shortest_span = 1.0, longest_span = 1000.0;  // m
-constexpr double largest_ratio = 10.0;                        // of two spans
+constexpr double shortest_span = 1.0, longest_span = 1000.0;          // m
+constexpr double largest_ratio = 10.0;                                // of two spans
+constexpr double lowest_frequency = 0.05, highest_frequency = 200.0;  // Hz
 constexpr double least_damping = 1e-4, greatest_damping = 0.2;
 
 std::vector<double> spans_of(const HeaderTable& table, std::size_t row) {
@@ -43,6 +44,18 @@ std::vector<double> spans_of(const HeaderTable& table, std::size_t row) {
   if (*greatest > largest_ratio * *least)
     table.refuse(row, fmt::format("spans: the longest is more than {:g} times the shortest", largest_ratio));
   return spans;
+}
+
+/// EI in N m2, given or from the first frequency.
+double stiffness_of(const HeaderTable& table, std::size_t row, const Bridge& bridge) {
+  const double beta = beam_modes(bridge.spans, 1).front().beta;
+  const double of_frequency = bridge.mass * std::pow(2.0 * std::numbers::pi, 2) / std::pow(beta, 4);
+  const double EI = table.has("f1") ? of_frequency * std::pow(table.positive(row, "f1"), 2) : table.positive(row, "EI");
+  const double frequency = std::sqrt(EI / of_frequency);
+  if (!(frequency >= lowest_frequency && frequency <= highest_frequency))
+    table.refuse(row, fmt::format("a first frequency of {:.4g} Hz; allowed: {:g} to {:g} Hz", frequency,
+                                  lowest_frequency, highest_frequency));
+  return EI;
 }
 
 double damping_of(const HeaderTable& table, std::size_t row, double longest) {
@@ -103,12 +116,7 @@ std::vector<Bridge> read_stock(const std::string& path, const std::vector<option
       table.refuse(row, fmt::format("name: '{}'; allowed: a different name for each bridge", bridge.name));
     bridge.spans = spans_of(table, row);
     bridge.mass = table.positive(row, "mass");
-    if (table.has("f1")) {
-      const double omega = 2.0 * std::numbers::pi * table.positive(row, "f1");
-      bridge.EI = bridge.mass * std::pow(omega, 2) / std::pow(beam_modes(bridge.spans, 1).front().beta, 4);
-    } else {
-      bridge.EI = table.positive(row, "EI");
-    }
+    bridge.EI = stiffness_of(table, row, bridge);
     bridge.damping = damping_of(table, row, *std::max_element(bridge.spans.begin(), bridge.spans.end()));
     bridge.speed = table.has("speed") ? table.speed(row, "speed") : std::numeric_limits<double>::infinity();
     bridge.of_acceleration = factor_of(table, row, "deck_acceleration", limits);

@@ -115,6 +115,21 @@ class Screen(unittest.TestCase):
         self.assertIn("contains another screen", done.stderr)
         self.assertNotEqual(done.returncode, 0)
 
+    def test_a_results_file_is_run_again_without_its_tables(self):
+        (self.folder / "trains").mkdir()
+        for name in ("coaches", "wagon"):
+            rows = [line for line in FLEET.splitlines() if line.startswith((name, "name"))]
+            (self.folder / "trains" / f"{name}.csv").write_text("\n".join(rows) + "\n")
+        whole = self.screened("-screen_fleet", "trains")
+        self.assert_equal(whole, self.screened())
+        self.screened("-screen_fleet", "trains")
+        for table in ("stock.csv", "fleet.csv", "limits.yml", "trains/coaches.csv", "trains/wagon.csv"):
+            (self.folder / table).unlink()
+        done = subprocess.run([TRAVERSE, "screen.h5"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with h5py.File(self.folder / "screen_again.h5") as file:
+            self.assert_equal(whole, {name: file[f"screen/{name}"][()] for name in MATRICES})
+
     def test_ranks_change_nothing(self):
         self.assert_equal(self.screened(), self.screened(ranks=2))
 

@@ -14,7 +14,9 @@ struct Screen {
   double samples = 20.0;          // per period of the highest mode
   bool resume = false;            // bridges that are finished in the results file are not computed again
   int audit = 0;                  // pairs that are checked by all passages
-  std::vector<std::string> pair;  // a bridge and a formation whose scene is written; empty: none
+  /// A bridge and a formation whose scene is printed, and for one with vehicles the options file of the train; empty:
+  /// none.
+  std::vector<std::string> pair;
 };
 
 }  // namespace traverse::options
