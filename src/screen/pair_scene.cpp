@@ -47,8 +47,9 @@ std::string forces_text(const options::Screen& screen, const Bridge& bridge, con
 std::string vehicles_text(const options::Screen& screen, const Bridge& bridge, const Formation& formation) {
   const BridgeModel model(bridge, screen.modes, screen.parts, screen.speeds, screen.samples);
   const double permitted = Pairs(model).judge(formation).permitted;
-  return fmt::format("train:\n  speed: {}\ntrack:\n  profile: german_low\n  wavelengths: [2.0, 80.0]\n",
-                     permitted > 0.0 ? permitted : screen.speeds.front());
+  return fmt::format(
+      "train:\n  speed: {}\n  positions: -120.0\ntrack:\n  profile: german_low\n  wavelengths: [2.0, 80.0]\n",
+      permitted > 0.0 ? permitted : screen.speeds.front());
 }
 
 }  // namespace
