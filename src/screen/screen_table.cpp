@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "base/digest.hpp"
 
 namespace traverse::screen {
@@ -16,9 +18,9 @@ std::vector<double> row_of(const std::vector<Verdict>& verdicts) {
 }
 
 void Governing::add(double other, double ratio, bool exact) {
-  if (exact_ && !exact) return;
-  if (exact_ == exact && !(ratio > ratio_) && ratio_ == ratio_) return;
-  if (exact_ == exact && ratio == ratio_ && other > other_) return;
+  const bool first = std::isnan(ratio_), better = exact != exact_ ? exact : ratio > ratio_,
+             equal = exact == exact_ && ratio == ratio_ && other < other_;  // rows come in any order
+  if (!first && !better && !equal) return;
   other_ = other;
   ratio_ = ratio;
   exact_ = exact;
@@ -26,18 +28,20 @@ void Governing::add(double other, double ratio, bool exact) {
 
 void Totals::add(std::size_t bridge, const std::vector<double>& row) {
   const std::size_t formations = of_formation_.size();
+  constexpr std::size_t ratio = pair_column("ratio"), exceeding = pair_column("exceeding_speeds"),
+                        decided_by = pair_column("decided_by");
   const auto column = [&](std::size_t index, std::size_t formation) { return row[index * formations + formation]; };
   for (std::size_t f = 0; f < formations; ++f) {
-    const auto by = static_cast<DecidedBy>(static_cast<int>(column(5, f)));
+    const auto by = static_cast<DecidedBy>(static_cast<int>(column(decided_by, f)));
     if (by == DecidedBy::nothing) {
       not_run_ += 1.0;
       continue;
     }
     const bool exact = by == DecidedBy::passages;
     (exact ? by_passages_ : by_bound_) += 1.0;
-    if (column(4, f) > 0.0) restricted_ += 1.0;
-    of_bridge_[bridge].add(static_cast<double>(f), column(0, f), exact);
-    of_formation_[f].add(static_cast<double>(bridge), column(0, f), exact);
+    if (column(exceeding, f) > 0.0) restricted_ += 1.0;
+    of_bridge_[bridge].add(static_cast<double>(f), column(ratio, f), exact);
+    of_formation_[f].add(static_cast<double>(bridge), column(ratio, f), exact);
   }
 }
 

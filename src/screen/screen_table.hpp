@@ -1,9 +1,9 @@
-// The rows of a screen, one for each bridge: their columns, what governs, and the dimension of memory: nothing is kept
-// for each pair.
+// The rows of a screen, one for each bridge: their columns, and what governs. Nothing is kept for each pair.
 #pragma once
 
-#include <cstdint>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "screen/pair.hpp"
@@ -25,6 +25,13 @@ inline constexpr PairColumn pair_columns[] = {
     {"decided_by", "1", [](const Verdict& v) { return static_cast<double>(v.decided_by); }},
 };
 inline constexpr std::size_t pair_width = std::size(pair_columns);
+
+/// The index of a column.
+constexpr std::size_t pair_column(std::string_view name) {
+  std::size_t index = 0;
+  while (pair_columns[index].name != name) ++index;
+  return index;
+}
 
 /// A row: the values of all formations, [column][formation].
 std::vector<double> row_of(const std::vector<Verdict>& verdicts);
