@@ -15,7 +15,7 @@ import sys
 
 # From the top layer down: a room includes headers of the rooms after it only.
 # The options are above the objects that they describe: their tables use the names of joints and foundations.
-LAYERS = ["app", "check", "study", "fit", "error_control", "ensemble", "run", "scene", "norm", "rail", "results", "modal_engine", "integrate", "coupling", "engine", "structure",
+LAYERS = ["app", "check", "study", "fit", "screen", "error_control", "ensemble", "run", "scene", "norm", "rail", "results", "modal_engine", "integrate", "coupling", "engine", "structure",
           "train", "options", "contact", "multibody", "track", "modes", "recovery", "beam", "solve", "base"]
 WITHOUT_PETSC = {"multibody", "contact", "track"}
 GREATEST_SHARE = 0.10  # of all lines, per room

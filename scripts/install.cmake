@@ -11,9 +11,9 @@ install(PROGRAMS scripts/traverse-check scripts/traverse-report DESTINATION ${CM
 install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_report DESTINATION ${share}/python
         FILES_MATCHING PATTERN *.py PATTERN *.csv PATTERN *.yml PATTERN *.html PATTERN *.css PATTERN *.js)
 file(GLOB pictures CONFIGURE_DEPENDS scripts/picture*.py)
-install(FILES ${pictures} scripts/animate.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
+install(FILES ${pictures} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
         scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_tables.py
-        scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py
+        scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/traffic.py
         DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)

@@ -16,6 +16,7 @@ matplotlib.use("Agg")
 import picture_find  # noqa: E402
 import picture_fit  # noqa: E402
 import picture_page  # noqa: E402
+import picture_screen  # noqa: E402
 import picture_sensitivity  # noqa: E402
 from picture_data import Results, opened  # noqa: E402
 from picture_modes import draw_modes  # noqa: E402
@@ -35,6 +36,8 @@ def heading_in_words(results, modes_only):
         title += ", largest static effects"
     elif results.options.get("scene_analysis") == "rail":
         title += ", rail and bridge together (UIC 774-3)"
+    elif results.options.get("scene_analysis") == "screen":
+        title += ", bridges under trains"
     elif "sweep/speed" in results.file:
         title += f", {sweep_in_words(results)}"
     elif "find/ratio" in results.file:
@@ -48,7 +51,11 @@ def heading_in_words(results, modes_only):
         title += ", a fit to measurements"
     elif speed:
         title += f", {speed_in_words(speed)}"
-    said = summary_in_words(results) + (picture_fit.fit_in_words(results) if "fit" in results.file else [])
+    said = summary_in_words(results)
+    if "fit" in results.file:
+        said += picture_fit.fit_in_words(results)
+    elif "screen/ratio" in results.file:
+        said = [picture_screen.in_words(results)]
     if not summary and results.rows:
         said.append(f"the run did not reach its end; drawn up to {results.time[-1]:.4g} s")
     if modes_only and "modes/shape" in results.file:

@@ -4,6 +4,7 @@ import picture_find
 import picture_fit
 import picture_hanging
 import picture_rail
+import picture_screen
 import picture_sensitivity
 from picture_axes import Panel
 from picture_bridge import QUANTITIES, STATIC, draw_bearings, draw_probes, draw_shape, draw_static
@@ -98,4 +99,6 @@ def panels(results, asked=()):
         found += [over_time(draw_static, results, name) for name in STATIC]
     if not found and "rail_forces/x" in file:
         found += [over_time(panel, results) for panel in picture_rail.PANELS]
+    if not found and "screen/ratio" in file:
+        found.append(Panel(lambda ax, worst: picture_screen.draw(ax, results), 5.0))
     return found

@@ -6,8 +6,8 @@
     results["deflection"].sel(x=12.5).plot()
 
 `run` computes a scene, `study` many runs of it, `find` the values of an option that keep limits, `sensitivity` the
-effects of uncertain options, `fit` estimates options from measurements, and `open` reads a results file. Each returns
-an xarray.Dataset.
+effects of uncertain options, `fit` estimates options from measurements, `screen` checks a stock of bridges under a
+fleet, and `open` reads a results file. Each returns an xarray.Dataset.
 `Passage` computes a scene step by step. A failed computation raises `Error` with the message of the program.
 doc/python.md contains examples.
 """
@@ -21,6 +21,6 @@ except ImportError as missing:
 from .dataset import open_results as open  # noqa: A004
 from .passage import Passage
 from .places import Error
-from .program import find, fit, run, sensitivity, study
+from .program import find, fit, run, screen, sensitivity, study
 
-__all__ = ["Error", "Passage", "find", "fit", "open", "run", "sensitivity", "study"]
+__all__ = ["Error", "Passage", "find", "fit", "open", "run", "screen", "sensitivity", "study"]

@@ -8,20 +8,20 @@ import xarray
 from . import places
 
 # Omitted are the scene itself, and the state at an end between two samples; h5py reads these.
-_LEFT_OUT = ("options", "input", "model", "end", "study/shape", "study/row_digest")
-_BARE = re.compile(r"^/?(?:probes|sweep|study|fit)/")
+_LEFT_OUT = ("options", "input", "model", "end", "study/shape", "study/row_digest", "screen/row_digest")
+_BARE = re.compile(r"^/?(?:probes|sweep|study|fit|screen)/")
 _WITHOUT_COORDINATES = b"This is a netCDF dimension but not a netCDF variable."
 # The values along a dimension of quantities that no file contains: those of a Passage.
 _MEANINGS = {"coordinate": ["x", "y", "angle"], "component": ["fx", "fy", "moment"], "direction": ["x", "y"]}
 
 
 def name_of(path):
-    """The name of the dataset at a path: its path with "_" for "/", without a leading probes, sweep, study or fit."""
+    """The name of the dataset at a path: with "_" for "/", without a leading probes, sweep, study, fit or screen."""
     return _BARE.sub("", path).strip("/").replace("/", "_")
 
 
 def open_results(path):
-    """Reads a results file of a run, a sweep, a study or modes.
+    """Reads a results file of a run, a sweep, a study, a screen or modes.
 
     Returns an xarray.Dataset in memory. Each variable has the unit of the file in attrs["units"]; `time`, `x` and
     similar arrays are coordinates, and so are the varied options of a study. attrs contains the attributes of the file,
@@ -102,7 +102,7 @@ def with_coordinates(variables):
 
 def _attributes(file):
     attributes = dict(file.attrs)
-    for group in ("summary", "modes", "sweep", "study", "find", "sensitivity"):
+    for group in ("summary", "modes", "sweep", "study", "find", "sensitivity", "screen"):
         if group in file:
             attributes |= {f"{group}_{name}": value for name, value in file[group].attrs.items()}
     if "options" in file:

@@ -94,6 +94,23 @@ def fit(scene, vary=None, to=None, *, folder=None, ranks=1, output=None, **optio
     return _computed([scene, {"fit": given}] if given else [scene], folder, ranks, output, options)
 
 
+def screen(stock, fleet, limits, speeds=None, *, folder=None, ranks=1, output=None, **options):
+    """Screens a stock of bridges with a fleet of trains, and returns the verdicts on all pairs.
+
+    stock: the path of the table of bridges. fleet: the path of the table of axle loads, or of a folder of such tables.
+    limits: the path of the limits. speeds: (from, to, step) in m/s, or as texts such as "10 km/h"; default: 10 to
+        250 km/h, every km/h. Relative paths are relative to `folder`.
+    Returns a Dataset with the dimensions bridge and formation, whose coordinates are the names: ratio (largest response
+    over its limit), permitted_speed (m/s), decided_by (1: bound, 2: passages) and others. The other arguments are those
+    of `run`: screen_modes=3, screen_audit=100, ...
+    """
+    scene = {"scene": {"analysis": "screen"}}
+    asked = {"screen_stock": stock, "screen_fleet": fleet, "limits": limits}
+    if speeds is not None:
+        asked["screen_speeds"] = list(speeds)
+    return _computed([scene], folder, ranks, output, {**asked, **options})
+
+
 def _computed(scenes, folder, ranks, output, options):
     with words.of_scenes(*scenes) as (files, scratch):
         kept = pathlib.Path(folder or ".", output) if output is not None else pathlib.Path(scratch, "results.h5")

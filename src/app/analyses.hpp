@@ -34,6 +34,8 @@ int run_in_time(Job job);  // the motion in time, or the static equilibrium at t
 int run_modes(Job job);
 int run_rail(Job job);      // forces between rail and bridge along the track
 int run_envelope(Job job);  // the largest static effects of the loads over all their positions
+int run_screen(Job job);    // every formation of a fleet over every bridge of a stock
+int check_screen(MPI_Comm comm, const Scene& scene);  // -check of a screen: reads everything, and describes it
 
 struct AnalysisRun {
   options::Analysis analysis;
@@ -43,7 +45,7 @@ struct AnalysisRun {
 inline constexpr AnalysisRun analysis_runs[] = {
     {options::Analysis::transient, run_in_time},       {options::Analysis::modes, run_modes},
     {options::Analysis::static_response, run_in_time}, {options::Analysis::static_envelope, run_envelope},
-    {options::Analysis::rail_forces, run_rail},
+    {options::Analysis::rail_forces, run_rail},        {options::Analysis::screen, run_screen},
 };
 
 constexpr const AnalysisRun* run_of(options::Analysis analysis) {

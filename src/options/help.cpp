@@ -38,6 +38,7 @@ constexpr Heading headings[] = {
     {"model", "model", "Model"},
     {"limits", "norm", "Limits and load models of EN 1990 and EN 1991-2"},
     {"uic774", "rail", "Track-bridge interaction: scene_analysis rail, UIC 774-3"},
+    {"screen", "screen", "Screen of a bridge stock with a fleet: scene_analysis screen"},
     {"output", "output", "Results"},
     {"checkpoint", "checkpoint", "Checkpoints"},
     {"restart", "restart", "Restart from a checkpoint"},

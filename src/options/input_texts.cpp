@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/regular_file.hpp"
 #include "base/utf8.hpp"
@@ -96,5 +97,15 @@ const std::string& mounted(const std::string& path) {
 }
 
 bool is_mounted(const std::string& path) { return find_mounted(path) != nullptr; }
+
+std::vector<std::string> mounted_in(const std::string& folder) {
+  std::vector<std::string> paths;
+  const std::string& prefix = mounted(folder);
+  if (prefix.empty()) return paths;
+  for (const InputText& file : mounted_inputs.files)
+    if (std::filesystem::path(file.name).parent_path() == std::filesystem::path(folder.substr(prefix.size())))
+      paths.push_back(prefix + file.name);
+  return paths;
+}
 
 }  // namespace traverse::options

@@ -44,5 +44,7 @@ void mount_inputs(const std::string& prefix, std::vector<InputText> files);
 const std::string& mounted(const std::string& path);
 /// Whether there is a mounted file with this path, which includes the prefix.
 bool is_mounted(const std::string& path);
+/// The paths of the mounted files in a folder, which includes the prefix.
+std::vector<std::string> mounted_in(const std::string& folder);
 
 }  // namespace traverse::options

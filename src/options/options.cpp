@@ -353,7 +353,7 @@ bool Options::is_number(std::string_view name) const {
   return true;
 }
 
-std::string Options::path(std::string_view name) const {
+std::string Options::path_or_folder(std::string_view name) const {
   const std::string value = value_or_default(name);
   const Entry* entry = entries_.find(name);
   std::string found = find_file(value, entry != nullptr && entry->from_file() ? entry->source : "");
@@ -363,6 +363,11 @@ std::string Options::path(std::string_view name) const {
                                       why_not_a_number(value, row(name)), allowed(row(name)))
                         : "there is no such file in the working directory or beside the file that names it");
   }
+  return found;
+}
+
+std::string Options::path(std::string_view name) const {
+  std::string found = path_or_folder(name);
   std::error_code ignored;
   if (std::filesystem::is_directory(found, ignored)) refuse(name, "is a folder, not a file");
   return found;

@@ -308,7 +308,7 @@ std::string find_file(const std::string& path, const std::string& named_in) {
     const std::filesystem::path folder = std::filesystem::path(named_in.substr(prefix.size())).parent_path();
     for (const std::filesystem::path& at :
          {(folder / path).lexically_normal(), folder / path, std::filesystem::path(path)})
-      if (is_mounted(prefix + at.string())) return prefix + at.string();
+      if (is_mounted(prefix + at.string()) || !mounted_in(prefix + at.string()).empty()) return prefix + at.string();
   }
   std::error_code ignored;
   if (!named_in.empty() && !std::filesystem::path(path).is_absolute()) {

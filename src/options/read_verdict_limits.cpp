@@ -43,9 +43,9 @@ class LimitReader {
       } else if (key == "quantity") {
         limit.quantity = quantity(item.second);
       } else if (key == "value") {
-        limit.value = number(item.second);
+        limit.value = number(key, item.second);
       } else if (key == "factor") {
-        limit.factor = number(item.second);
+        limit.factor = number(key, item.second);
       } else {
         refuse(item.first,
                fmt::format("'{}' is not a key of a limit; allowed: clause, quantity, value, factor, text", key));
@@ -76,14 +76,14 @@ class LimitReader {
   }
 
   /// A number above zero, or a fraction of two such numbers: 1/600.
-  double number(const YAML::Node& node) const {
+  double number(const std::string& key, const YAML::Node& node) const {
     const std::string& word = node.Scalar();
     const std::size_t bar = word.find('/');
     double numerator = 0.0, denominator = 1.0;
     const bool fits = parse_number(word.substr(0, bar), numerator) &&
                       (bar == std::string::npos || parse_number(word.substr(bar + 1), denominator));
     if (!fits || !(numerator > 0.0 && denominator > 0.0) || !is_quantity(numerator / denominator))
-      refuse(node, fmt::format("'{}'; allowed: a number above 0, or a fraction such as 1/600", word));
+      refuse(node, fmt::format("{} '{}'; allowed: a number above 0, or a fraction such as 1/600", key, word));
     return numerator / denominator;
   }
 

@@ -210,6 +210,16 @@ constexpr Row later_rows[] = {
   {"uic774_fronts", numbers, "m", "(0 to 90 m past the bridge, every 10 m)", any, "", 3, "positions of the train's front, measured from the bridge end at which it enters: first, last, step"},
   {"uic774_direction", choice, "", "right", any, "right left both", 0, "travel direction of the train"},
 
+  {"screen_stock", file, "", "", any, "", 0, "scene_analysis screen: the table of bridges, with the columns name, spans, mass, EI or f1, damping or type, and others"},
+  {"screen_fleet", text, "", "", any, "", 0, "the trains: a table of axles with the columns name, load_kN or load_t, position or spacing, and speed, or a folder of such tables"},
+  {"screen_speeds", numbers, "m/s", "(10 to 250 km/h, every km/h)", positive, "", 3, "speeds of the screen: from, to, step; each may be in km/h; a train runs up to its own speed and that of the bridge"},
+  {"screen_modes", integer, "", "3", {1, 8}, "", 0, "number of bending modes of each bridge; frequencies above them are left out of the deck acceleration, without any other filter"},
+  {"screen_stations", integer, "", "10", {2, 50}, "", 0, "number of equal parts of each span; the response is computed between them"},
+  {"screen_samples", number, "", "20", {8.0, 1000.0}, "", 0, "samples per period of the highest mode in a passage; peaks between samples are searched for exactly"},
+  {"screen_audit", integer, "", "0", {0, 1e6}, "", 0, "number of pairs, drawn at random, that are checked by passages at all speeds after the screen"},
+  {"screen_resume", flag, "", "false", any, "", 0, "uses the finished bridges of the same screen in the existing results file"},
+  {"screen_pair", texts, "", "", any, "", 0, "a bridge and a formation: instead of the screen, prints the scene of their passages; with an options file of the train as third entry, prints that of its vehicles on a rough track at the permitted speed"},
+
   {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},
   {"output_interval", number, "s", "(from the step)", positive, "", 0, "time between stored samples"},
   {"output_probes", numbers, "m", "(midspan of the first 200 spans)", not_negative, "", 0, "stations on the beam at which the response is stored"},

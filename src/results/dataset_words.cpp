@@ -110,6 +110,18 @@ constexpr Row rows[] = {
     {"quantities/peaks", "quantity_of_peaks column", "quantity and unit"},
     {"quantities/limits", "quantity_of_limits column", "quantity and unit"},
     {"verdicts/*", "criterion column", ""},
+    {"screen/speed", "screen/speed", "speed"},
+    {"screen/bridge_*", "bridge", "bridge: *"},
+    {"screen/formation_*", "formation", "formation: *"},
+    {"screen/row_digest", "bridge", "digest of a finished row"},
+    {"screen/governing_formation", "bridge", "number of the governing formation of the bridge, from 0"},
+    {"screen/governing_bridge", "formation", "number of the governing bridge of the formation, from 0"},
+    {"screen/ratio", "bridge formation", "largest response over its limit"},
+    {"screen/bound", "bridge formation", "largest bound of a response over its limit"},
+    {"screen/permitted_speed", "bridge formation", "greatest speed up to which all limits are kept"},
+    {"screen/governing_speed", "bridge formation", "speed of the largest response over its limit"},
+    {"screen/exceeding_speeds", "bridge formation", "number of speeds at which a limit is exceeded"},
+    {"screen/decided_by", "bridge formation", "how the pair was decided"},
     {"rail_forces/x", "rail_forces/x", "middle of the rail element"},
     {"rail_forces/sleeper_x", "rail_forces/sleeper_x", "station of the sleeper"},
     {"rail_forces/bearing_x", "rail_forces/bearing_x", "station of the longitudinal support"},
@@ -195,7 +207,7 @@ DatasetWords words_of(std::string_view path, std::size_t rank) {
 
 std::string name_of_dimension(std::string_view path) {
   path.remove_prefix(1);
-  for (const std::string_view group : {"probes/", "sweep/", "study/", "fit/"})
+  for (const std::string_view group : {"probes/", "sweep/", "study/", "fit/", "screen/"})
     if (path.starts_with(group)) path.remove_prefix(group.size());
   return flat(path);
 }

@@ -88,6 +88,10 @@ class File {
   /// A complete dataset that is never rewritten; a small one is stored in its object header.
   void fixed_dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
                      const std::string& unit);
+  /// A dataset of unknown numbers (NaN), for write_row().
+  void empty_rows(const std::string& name, const std::vector<hsize_t>& shape, const std::string& unit);
+  /// Overwrites one row along the first dimension, without a change of metadata.
+  void write_row(const std::string& name, hsize_t row, const std::vector<double>& values);
   /// Overwrites the values of an existing dataset, without a change of metadata.
   void rewrite(const std::string& name, const std::vector<double>& values);
   /// Unchanged text in two columns, [n,2].

@@ -187,6 +187,10 @@ class Recorder {
   void names(const std::string& dimension, const std::vector<std::string>& names);
   /// Overwrites existing datasets in the given order; after a kill each value is either the old or the new one.
   void rewrite(const std::vector<Dataset>& sets);
+  /// Datasets of unknown numbers (NaN) for put_row(); their values are not used.
+  void empty_rows(const std::vector<Dataset>& sets);
+  /// Overwrites a row along the first dimension of each of these datasets, in the given order.
+  void put_row(std::size_t row, const std::vector<std::pair<std::string, std::vector<double>>>& values);
   /// Adds an attribute to an existing group.
   void attributes(const std::string& group, const std::vector<Attribute>& list);
   /// Writes all buffered data and the summary as attributes, and closes the file. FileError if the disk fails.

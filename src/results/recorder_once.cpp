@@ -126,6 +126,22 @@ void Recorder::rewrite(const std::vector<Dataset>& sets) {
   });
 }
 
+void Recorder::empty_rows(const std::vector<Dataset>& sets) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const Dataset& set : sets) impl_->file.empty_rows(set.name, {set.shape.begin(), set.shape.end()}, set.unit);
+    impl_->file.flush();
+  });
+}
+
+void Recorder::put_row(std::size_t row, const std::vector<std::pair<std::string, std::vector<double>>>& values) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const auto& [name, numbers] : values) impl_->file.write_row(name, row, numbers);
+    impl_->file.flush();
+  });
+}
+
 void Recorder::attributes(const std::string& group, const std::vector<Attribute>& list) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {

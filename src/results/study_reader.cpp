@@ -96,13 +96,19 @@ void serialize_map(base::Bytes& bytes, std::map<std::string, Value>& map) {
   map = {rows.begin(), rows.end()};
 }
 
-StoredStudy study_of(const std::string& path) {
+StoredStudy group_of(const std::string& path, const std::string& group) {
   StoredStudy study;
   const StudyReader file(path);
-  if (!file.has("/study") || !file.has("/options")) return study;
+  if (!file.has(group.c_str()) || !file.has("/options")) return study;
   study.options = file.pairs("/options");
-  for (const std::string& name : file.datasets_of("/study")) study.datasets[name] = file.numbers("/study/" + name);
-  file.attributes_of("/study", study);
+  for (const std::string& name : file.datasets_of(group.c_str()))
+    study.datasets[name] = file.numbers(group + "/" + name);
+  file.attributes_of(group.c_str(), study);
+  return study;
+}
+
+StoredStudy study_of(const std::string& path) {
+  StoredStudy study = group_of(path, "/study");
   const auto digests = study.datasets.find(row_digest);  // older versions have none
   const auto finished = study.datasets.find("finished");
   if (digests == study.datasets.end() || finished == study.datasets.end()) return study;
@@ -139,11 +145,21 @@ std::vector<double> row_digests(const std::map<std::string, std::vector<double>>
   return digests;
 }
 
-StoredStudy read_study(const std::string& path) {
+namespace {
+
+bool is_empty(const std::string& path) {
   std::error_code ignored;
-  if (path.empty() || !std::filesystem::exists(path, ignored) || std::filesystem::file_size(path, ignored) == 0)
-    return {};
-  return isolated_read(path, [&] { return study_of(path); });
+  return path.empty() || !std::filesystem::exists(path, ignored) || std::filesystem::file_size(path, ignored) == 0;
+}
+
+}  // namespace
+
+StoredStudy read_study(const std::string& path) {
+  return is_empty(path) ? StoredStudy() : isolated_read(path, [&] { return study_of(path); });
+}
+
+StoredStudy read_group(const std::string& path, const std::string& group) {
+  return is_empty(path) ? StoredStudy() : isolated_read(path, [&] { return group_of(path, group); });
 }
 
 }  // namespace traverse::results

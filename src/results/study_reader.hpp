@@ -1,4 +1,4 @@
-// Reads the stored runs of an interrupted study from its results file.
+// Reads what an interrupted study or screen has stored in its results file.
 #pragma once
 
 #include <map>
@@ -28,5 +28,7 @@ inline constexpr const char* row_digest = "row_digest";  // the name of its data
 /// Reads the study of a file; empty if there is no file or the file has no study. FileError if it cannot be read, or if
 /// its rows differ from the rows that were written.
 StoredStudy read_study(const std::string& path);
+/// Options, datasets and attributes of another group, such as "/screen", in the same form.
+StoredStudy read_group(const std::string& path, const std::string& group);
 
 }  // namespace traverse::results

@@ -75,6 +75,12 @@ void read_limits(const Options& o, Scene& scene) {
                   [&](const auto& limit) { return options::limit_quantity(limit.quantity)->finder != finder; });
     return;
   }
+  if (scene.analysis == Analysis::screen) {
+    std::erase_if(scene.limits, [](const auto& limit) {
+      return limit.quantity != "deck_acceleration" && limit.quantity != "deflection_over_span";
+    });
+    return;
+  }
   scene.limits.clear();
   scene.notes.emplace_back("limits has no effect with this scene_analysis");
 }
@@ -114,7 +120,7 @@ void check_end(const Options& o, const Scene& scene) {
 }
 
 void check_scene(const Options& o, Scene& scene) {
-  if (!scene.beam && scene.vehicles.empty()) {
+  if (!scene.beam && scene.vehicles.empty() && !scene.screen) {
     throw InputError("nothing to simulate: neither a beam (beam_spans) nor vehicles (train_vehicles) are given");
   }
   if (scene.analysis == Analysis::modes && !scene.beam) o.refuse("scene_analysis", "modes need a beam (beam_spans)");
@@ -202,6 +208,7 @@ Scene read_scene(Options o) {
   read_damping_bound(o, scene);
   read_norm(o, scene);
   read_rail_loads(o, scene);
+  read_screen(o, scene);
   check_scene(o, scene);
   if (const options::Entry* study = o.first_with_prefix("study_"))
     scene.notes.push_back(study->name + " has no effect: study_vary names no option to vary");

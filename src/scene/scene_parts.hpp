@@ -93,8 +93,10 @@ void read_load(const options::Options& options, Scene& scene);
 /// Reads the options of a sweep, before train and load, because it may set their speed.
 void read_sweep(const options::Options& options, Scene& scene);
 inline constexpr std::size_t fewest_to_refine = 3;  // least number of speeds between which others can be added
-/// The speeds of sweep_speed, which must be given.
-std::vector<double> read_speeds(const options::Options& options);
+/// The speeds of a given option: from, from + step, ...; InputError if they are none or too many.
+std::vector<double> read_speeds(const options::Options& options, std::string_view name);
+/// The speeds from, from + step, ...; the last one is `to` if it is a multiple of the step within the tolerance.
+std::vector<double> speeds_between(double from, double to, double step);
 /// Whether the options describe a study.
 bool describes_study(const options::Options& options);
 /// The scene of a study's first run, with the study.
@@ -146,6 +148,8 @@ void read_damping_bound(const options::Options& options, Scene& scene);
 void read_norm(const options::Options& options, Scene& scene);
 /// Reads the loads of UIC 774-3, after the track.
 void read_rail_loads(const options::Options& options, Scene& scene);
+/// Reads the options of a screen, after the limits.
+void read_screen(const options::Options& options, Scene& scene);
 /// Refuses input that is possible but certainly not intended, and adds notes on unusual input. Called last.
 void check_plausibility(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
 

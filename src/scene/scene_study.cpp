@@ -16,18 +16,21 @@ constexpr double speed_tolerance = 1e-3;  // relative to a step: speeds in m/s a
 
 }  // namespace
 
-/// The speeds from, from + step, ...; the last one is `to` if it is a multiple of the step within the tolerance.
-std::vector<double> read_speeds(const Options& o) {
-  const std::vector<double> range = o.numbers("sweep_speed");
+std::vector<double> read_speeds(const Options& o, std::string_view name) {
+  const std::vector<double> range = o.numbers(name);
   const double from = range[0], to = range[1], step = range[2];
-  if (to < from) o.refuse("sweep_speed", "from is above to; allowed: from, to, step");
+  if (to < from) o.refuse(name, "from is above to; allowed: from, to, step");
   const double steps = std::floor((to - from) / step + speed_tolerance);
   if (to > from && steps < 1.0)
-    o.refuse("sweep_speed", fmt::format("the step of {:g} m/s is larger than the range from {:g} to {:g} m/s; allowed: "
-                                        "from, to, step",
-                                        step, from, to));
-  if (steps > most_speeds)
-    o.refuse("sweep_speed", fmt::format("{:g} speeds; allowed: at most {:g}", steps, most_speeds));
+    o.refuse(name, fmt::format("the step of {:g} m/s is larger than the range from {:g} to {:g} m/s; allowed: "
+                               "from, to, step",
+                               step, from, to));
+  if (steps > most_speeds) o.refuse(name, fmt::format("{:g} speeds; allowed: at most {:g}", steps, most_speeds));
+  return speeds_between(from, to, step);
+}
+
+std::vector<double> speeds_between(double from, double to, double step) {
+  const double steps = std::floor((to - from) / step + speed_tolerance);
   std::vector<double> speeds;
   for (int i = 0; i <= static_cast<int>(steps); ++i) speeds.push_back(from + i * step);
   return speeds;
@@ -44,7 +47,7 @@ void read_sweep(const Options& o, Scene& scene) {
   scene.sweep.emplace();
   scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
   scene.sweep->instants = o.number("sweep_instants");
-  if (o.has("sweep_speed")) scene.sweep->speeds = read_speeds(o);
+  if (o.has("sweep_speed")) scene.sweep->speeds = read_speeds(o, "sweep_speed");
   if (o.has("sweep_refine")) {
     scene.sweep->refine = o.number("sweep_refine");
     if (scene.sweep->refine > 0.0 && scene.sweep->speeds.size() < fewest_to_refine)

@@ -85,7 +85,7 @@ std::vector<StudyDimension> swept_dimensions(const Options& o, const NamedVehicl
   }
   if (o.has("sweep_speed")) {
     const bool forces = forces_move(o);
-    StudyDimension speeds{{}, "m/s", false, "list", read_speeds(o), 0};
+    StudyDimension speeds{{}, "m/s", false, "list", read_speeds(o, "sweep_speed"), 0};
     if (!vehicles.train.empty()) speeds.options.emplace_back("train_speed");
     if (forces || speeds.options.empty()) speeds.options.emplace_back("load_speed");
     dimensions.push_back(std::move(speeds));

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <string_view>
 
+#include "results/earlier_copy.hpp"
 #include "results/sensitivity.hpp"
 #include "results/study_statistics.hpp"
 #include "results/sweep.hpp"
@@ -151,25 +151,6 @@ results::Recorder::Dataset digests_of(const results::StudyTable& table) {
           "1"};
 }
 
-/// A copy of the file of an interrupted study. It exists until the new file is complete on the disk.
-class Copy {
- public:
-  Copy(const results::Place& place, bool wanted) : original_(wanted ? place.path() : "") {
-    std::error_code failed;
-    if (original_.empty()) return;
-    std::filesystem::copy_file(original_, original_ + ".before", std::filesystem::copy_options::overwrite_existing,
-                               failed);
-    if (failed) throw FileError(fmt::format("cannot copy the results file {}: {}", original_, failed.message()));
-  }
-  void remove() const {
-    std::error_code ignored;
-    if (!original_.empty()) std::filesystem::remove(original_ + ".before", ignored);
-  }
-
- private:
-  std::string original_;
-};
-
 }  // namespace
 
 StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::RunModel& model,
@@ -177,7 +158,7 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
     : comm_(comm), table_(table), model_(model), recorder_([&] {
         int rank = 0;
         MPI_Comm_rank(comm, &rank);
-        const Copy copy(place, rank == 0 && table.finished_runs() > 0);
+        const results::EarlierCopy copy(place, rank == 0 && table.finished_runs() > 0);
         results::Recorder made(comm, std::move(place), layout_of(scene), attributes(comm, scene), scene.options);
         record_model(scene, notes, made);
         results::record_limits(made, table.limits());

@@ -158,6 +158,15 @@ class Scripts(InAFolder):
         self.assert_errors(rows, "acceleration against the list", 3e-2)  # the list has all stations, this run midspan
         self.assert_picture("hslm_sweep.png")
 
+    def test_screen(self):
+        self.run_smallest("screen")
+        found = {row["quantity"]: float(row["value"]) for row in self.table("screen.csv", ["quantity", "value"])}
+        self.assertEqual((found["exceedances missed"], found["verdicts different"], found["bounds below the value"]),
+                         (0, 0, 0))
+        self.assertGreater(found["pairs checked"], 0)
+        self.assertAlmostEqual(found["decided by the bound"] + found["decided by passages"], 1.0)
+        self.assertGreaterEqual(found["median of bound over value"], 1.0)
+
     def test_lanes(self):
         self.run_smallest("lanes")
         rows = self.table("lanes.csv", ["scene", "runs", "passages", "ms each", "error of deflection",

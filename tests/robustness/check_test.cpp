@@ -48,6 +48,7 @@ TEST_P(CheckedFile, IsShownAndNotRun) {
   for (const char* heading : {"analysis", "cost, estimated", "unusual input"})
     EXPECT_FALSE(section(outcome.out, heading).empty()) << heading << "\n" << outcome.out;
   EXPECT_TRUE(contains(section(outcome.out, "cost, estimated"), "memory")) << outcome.out;
+  if (contains(outcome.out, "bridges under")) return;  // a screen has no drawing
   EXPECT_TRUE(contains(outcome.out, "to scale")) << outcome.out;
   if (contains(outcome.out, "\nbridge\n")) {
     EXPECT_TRUE(contains(section(outcome.out, "bridge"), "first frequencies"));

@@ -55,6 +55,7 @@ TEST(VerdictLimits, BadOnesAreRefusedWithTheirPlace) {
            {"- {clause: A, quantity: contact_loss, value: fast}\n", "value 'fast'; allowed: a number above 0"},
            {"- {clause: A, quantity: contact_loss, value: -1}\n", "value '-1'"},
            {"- {clause: A, quantity: contact_loss, value: 1/0}\n", "value '1/0'"},
+           {"- {clause: A, quantity: contact_loss, value: 1, factor: 0}\n", "factor '0'"},
            {"- {clause: A, quantity: contact_loss, value: [1, 2]}\n", "value: expected one value"},
            {"- {clause: A, quantity: contact_loss, value: 1, unit: s}\n", "'unit' is not a key of a limit"},
            {"- clause: A\n  clause: B\n", "my.yml:2: limits: clause is given twice"},

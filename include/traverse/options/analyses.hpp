@@ -5,7 +5,7 @@
 
 namespace traverse::options {
 
-enum class Analysis { transient, modes, static_response, static_envelope, rail_forces };
+enum class Analysis { transient, modes, static_response, static_envelope, rail_forces, screen };
 
 struct AnalysisRow {
   Analysis analysis;
@@ -21,6 +21,7 @@ inline constexpr AnalysisRow analyses[] = {
     {Analysis::static_envelope, "envelope", "largest static effects over all positions of the loads"},
     {Analysis::rail_forces, "rail",
      "track-bridge interaction under temperature, braking and the weight of a train, UIC 774-3"},
+    {Analysis::screen, "screen", "verdicts on every formation of a fleet over every bridge of a stock"},
 };
 
 /// The analysis of a name in the list, the default for any other name.

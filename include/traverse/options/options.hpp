@@ -68,6 +68,8 @@ class Options {
   bool is_number(std::string_view name) const;
   /// The path of the file that an option names, relative to the file that names it or to the working directory.
   std::string path(std::string_view name) const;
+  /// The same for an option that may name a folder, too.
+  std::string path_or_folder(std::string_view name) const;
 
   /// Throws InputError "NAME = value (where): why", or "NAME: why" if the option is not given.
   [[noreturn]] void refuse(std::string_view name, const std::string& why) const;

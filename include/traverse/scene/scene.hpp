@@ -16,6 +16,7 @@
 #include "traverse/options/norm_rules.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/options/rail_loads.hpp"
+#include "traverse/options/screen.hpp"
 #include "traverse/options/study.hpp"
 #include "traverse/options/verdict_limit.hpp"
 #include "traverse/scene/numerical_model.hpp"
@@ -130,6 +131,7 @@ struct Scene {
   std::vector<options::VerdictLimit> limits;                 // limits of results, checked for each run
   std::optional<options::NormRules> norm;                    // for static effects and the verdict of EN 1991-2
   std::optional<options::RailLoads> rail_loads;              // loads for scene_analysis rail
+  std::optional<options::Screen> screen;                     // bridges and trains of scene_analysis screen
   bool quiet = false;                                        // -output_quiet: no progress display
   bool verbose = false;                                      // -verbose: details of the model are printed
   bool check = false;                                        // -check: the scene is reported, without a run

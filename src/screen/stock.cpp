@@ -1,0 +1,129 @@
+// Reads and checks each bridge of a stock.
+#include "screen/stock.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <sstream>
+#include <string_view>
+#include <unordered_set>
+
+#include "norm/en1991.hpp"
+#include "options/data_file.hpp"
+#include "screen/beam_modes.hpp"
+#include "screen/header_table.hpp"
+#include "traverse/base/error.hpp"
+#include "traverse/options/norm_rules.hpp"
+
+namespace traverse::screen {
+namespace {
+
+constexpr std::size_t most_spans = 20, most_bridges = 100'000;
+constexpr double shortest_span = 1.0, longest_span = 1000.0;          // m
+constexpr double largest_ratio = 10.0;                                // of two spans
+constexpr double lowest_frequency = 0.05, highest_frequency = 200.0;  // Hz
+constexpr double least_damping = 1e-4, greatest_damping = 0.2;
+
+std::vector<double> spans_of(const HeaderTable& table, std::size_t row) {
+  std::vector<double> spans;
+  std::istringstream words(table.text(row, "spans"));
+  for (std::string word; words >> word;) {
+    double span = 0.0;
+    if (!options::parse_number(word, span) || !(span >= shortest_span && span <= longest_span))
+      table.refuse(row, fmt::format("spans: '{}'; allowed: lengths from {:g} to {:g} m, separated by blanks", word,
+                                    shortest_span, longest_span));
+    spans.push_back(span);
+  }
+  if (spans.empty() || spans.size() > most_spans)
+    table.refuse(row, fmt::format("spans: {} of them; allowed: 1 to {}", spans.size(), most_spans));
+  const auto [least, greatest] = std::minmax_element(spans.begin(), spans.end());
+  if (*greatest > largest_ratio * *least)
+    table.refuse(row, fmt::format("spans: the longest is more than {:g} times the shortest", largest_ratio));
+  return spans;
+}
+
+/// EI in N m2, given or from the first frequency.
+double stiffness_of(const HeaderTable& table, std::size_t row, const Bridge& bridge) {
+  const double beta = beam_modes(bridge.spans, 1).front().beta;
+  const double of_frequency = bridge.mass * std::pow(2.0 * std::numbers::pi, 2) / std::pow(beta, 4);
+  const double EI = table.has("f1") ? of_frequency * std::pow(table.positive(row, "f1"), 2) : table.positive(row, "EI");
+  const double frequency = std::sqrt(EI / of_frequency);
+  if (!(frequency >= lowest_frequency && frequency <= highest_frequency))
+    table.refuse(row, fmt::format("a first frequency of {:.4g} Hz; allowed: {:g} to {:g} Hz", frequency,
+                                  lowest_frequency, highest_frequency));
+  return EI;
+}
+
+double damping_of(const HeaderTable& table, std::size_t row, double longest) {
+  if (table.has("damping")) {
+    const double ratio = table.positive(row, "damping");
+    if (!(ratio >= least_damping && ratio <= greatest_damping))
+      table.refuse(row, fmt::format("damping: {:g}; allowed: a ratio from {:g} to {:g}", ratio, least_damping,
+                                    greatest_damping));
+    return ratio;
+  }
+  const std::string name = table.text(row, "type");
+  const auto* found = std::find_if(std::begin(options::damping_bounds), std::end(options::damping_bounds),
+                                   [&](const options::DampingBound& bound) { return bound.name == name; });
+  if (found == std::end(options::damping_bounds))
+    table.refuse(row, fmt::format("type: '{}'; allowed: steel, composite, prestressed, reinforced, filler_beam", name));
+  return norm::least_damping(static_cast<options::BridgeMaterial>(found - std::begin(options::damping_bounds)),
+                             longest);
+}
+
+/// The factor that makes a response a fraction of the strictest limit of its quantity.
+double factor_of(const HeaderTable& table, std::size_t row, const char* quantity,
+                 const std::vector<options::VerdictLimit>& limits) {
+  double factor = 0.0;
+  for (const options::VerdictLimit& limit : limits) {
+    if (limit.quantity != quantity) continue;
+    const double own = table.has(quantity) ? table.positive(row, quantity) : limit.value;
+    factor = std::max(factor, limit.factor / own);
+  }
+  return factor;
+}
+
+void check_columns(const HeaderTable& table, const std::vector<options::VerdictLimit>& limits) {
+  for (const char* name : {"name", "spans", "mass"})
+    if (!table.has(name)) table.refuse_columns(fmt::format("the column {} is missing", name));
+  for (const auto& [one, other] : {std::pair{"EI", "f1"}, std::pair{"damping", "type"}})
+    if (table.has(one) == table.has(other))
+      table.refuse_columns(fmt::format("allowed: one of the columns {} and {}", one, other));
+  for (const char* quantity : {"deck_acceleration", "deflection_over_span"})
+    if (table.has(quantity) && std::none_of(limits.begin(), limits.end(), [&](const options::VerdictLimit& limit) {
+          return limit.quantity == quantity;
+        }))
+      table.refuse_columns(fmt::format("the column {} has no effect: the limits do not contain it", quantity));
+}
+
+}  // namespace
+
+std::vector<Bridge> read_stock(const std::string& path, const std::vector<options::VerdictLimit>& limits) {
+  const HeaderTable table(path, {"name", "spans", "mass", "EI", "f1", "damping", "type", "speed", "deck_acceleration",
+                                 "deflection_over_span"});
+  check_columns(table, limits);
+  if (table.rows() > most_bridges) table.refuse(most_bridges, fmt::format("allowed: {} bridges", most_bridges));
+  std::vector<Bridge> stock;
+  std::unordered_set<std::string> names;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    Bridge bridge;
+    bridge.name = table.text(row, "name");
+    if (bridge.name.empty() || !names.insert(bridge.name).second)
+      table.refuse(row, fmt::format("name: '{}'; allowed: a different name for each bridge", bridge.name));
+    bridge.spans = spans_of(table, row);
+    bridge.mass = table.positive(row, "mass");
+    bridge.EI = stiffness_of(table, row, bridge);
+    bridge.damping = damping_of(table, row, *std::max_element(bridge.spans.begin(), bridge.spans.end()));
+    bridge.speed = table.has("speed") ? table.speed(row, "speed") : std::numeric_limits<double>::infinity();
+    bridge.of_acceleration = factor_of(table, row, "deck_acceleration", limits);
+    bridge.of_deflection = factor_of(table, row, "deflection_over_span", limits);
+    stock.push_back(std::move(bridge));
+  }
+  return stock;
+}
+
+}  // namespace traverse::screen

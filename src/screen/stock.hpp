@@ -1,0 +1,34 @@
+// Bridges of a stock: continuous beams with uniform stiffness and mass on simple supports.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traverse/options/verdict_limit.hpp"
+
+namespace traverse::screen {
+
+struct Bridge {
+  std::string name;
+  std::vector<double> spans;  // m
+  double EI = 0.0;            // N m2
+  double mass = 0.0;          // kg/m
+  double damping = 0.0;       // ratio of each mode
+  double speed = 0.0;         // m/s, of the line; infinite: not limited
+  // Factors that make responses fractions of their limits, 1/(m/s2) and 1; 0: no limit. The second one is of the
+  // deflection over the span.
+  double of_acceleration = 0.0, of_deflection = 0.0;
+};
+
+/// The bridges of a table. A row is a bridge. Columns:
+///   name
+///   spans              m, separated by blanks: 20 or 20 25 20
+///   mass               kg/m, with the track
+///   EI or f1           N m2, or the first frequency in Hz
+///   damping or type    ratio, or steel, composite, prestressed, reinforced or filler_beam: EN 1991-2, table 6.6
+///   speed              m/s or km/h of the line; not required
+///   deck_acceleration  m/s2, deflection_over_span: instead of the values of `limits`; not required
+/// InputError with file and line.
+std::vector<Bridge> read_stock(const std::string& path, const std::vector<options::VerdictLimit>& limits);
+
+}  // namespace traverse::screen

@@ -1,0 +1,240 @@
+"""scene_analysis screen from outside: passages against the program's own sweep, an interrupted screen that goes on,
+equal results on any number of ranks, wrong tables, the Dataset of Python, the picture, and fatigue under traffic."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
+TRAVERSE = os.environ["TRAVERSE_BINARY"]
+sys.path[:0] = [str(SOURCE / "python"), str(SOURCE / "scripts")]
+import axle_tables  # noqa: E402
+import traverse  # noqa: E402
+
+STOCK = """# two bridges
+name, spans, mass, EI, damping, speed
+short, 15, 12000, 9.0e9, 0.01, 250 km/h
+two spans, 20 24, 14000, 2.4e10, 0.015, 200 km/h
+"""
+FLEET = """name; speed; spacing; load_t
+coaches; 250 km/h; 0; 15
+coaches; 250 km/h; 2.5; 15
+coaches; 250 km/h; 16.0; 15
+coaches; 250 km/h; 2.5; 15
+coaches; 250 km/h; 5.4; 15
+coaches; 250 km/h; 2.5; 15
+coaches; 250 km/h; 16.0; 15
+coaches; 250 km/h; 2.5; 15
+wagon; 100 km/h; 0; 22
+wagon; 100 km/h; 1.8; 22
+wagon; 100 km/h; 7.0; 22
+wagon; 100 km/h; 1.8; 22
+"""
+LIMITS = """- {clause: "A", quantity: deck_acceleration, value: 0.5}
+- {clause: "B", quantity: deflection_over_span, value: 1/3000}
+- {clause: "C", quantity: wheel_unloading, value: 0.6}
+"""
+MATRICES = ("ratio", "bound", "permitted_speed", "governing_speed", "exceeding_speeds", "decided_by")
+
+
+class Screen(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.write(stock=STOCK, fleet=FLEET)
+        (self.folder / "limits.yml").write_text(LIMITS)
+
+    def write(self, **tables):
+        for name, text in tables.items():
+            (self.folder / f"{name}.csv").write_text(text)
+
+    def start(self, *words, ranks=1):
+        """The finished process of a screen."""
+        launch = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+        environment = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"} | os.environ
+        command = [*launch, TRAVERSE, "-skip_petscrc", "-scene_analysis", "screen", "-screen_stock", "stock.csv",
+                   "-screen_fleet", "fleet.csv", "-limits", "limits.yml", "-screen_speeds", "40 km/h,250 km/h,5 km/h",
+                   "-output_file", "screen.h5", *words]
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, env=environment)
+
+    def screened(self, *words, ranks=1):
+        done = self.start(*words, ranks=ranks)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with h5py.File(self.folder / "screen.h5") as file:
+            return {name: file[f"screen/{name}"][()] for name in MATRICES} | {"text": done.stdout}
+
+    def assert_equal(self, one, other):
+        for name in MATRICES:
+            np.testing.assert_array_equal(one[name], other[name], err_msg=name)
+
+    def refused(self, expected, **tables):
+        self.write(**tables)
+        done = self.start()
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        self.assertIn(expected, done.stderr)
+        self.write(stock=STOCK, fleet=FLEET)
+
+    def test_passages_equal_the_programs_own_sweep(self):
+        limits = "- {clause: A, quantity: deck_acceleration, value: 0.01}\n"  # every pair is decided by passages
+        (self.folder / "limits.yml").write_text(limits)
+        found = self.screened()
+        self.assertTrue((found["decided_by"] == 2).all())
+        for b, bridge in enumerate(("short", "two spans")):
+            for f, formation in enumerate(("coaches", "wagon")):
+                with self.subTest(bridge=bridge, formation=formation):
+                    scene = self.start("-screen_pair", f"{bridge},{formation}")
+                    self.assertEqual(scene.returncode, 0, scene.stderr)
+                    (self.folder / "pair.yml").write_text(scene.stdout)
+                    sweep = traverse.run(self.folder / "pair.yml", beam_elements_per_span=40, sweep_instants=100)
+                    peaks = sweep["peak_acceleration"].max([d for d in sweep["peak_acceleration"].dims if d != "speed"])
+                    self.assertLess(abs(float(peaks.max()) / (0.01 * found["ratio"][b, f]) - 1.0), 2e-5)
+                    at = float(peaks.idxmax("speed"))
+                    self.assertAlmostEqual(at, found["governing_speed"][b, f], places=9)
+
+    def test_an_interrupted_screen_goes_on(self):
+        whole = self.screened()
+        with h5py.File(self.folder / "screen.h5", "r+") as file:
+            for name in MATRICES:
+                file[f"screen/{name}"][1] = np.nan
+            file["screen/row_digest"][1] = np.nan
+        again = self.screened("-screen_resume", "true")
+        self.assert_equal(whole, again)
+        with h5py.File(self.folder / "screen.h5", "r+") as file:
+            file["screen/ratio"][0, 0] = 7.0  # a damaged row is computed again
+        self.assert_equal(whole, self.screened("-screen_resume", "true"))
+        self.assertFalse((self.folder / "screen.h5.before").exists())
+        done = self.start("-screen_resume", "true", "-screen_modes", "2")
+        self.assertIn("contains another screen", done.stderr)
+        self.assertNotEqual(done.returncode, 0)
+
+    def test_a_results_file_is_run_again_without_its_tables(self):
+        (self.folder / "trains").mkdir()
+        for name in ("coaches", "wagon"):
+            rows = [line for line in FLEET.splitlines() if line.startswith((name, "name"))]
+            (self.folder / "trains" / f"{name}.csv").write_text("\n".join(rows) + "\n")
+        whole = self.screened("-screen_fleet", "trains")
+        self.assert_equal(whole, self.screened())
+        self.screened("-screen_fleet", "trains")
+        for table in ("stock.csv", "fleet.csv", "limits.yml", "trains/coaches.csv", "trains/wagon.csv"):
+            (self.folder / table).unlink()
+        done = subprocess.run([TRAVERSE, "screen.h5"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with h5py.File(self.folder / "screen_again.h5") as file:
+            self.assert_equal(whole, {name: file[f"screen/{name}"][()] for name in MATRICES})
+
+    def test_ranks_change_nothing(self):
+        self.assert_equal(self.screened(), self.screened(ranks=2))
+
+    def test_verdicts_agree_with_permitted_speeds(self):
+        found = self.screened("-screen_audit", "20")
+        self.assertIn("0 exceedances missed, 0 verdicts different, 0 bounds below", found["text"])
+        exceeded = found["exceeding_speeds"] > 0
+        self.assertTrue(exceeded.any() and not exceeded.all())
+        np.testing.assert_array_equal(exceeded, found["ratio"] > 1.0)
+        self.assertTrue((found["ratio"] <= found["bound"]).all())
+        with h5py.File(self.folder / "screen.h5") as file:
+            np.testing.assert_array_equal(file["screen/bridge_ratio"][()], found["ratio"].max(axis=1))
+            governing = file["screen/governing_bridge"][()].astype(int)
+            np.testing.assert_array_equal(governing, found["ratio"].argmax(axis=0))
+            self.assertEqual(file["summary"].attrs["pairs_restricted"], exceeded.sum())
+
+    def test_wrong_tables_are_refused_with_file_and_line(self):
+        self.refused("stock.csv:1: there is no column 'span'", stock="name, span\na, 3\n")
+        self.refused("stock.csv:1: allowed: one of the columns EI and f1", stock="name, spans, mass\na, 10, 1e4\n")
+        self.refused("stock.csv:3: spans: '-24'", stock=STOCK.replace("short, 15", "short, -24"))
+        self.refused("stock.csv:4: name: 'short'; allowed: a different name", stock=STOCK.replace("two spans", "short"))
+        self.refused("stock.csv:3: damping: 0.5", stock=STOCK.replace("0.01,", "0.5,"))
+        self.refused("stock.csv:4: 5 cells, expected 6", stock=STOCK.replace(", 200 km/h", ""))
+        self.refused("fleet.csv:2: load_t: 'x' is not a possible number", fleet=FLEET.replace("0; 15", "0; x", 1))
+        self.refused("fleet.csv:5: speed: differs", fleet=FLEET.replace("250 km/h; 2.5; 15\ncoaches; 250 km/h; 5.4",
+                                                                      "90 km/h; 2.5; 15\ncoaches; 250 km/h; 5.4"))
+        self.refused("the formation coaches is given twice", fleet=FLEET + FLEET.split("\n")[1] + "\n")
+        self.refused("fleet.csv:3: spacing: -2.5", fleet=FLEET.replace("2.5; 15", "-2.5; 15", 1))
+        (self.folder / "limits.yml").write_text('- {clause: "C", quantity: wheel_unloading, value: 0.6}\n')
+        self.refused("a screen computes deck_acceleration and deflection_over_span")
+
+    def test_python_returns_a_dataset(self):
+        results = traverse.screen("stock.csv", "fleet.csv", "limits.yml", ("40 km/h", "250 km/h", "5 km/h"),
+                                  folder=self.folder)
+        self.assertEqual(dict(results.sizes) | {"bridge": 2, "formation": 2}, dict(results.sizes))
+        found = self.screened()
+        ratio = results["ratio"].sel(bridge="two spans", formation="wagon")
+        self.assertEqual(float(ratio), found["ratio"][1, 1])
+        self.assertEqual(results["permitted_speed"].attrs["units"], "m/s")
+        with self.assertRaisesRegex(traverse.Error, "screen_stock"):
+            traverse.screen("none.csv", "fleet.csv", "limits.yml", folder=self.folder)
+
+    def test_the_picture_is_a_heat_map(self):
+        self.screened()
+        done = subprocess.run([sys.executable, "-B", SOURCE / "scripts/picture.py", "screen.h5", "screen.png",
+                               "--formats", "png,csv"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.folder / "screen.png").read_bytes()[:4], b"\x89PNG")
+        self.assertIn("two spans", (self.folder / "screen.csv").read_text().splitlines()[0])
+
+
+class Traffic(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "bridge.yml").write_text(
+            "beam: {spans: [15.0], EI: 9.0e9, mass: 1.2e4}\nmodel: {modes: 3, damping_ratios: 0.01}\n"
+            "output: {interval: 0.002}\nts: {dt: 0.002}\n")
+        (self.folder / "fleet.csv").write_text(FLEET)
+
+    def traffic(self, *words):
+        return subprocess.run([sys.executable, "-B", SOURCE / "scripts/traffic.py", "bridge.yml", *words, "--of",
+                               "/probes/moment[0]", "--factor", "1/0.01", "--line", "slope:3,71e6,2e6", "--csv",
+                               "traffic_out.csv"], cwd=self.folder, capture_output=True, text=True)
+
+    def damages(self):
+        lines = (self.folder / "traffic_out.csv").read_text().splitlines()[1:]
+        return {line.split(",")[1] + "@" + line.split(",")[2]: float(line.split(",")[4]) for line in lines}
+
+    def test_a_mix_sums_the_damage_of_its_passages(self):
+        (self.folder / "mix.csv").write_text("name, count, speed\ncoaches, 40, 200 km/h\nwagon, 10, 90 km/h\n")
+        done = self.traffic("--mix", "mix.csv", "--fleet", "fleet.csv")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("2 different passages, 50 a day", done.stdout)
+        once = self.damages()
+        (self.folder / "mix.csv").write_text("name, count, speed\ncoaches, 20, 200 km/h\ncoaches, 60, 200 km/h\n"
+                                             "wagon, 10, 90 km/h\n")
+        self.assertEqual(self.traffic("--mix", "mix.csv", "--fleet", "fleet.csv").returncode, 0)
+        twice = self.damages()
+        for name, factor in zip(sorted(once), (2.0, 1.0)):
+            self.assertAlmostEqual(twice[name] / once[name], factor, places=12)
+
+    def test_a_weighed_record_equals_the_mix_of_the_same_axles(self):
+        (self.folder / "mix.csv").write_text("name, count, speed\nwagon, 0.5, 25\n")
+        self.assertEqual(self.traffic("--mix", "mix.csv", "--fleet", "fleet.csv").returncode, 0)
+        (of_mix,) = self.damages().values()
+        (self.folder / "record.csv").write_text("time; speed; loads_t; spacings\n2024-05-31T14:02:10; 90 km/h; "
+                                                "22 22 22 22; 1.8 7.0 1.8\n")
+        self.assertEqual(self.traffic("--weighed", "record.csv", "--days", "2").returncode, 0)
+        (of_record,) = self.damages().values()
+        self.assertAlmostEqual(of_record / of_mix, 1.0, places=9)
+
+    def test_records_are_read_and_refused(self):
+        path = self.folder / "record.csv"
+        path.write_text("time, speed, loads_kN, spacings\n0, 25, 60 100, 3.5\n172800, 90 km/h, 40,\n")
+        first, second = axle_tables.weighed(path)
+        self.assertEqual((first.loads, first.distances, first.count), ((6e4, 1e5), (0.0, 3.5), 0.5))
+        self.assertEqual((second.loads, second.distances, second.speed), ((4e4,), (0.0,), 25.0))
+        for line, why in (("0, 25, 60 100, 3.5 2", "2 loads and 2 spacings"), ("x, 25, 60, ", "time 'x'"),
+                          ("0, -3, 60, ", "'-3'"), ("0, 25, 60", "3 cells, expected 4")):
+            path.write_text("time, speed, loads_kN, spacings\n" + line + "\n")
+            with self.assertRaisesRegex(ValueError, f"record.csv:2: .*{why}"):
+                axle_tables.weighed(path)
+
+
+if __name__ == "__main__":
+    unittest.main()
