@@ -14,6 +14,7 @@ file(GLOB pictures CONFIGURE_DEPENDS scripts/picture*.py)
 install(FILES ${pictures} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
         scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_tables.py
         scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/traffic.py
+        scripts/search_answers.py scripts/sensitivity_measures.py
         DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
