@@ -64,6 +64,7 @@ void StudyScenes::enumerate(const Study& study) {
   study_ = study;
   runs_.clear();
   first_run_.clear();
+  values_of_bases_.clear();
   first_of_bridge_.clear();
   const double speed = scene_.vehicles.empty() ? scene_.load.speed : scene_.train.speed;
   std::map<std::vector<double>, std::size_t> known,
@@ -85,7 +86,10 @@ void StudyScenes::enumerate(const Study& study) {
     if (!(one.own.speed > 0.0))
       throw InputError(fmt::format("study_vary: run {} has the speed {:g} m/s; allowed: above 0", run, one.own.speed));
     const auto [base, is_new] = known.try_emplace(of_base, first_run_.size());
-    if (is_new) first_run_.push_back(run);
+    if (is_new) {
+      first_run_.push_back(run);
+      values_of_bases_.push_back(base->first);
+    }
     one.base = base->second;
     const auto [bridge, new_bridge] = bridges.try_emplace(of_bridge, first_of_bridge_.size());
     if (new_bridge) first_of_bridge_.push_back(one.base);
@@ -137,15 +141,19 @@ bool StudyScenes::compatible(const Runner& a, const Runner& b) const {
 }
 
 StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::string>* notes) {
-  for (const Runner& known : runners_)
-    if (known.base == wanted) return known;
+  for (Runner& known : runners_)
+    if (known.values == values_of_bases_[wanted]) {
+      known.base = wanted;
+      return known;
+    }
   // All bases of a bridge use the model of its first base and can be computed in one batch with it.
   const std::size_t first = first_of_bridge_[runs_[first_run_[wanted]].bridge];
   const std::shared_ptr<CaseRunner> model = wanted == first ? nullptr : runner(first).runs;
   const Scene scene = chosen_ ? completed(base(wanted), *chosen_) : base(wanted);
   if (runners_.size() == max_runners) {
     const auto oldest = std::find_if(runners_.begin(), runners_.end(), [&](const Runner& one) {
-      return one.base != 0 && one.base != first;  // the cost of runs is estimated with the first base
+      // The cost of runs is estimated with the first base.
+      return one.values != values_of_bases_[0] && one.values != values_of_bases_[first];
     });
     separate_runs_ += oldest->runs->separate_runs();
     runners_.erase(oldest);
@@ -155,7 +163,7 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
   auto made = std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored,
                                            same_beam ? model->beam() : nullptr, notes != nullptr);
   const bool merged = model == nullptr || (same_beam && made->merge(*model));
-  return runners_.emplace_back(Runner{wanted, merged, std::move(made)});
+  return runners_.emplace_back(Runner{wanted, merged, std::move(made), values_of_bases_[wanted]});
 }
 
 long StudyScenes::separate_runs() const {

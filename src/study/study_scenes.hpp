@@ -46,6 +46,7 @@ class StudyScenes {
     std::size_t base = 0;
     bool merged = false;  // its runs are compatible with the runs of the other merged bases on its bridge
     std::shared_ptr<CaseRunner> runs;
+    std::vector<double> values;  // of its base
   };
   /// The last used runners are stored. With `notes`, which get the description of the model, its runs are checked.
   Runner runner(std::size_t base, std::vector<std::string>* notes = nullptr);
@@ -69,6 +70,8 @@ class StudyScenes {
   std::vector<std::uint64_t> seeds_;  // seeds of random tracks
   std::vector<StudyRun> runs_;
   std::vector<std::size_t> first_run_;  // the first run of each base
+  /// The values that define each base. The numbers of bases change when values are added.
+  std::vector<std::vector<double>> values_of_bases_;
   /// The first base, with which all others are compared, then those used last.
   std::deque<Runner> runners_;
   std::vector<std::size_t> first_of_bridge_;  // the first base of each bridge

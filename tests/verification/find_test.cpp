@@ -46,6 +46,23 @@ TEST(Find, TheStiffnessAtWhichADeflectionHasAValue) {
   EXPECT_LE(value[at] - value[at - 1], 1e-5 * value[at]);
 }
 
+// Values are added between others in each round, which changes the numbers of the scenes.
+TEST(Find, RunsAreThoseOfAStudyOverTheSameValues) {
+  const std::string scene = bridge + "load: {forces: 1.0e5*3, positions: [0, -3, -20]}\n";
+  const Values speeds = {{"study_vary_load_speed", "25,40"}};
+  Results found = run_yaml(scene, speeds + Values{{"find_option", "beam_EI"},
+                                                  {"find_between", "2e9,5e10"},
+                                                  {"find_quantity", "peak_acceleration"},
+                                                  {"find_equals", "0.5"},
+                                                  {"find_points", "3"}});
+  std::string values;
+  for (const double value : found("/find/value")) values += (values.empty() ? "" : ",") + text(value);
+  ASSERT_GT(found("/find/value").size(), 12U);  // more than scenes are kept
+  Results study = run_yaml(scene, Values{{"study_vary_beam_EI", values}} + speeds);
+  EXPECT_EQ(found("/study/beam_EI"), study("/study/beam_EI"));
+  EXPECT_EQ(found("/study/peak_acceleration"), study("/study/peak_acceleration"));
+}
+
 // Ten axles at 8 m: a resonance at v = f1 d, f1 = 3.927 Hz, lies within the speeds.
 TEST(Find, PermittedSpeedsOnBothSidesOfAResonance) {
   const std::string scene =
