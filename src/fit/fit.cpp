@@ -112,10 +112,6 @@ void align_clocks(ForwardModel& model, const options::Fit& fit, Residuals& resid
 }
 
 void describe(const options::Fit& fit, const ForwardModel& model, std::vector<std::string>& notes) {
-  std::string options;
-  for (const options::FitParameter& p : fit.parameters)
-    options += fmt::format("{}{} from {:g} to {:g}", options.empty() ? "" : ", ", p.option, p.low, p.high);
-  notes.push_back(fmt::format("fit of {}; the values above are those of its start", options));
   for (const options::MeasuredFrequency& f : fit.frequencies)
     notes.push_back(
         fmt::format("{}: frequency {}, {:g} Hz, standard deviation {:g} Hz", f.name, f.number, f.value, f.sd));

@@ -71,8 +71,8 @@ void Residuals::align(const std::vector<double>& response, double interval, doub
   for (std::size_t s = 0; s < fit_.series.size(); ++s) {
     const options::MeasuredSeries& series = fit_.series[s];
     if (!series.align) continue;
-    const double half =
-        0.5 * interval * static_cast<double>((response.size() - fit_.frequencies.size()) / fit_.series.size() - 1);
+    const std::size_t instants = (response.size() - fit_.frequencies.size()) / fit_.series.size();
+    const double half = 0.5 * interval * static_cast<double>(instants - 1);
     const double first = least_misfit_shift(s, response, series.time.front() - half, series.time.back() - half);
     unknowns_.push_back({Unknown::Kind::shift, series.name + "_shift", "s", first - range, first + range, first, s});
   }

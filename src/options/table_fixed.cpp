@@ -259,7 +259,7 @@ constexpr Row later_rows[] = {
   {"fit_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "seed of the starts after the first one"},
   {"tao_type", choice, "", "brgn", any, "brgn pounders", 0, "least-squares method of PETSc's TAO for fits; brgn: regularised Gauss-Newton; pounders: without derivatives"},
   {"tao_max_it", integer, "", "50", {0, 100000}, "", 0, "largest number of iterations of a minimisation"},
-  {"tao_gatol", number, "1", "(from the sensitivities)", not_negative, "", 0, "gradient of the misfit at which a minimisation ends"},
+  {"tao_gatol", number, "1", "1e-3", not_negative, "", 0, "gradient of the misfit at which a minimisation ends; brgn: in standard errors of the unknowns"},
   {"tao_grtol", number, "1", "1e-8", not_negative, "", 0, "the same, relative to the misfit"},
   {"tao_gttol", number, "1", "0", not_negative, "", 0, "the same, relative to the gradient at the start"},
   {"tao_monitor", flag, "", "false", any, "", 0, "prints each iteration"},

@@ -236,6 +236,13 @@ void check_fit(const Options& o, const Scene& scene) {
   }
 }
 
+std::string start_note(const Fit& fit) {
+  std::string text;
+  for (const FitParameter& p : fit.parameters)
+    text += fmt::format("{}{} from {:g} to {:g}", text.empty() ? "" : ", ", p.option, p.low, p.high);
+  return fmt::format("fit of {}; the values of the scene are those of its start", text);
+}
+
 /// Checks the stations of the series before they are the probes of the scene.
 void check_stations(const Options& o, const Fit& fit) {
   if (!o.has("beam_spans")) return;
@@ -278,6 +285,7 @@ Scene read_fit(const Options& given) {
   for (const FitParameter& parameter : fit.parameters) start.push_back(parameter.start);
   Scene scene = read_scene_of_fit(given, fit, start, fit.series.empty());
   scene.fit = fit;
+  scene.notes.insert(scene.notes.begin(), start_note(fit));
   scene.options = o.all();
   check_fit(o, scene);
   return scene;
