@@ -292,6 +292,8 @@ constexpr Row fit[] = {
   {"column", integer, "", "2", {2, 1000}, "", 0, "column of the measured values"},
   {"quantity", choice, "", "", any, "deflection velocity acceleration moment shear", 0, "measured quantity; deflection, velocity and acceleration upward, moment in sagging"},
   {"x", number, "m", "", not_negative, "", 0, "station of the measurement on the bridge"},
+  {"dataset", text, "", "", any, "", 0, "instead of quantity and x: a dataset of the results file of a run over time, such as vehicles/0/car/acceleration"},
+  {"component", integer, "", "1", {1, 100000}, "", 0, "with dataset: the number in each of its rows"},
   {"factor", number, "", "1", any, "", 0, "number by which the measured values are multiplied: 1e-3 from mm to m, negative for values that are positive downward"},
   {"from", number, "s", "(the first row)", any, "", 0, "time of the first row that is used, by the clock of the measurement"},
   {"to", number, "s", "(the last row)", any, "", 0, "time of the last row that is used"},
