@@ -21,13 +21,14 @@ def panels_of(results):
 def draw_series(ax, results, name):
     """The measured values, the computed ones, and below them the residuals."""
     group = results.file[f"fit/series/{name}"]
-    quantity = str(group.attrs["quantity"])
-    unit, factor = UNITS[quantity]
+    quantity = str(group.attrs["dataset"]).rsplit("/", 1)[-1]
+    own = (str(group["measured"].attrs["unit"]), 1.0)
+    unit, factor = UNITS[quantity] if "x" in group.attrs else own
     time, measured, computed = (group[key][()] for key in ("time", "measured", "computed"))
     smaller, more = legible(unit, [factor * measured])
     measured, computed = factor * more * measured, factor * more * computed
-    ax.set(title=f"{name}: {quantity} at {group.attrs['x']:.6g} m", ylabel=smaller, xlabel="time of the measurement (s)",
-           xlim=(time[0], time[-1]))
+    at = f"{quantity} at {group.attrs['x']:.6g} m" if "x" in group.attrs else str(group.attrs["dataset"]).strip("/")
+    ax.set(title=f"{name}: {at}", ylabel=smaller, xlabel="time of the measurement (s)", xlim=(time[0], time[-1]))
     draw_curve(ax, *thin(time, measured), "measured", color=GREY, lw=2.6, alpha=0.6)
     ends = [End(measured[-1], "measured", GREY)]
     if np.all(np.isfinite(computed)):

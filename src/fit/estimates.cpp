@@ -107,7 +107,7 @@ class Writer {
     found_.correlation = Eigen::MatrixXd::Constant(minimum_.u.size(), minimum_.u.size(), undefined);
     if (count == 0) return;
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(free_.jacobian.transpose() * free_.jacobian, Eigen::ComputeFullV);
-    const Eigen::VectorXd square = svd.singularValues();
+    const Eigen::VectorXd& square = svd.singularValues();
     const Eigen::MatrixXd& V = svd.matrixV();
     std::vector<char> open(static_cast<std::size_t>(count), 0);
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(count, count);

@@ -24,6 +24,7 @@ namespace {
 
 constexpr double shift_range = 0.1;  // of a shift about its start, relative to the duration of the run
 constexpr double settled = 0.01;     // relative change of estimated standard deviations
+constexpr double long_record = 5.0;  // duration of the records over that of the passage, from which a note warns
 constexpr int most_rounds = 3;       // of minimisations with newly estimated standard deviations
 
 using Clock = std::chrono::steady_clock;
@@ -48,9 +49,9 @@ Eigen::VectorXd start_of(const Residuals& residuals, const options::Fit& fit, in
 }
 
 /// The minimisations on rank 0.
-class Search {
+class MultiStart {
  public:
-  Search(Evaluator& evaluator, Residuals& residuals, const options::Fit& fit, FitFile& file)
+  MultiStart(Evaluator& evaluator, Residuals& residuals, const options::Fit& fit, FitFile& file)
       : residuals_(residuals), fit_(fit), file_(file), problem_(evaluator, residuals) {}
 
   void run(FitCourse& course) {
@@ -112,22 +113,37 @@ void align_clocks(ForwardModel& model, const options::Fit& fit, Residuals& resid
 }
 
 void describe(const options::Fit& fit, const ForwardModel& model, std::vector<std::string>& notes) {
-  std::string options;
-  for (const options::FitParameter& p : fit.parameters)
-    options += fmt::format("{}{} from {:g} to {:g}", options.empty() ? "" : ", ", p.option, p.low, p.high);
-  notes.push_back(fmt::format("fit of {}; the values above are those of its start", options));
   for (const options::MeasuredFrequency& f : fit.frequencies)
     notes.push_back(
         fmt::format("{}: frequency {}, {:g} Hz, standard deviation {:g} Hz", f.name, f.number, f.value, f.sd));
   for (const options::MeasuredSeries& s : fit.series)
-    notes.push_back(fmt::format("{}: {} values of the {} at x = {:g} m{}{}{}", s.name, s.value.size(), s.quantity, s.x,
+    notes.push_back(fmt::format("{}: {} values of {}{}{}{}{}", s.name, s.value.size(), s.dataset.substr(1),
+                                s.x ? fmt::format(" at x = {:g} m", *s.x) : fmt::format(", number {}", s.component),
                                 s.low_pass ? fmt::format(", low-passed at {:g} Hz", *s.low_pass) : "",
                                 s.align ? ", with a clock of its own" : "", s.offset ? ", with an offset" : ""));
   if (!fit.series.empty())
     notes.push_back(
         base::detail(fmt::format("every run has {} samples every {:g} s", model.instants(), model.interval())));
+  const double end = model.interval() * static_cast<double>(model.instants());
+  if (end > long_record * model.duration() && model.duration() > 0.0)
+    notes.push_back(
+        fmt::format("every run lasts {:.3g} s, as the records do, and the passage {:.3g} s; fit_to_..._from "
+                    "and fit_to_..._to shorten the records",
+                    end, model.duration()));
   for (const std::string& note : options::notes_on_unused(options::in_force()))
     if (!note.starts_with("tao_")) notes.push_back(note);
+}
+
+/// A run, whose failure names its values.
+std::vector<double> run_of(const ForwardModel& model, const options::Fit& fit, const std::vector<double>& values) {
+  try {
+    return model.run(values);
+  } catch (const Error& error) {
+    std::string point;
+    for (std::size_t j = 0; j < values.size(); ++j)
+      point += fmt::format("{}{} = {:g}", j == 0 ? "" : ", ", fit.parameters[j].option, values[j]);
+    throw Error(fmt::format("the run of the fit with {}: {}", point, error.what()), error.status());
+  }
 }
 
 }  // namespace
@@ -138,7 +154,7 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   const options::Fit& fit = *scene.fit;
   std::vector<std::string> notes;
   ForwardModel model(scene, notes);
-  Residuals residuals(fit);
+  Residuals residuals(fit, model.units());
   align_clocks(model, fit, residuals);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   describe(fit, model, notes);
@@ -146,7 +162,7 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   const DeferredSignals deferred;
   FitFile file(comm, std::move(place), scene, residuals, notes);
   Evaluator evaluator(comm, fit.parameters.size(), model.size(),
-                      [&](const std::vector<double>& values) { return model.run(values); });
+                      [&](const std::vector<double>& values) { return run_of(model, fit, values); });
   const auto begin = Clock::now();
   const results::Stage stage("fit");
   FitCourse course;
@@ -154,7 +170,7 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   RunFailure failure;
   if (rank == 0) {
     try {
-      Search(evaluator, residuals, fit, file).run(course);
+      MultiStart(evaluator, residuals, fit, file).run(course);
       course.ended = "reached its end";
     } catch (const Evaluator::Interrupted& interrupted) {
       signal = interrupted.signal;

@@ -78,11 +78,11 @@ void add_computed(const options::Fit& fit, const Residuals& residuals, const Fit
     Dataset computed{"/fit/series/" + fit.series[s].name + "/computed",
                      {count},
                      std::vector<double>(count, unknown),
-                     unit_of(fit.series[s].quantity)};
+                     residuals.unit(s)};
     if (known) computed.values = residuals.compared(s, course.response, course.minima[course.best].u).computed;
     sets.push_back(std::move(computed));
     sd.values.push_back(residuals.sd(s));
-    sd.unit += (s == 0 ? "" : ", ") + unit_of(fit.series[s].quantity);
+    sd.unit += (s == 0 ? "" : ", ") + residuals.unit(s);
   }
   if (!fit.series.empty()) sets.push_back(std::move(sd));
 }
@@ -115,7 +115,7 @@ std::vector<Dataset> constant(const options::Fit& fit, const Residuals& residual
     const options::MeasuredSeries& series = fit.series[s];
     const std::string group = "/fit/series/" + series.name;
     sets.push_back({group + "/time", {series.time.size()}, series.time, "s"});
-    sets.push_back({group + "/measured", {series.time.size()}, residuals.measured(s), unit_of(fit.series[s].quantity)});
+    sets.push_back({group + "/measured", {series.time.size()}, residuals.measured(s), residuals.unit(s)});
   }
   return sets;
 }
@@ -143,8 +143,13 @@ FitFile::FitFile(MPI_Comm comm, results::Place place, const Scene& scene, const 
   recorder_.names("/measured_frequency", frequencies);
   recorder_.names("/measured_series", series);
   recorder_.datasets(constant(fit_, residuals));
-  for (const options::MeasuredSeries& s : fit_.series)
-    recorder_.attributes("/fit/series/" + s.name, {{"quantity", s.quantity}, {"x", s.x}});
+  for (const options::MeasuredSeries& s : fit_.series) {
+    recorder_.attributes("/fit/series/" + s.name, {{"dataset", s.dataset}});
+    if (s.x)
+      recorder_.attributes("/fit/series/" + s.name, {{"x", *s.x}});
+    else
+      recorder_.attributes("/fit/series/" + s.name, {{"component", static_cast<long>(s.component)}});
+  }
   const std::vector<Dataset> sets = changing(fit_, residuals, {});
   recorder_.datasets(sets);
   recorder_.rewrite({sets.back()});  // on the disk, with all datasets above

@@ -8,17 +8,20 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "error_control/accuracy.hpp"
 #include "error_control/mode_mesh.hpp"
 #include "modes/modes.hpp"
 #include "results/stage.hpp"
+#include "run/outputs.hpp"
 #include "run/passage.hpp"
 #include "run/run_observer.hpp"
 #include "run/signals.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/options/table.hpp"
 
 namespace traverse::app {
 namespace {
@@ -33,23 +36,51 @@ SharedBeam& prepared(SharedBeam& shared, const Scene& scene, std::vector<std::st
   return shared;
 }
 
-double number_of(const beam::Response& probe, const std::string& quantity) {
-  if (quantity == "velocity") return probe.velocity;
-  if (quantity == "acceleration") return probe.acceleration;
-  if (quantity == "moment") return probe.moment;
-  return quantity == "shear" ? probe.shear : probe.deflection;
+/// The place of a series among the numbers of a sample, and its unit.
+struct Channel {
+  std::size_t index = 0;
+  std::string unit;
+};
+
+/// Unit number `component` of a list as "m, m, rad", or the only one.
+std::string unit_of(const std::string& list, std::size_t component) {
+  std::string_view rest = list;
+  for (std::size_t i = 0; i < component && rest.find(", ") != rest.npos; ++i) rest.remove_prefix(rest.find(", ") + 2);
+  return std::string(rest.substr(0, rest.find(", ")));
 }
 
-/// The peaks whose error decides the accuracy of these quantities.
+Channel channel_of(const options::MeasuredSeries& series, const Scene& scene, const results::Layout& layout) {
+  const std::vector<double>& probes = scene.output.probes;
+  std::size_t component = static_cast<std::size_t>(series.component - 1), index = 0;
+  if (series.x)
+    component = static_cast<std::size_t>(std::find(probes.begin(), probes.end(), *series.x) - probes.begin());
+  std::vector<std::string> names;
+  for (const results::Layout::Field& field : layout.fields) {
+    if (field.name == series.dataset && component < field.width())
+      return {index + component, unit_of(field.unit, field.row.empty() ? 0 : component % field.row.back())};
+    if (field.name == series.dataset)
+      throw InputError(fmt::format("fit_to_{}_component = {}: {} has rows of {} numbers", series.name, component + 1,
+                                   series.dataset, field.width()));
+    index += field.width();
+    names.push_back(field.name);
+  }
+  const std::string near = options::nearest(series.dataset, names);
+  throw InputError(fmt::format("fit_to_{}_dataset = {}: a run of the scene stores no such dataset over time{}",
+                               series.name, series.dataset, near.empty() ? "" : "; did you mean " + near + "?"));
+}
+
+/// The peaks whose error decides the accuracy of these series; empty: all.
 std::vector<std::string> controlled_peaks(const options::Fit& fit) {
   std::vector<std::string> peaks;
   const auto add = [&](const std::string& peak) {
     if (std::find(peaks.begin(), peaks.end(), peak) == peaks.end()) peaks.push_back(peak);
   };
   for (const options::MeasuredSeries& series : fit.series) {
-    if (series.quantity != "velocity") add(series.quantity);
-    if (series.quantity == "velocity") add("deflection");
-    if (series.quantity == "velocity") add("acceleration");
+    const std::string quantity = series.dataset.substr(series.dataset.rfind('/') + 1);
+    if (!series.x) return {};
+    if (quantity != "velocity") add(quantity);
+    if (quantity == "velocity") add("deflection");
+    if (quantity == "velocity") add("acceleration");
   }
   return peaks;
 }
@@ -120,7 +151,10 @@ void ForwardModel::set_interval() {
   const Scene first = scene(start(), false);
   std::vector<std::string> ignored;
   SharedBeam shared(PETSC_COMM_SELF, first, ignored);
-  const Passage passage(first, prepared(shared, first, ignored), ignored);
+  Passage passage(first, prepared(shared, first, ignored), ignored);
+  const Outputs outputs = outputs_of({first, passage.system().fleet(), shared.bridge()});
+  for (const options::MeasuredSeries& series : fit_.series)
+    units_.push_back(channel_of(series, first, outputs.layout()).unit);
   duration_ = passage.plan().end_time;
   double measured = duration_;
   for (const options::MeasuredSeries& series : fit_.series)
@@ -174,18 +208,19 @@ void ForwardModel::add_series(const std::vector<double>& values, std::vector<dou
   passage.start(ignored);
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
   RunObserver observer(own, passage.system(), shared.bridge(), none);
-  std::vector<std::size_t> probes;
+  const Outputs outputs = outputs_of({own, passage.system().fleet(), shared.bridge()});
+  std::vector<std::size_t> channels;
   for (const options::MeasuredSeries& series : fit_.series)
-    probes.push_back(static_cast<std::size_t>(std::find(own.output.probes.begin(), own.output.probes.end(), series.x) -
-                                              own.output.probes.begin()));
+    channels.push_back(channel_of(series, own, outputs.layout()).index);
   const std::size_t first = response.size();
   response.resize(first + fit_.series.size() * instants_);
   std::size_t k = 0;
+  std::vector<double> row;
   const auto sample = [&](const integrate::Instant& instant) {
     observer.sample(instant);
     if (instant.purpose == integrate::Purpose::peaks || k == instants_) return;
-    for (std::size_t s = 0; s < probes.size(); ++s)
-      response[first + s * instants_ + k] = number_of(observer.observed().probes[probes[s]], fit_.series[s].quantity);
+    outputs.fill(observer.observed(), row);
+    for (std::size_t s = 0; s < channels.size(); ++s) response[first + s * instants_ + k] = row[channels[s]];
     ++k;
   };
   const auto step = [&](double t, long) {

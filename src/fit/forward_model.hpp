@@ -23,7 +23,8 @@ class ForwardModel {
   double duration() const { return duration_; }
   /// Sets the end of all runs, s. They have samples up to there.
   void set_end(double end);
-  double interval() const { return interval_; }  // s, between samples
+  double interval() const { return interval_; }                     // s, between samples
+  const std::vector<std::string>& units() const { return units_; }  // of the series
   std::size_t instants() const { return instants_; }
 
   /// The frequencies (Hz) of all measured frequencies, then the samples of each series. SolverError if the run fails or
@@ -42,6 +43,7 @@ class ForwardModel {
 
   const options::Fit fit_;
   std::string name_;
+  std::vector<std::string> units_;
   NumericalModel model_, model_of_modes_;
   double duration_ = 0.0, interval_ = 0.0, end_ = 0.0;
   std::size_t instants_ = 0;

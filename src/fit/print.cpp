@@ -19,9 +19,9 @@ std::string error_text(const Estimate& estimate) {
                      estimate.value != 0.0 && relative < 1.0 ? fmt::format(" ({:.2g} %)", 100.0 * relative) : "");
 }
 
-void print_estimate(const Unknown& unknown, const Estimate& estimate) {
-  const std::string unit = unknown.unit == "1" ? "" : " " + unknown.unit;
-  fmt::print("  {:<30}{:.7g}{}, {}\n", unknown.name, estimate.value, unit, error_text(estimate));
+void print_estimate(const Unknown& estimated, const Estimate& estimate) {
+  const std::string unit = estimated.unit == "1" ? "" : " " + estimated.unit;
+  fmt::print("  {:<30}{:.7g}{}, {}\n", estimated.name, estimate.value, unit, error_text(estimate));
 }
 
 void print_correlations(const Residuals& residuals, const Eigen::MatrixXd& correlation) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "fit/spline.hpp"
 #include "run/low_pass.hpp"
@@ -39,14 +40,6 @@ void filter(const options::MeasuredSeries& series, std::vector<double>& values) 
 
 }  // namespace
 
-std::string unit_of(const std::string& quantity) {
-  return quantity == "deflection"     ? "m"
-         : quantity == "velocity"     ? "m/s"
-         : quantity == "acceleration" ? "m/s2"
-         : quantity == "moment"       ? "N m"
-                                      : "N";
-}
-
 double Unknown::value(double u) const { return logarithmic ? low * std::pow(high / low, u) : low + u * (high - low); }
 double Unknown::u(double value) const {
   const double at = logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
@@ -54,7 +47,8 @@ double Unknown::u(double value) const {
 }
 double Unknown::slope(double u) const { return logarithmic ? value(u) * std::log(high / low) : high - low; }
 
-Residuals::Residuals(const options::Fit& fit) : fit_(fit), size_(fit.frequencies.size()) {
+Residuals::Residuals(const options::Fit& fit, std::vector<std::string> units)
+    : fit_(fit), units_(std::move(units)), size_(fit.frequencies.size()) {
   for (const options::FitParameter& p : fit.parameters)
     unknowns_.push_back({Unknown::Kind::option, p.option, p.unit, p.low, p.high, p.start, 0,
                          p.low > 0.0 && p.high >= logarithmic_from * p.low});
@@ -71,8 +65,8 @@ void Residuals::align(const std::vector<double>& response, double interval, doub
   for (std::size_t s = 0; s < fit_.series.size(); ++s) {
     const options::MeasuredSeries& series = fit_.series[s];
     if (!series.align) continue;
-    const double half =
-        0.5 * interval * static_cast<double>((response.size() - fit_.frequencies.size()) / fit_.series.size() - 1);
+    const std::size_t instants = (response.size() - fit_.frequencies.size()) / fit_.series.size();
+    const double half = 0.5 * interval * static_cast<double>(instants - 1);
     const double first = least_misfit_shift(s, response, series.time.front() - half, series.time.back() - half);
     unknowns_.push_back({Unknown::Kind::shift, series.name + "_shift", "s", first - range, first + range, first, s});
   }
@@ -80,8 +74,7 @@ void Residuals::align(const std::vector<double>& response, double interval, doub
     if (!fit_.series[s].offset) continue;
     const auto [least, greatest] = std::minmax_element(measured_[s].begin(), measured_[s].end());
     const double bound = 2.0 * std::max({std::abs(*least), std::abs(*greatest), *greatest - *least, sd_[s]});
-    unknowns_.push_back({Unknown::Kind::offset, fit_.series[s].name + "_offset", unit_of(fit_.series[s].quantity),
-                         -bound, bound, 0.0, s});
+    unknowns_.push_back({Unknown::Kind::offset, fit_.series[s].name + "_offset", units_[s], -bound, bound, 0.0, s});
   }
 }
 

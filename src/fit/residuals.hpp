@@ -27,9 +27,6 @@ struct Unknown {
   double slope(double u) const;
 };
 
-/// The unit of a quantity of a series.
-std::string unit_of(const std::string& quantity);
-
 /// A measured series and its computed counterpart, with the filter of both.
 struct ComparedSeries {
   std::vector<double> time, measured, computed;
@@ -38,7 +35,8 @@ struct ComparedSeries {
 class Residuals {
  public:
   /// Series without a standard deviation get one for the first iterations, a small part of their variation.
-  explicit Residuals(const options::Fit& fit);
+  /// units: of the series.
+  Residuals(const options::Fit& fit, std::vector<std::string> units);
 
   /// Aligns the clocks by the computed samples at the start: the shift of each aligned series is the one with the
   /// least misfit, and it may vary by `range` (s). The samples are those of a model with this interval (s), from 0 on.
@@ -64,6 +62,7 @@ class Residuals {
   const std::vector<double>& measured(std::size_t series) const { return measured_[series]; }  // filtered
   std::size_t series_count() const { return fit_.series.size(); }
   const std::string& name(std::size_t series) const { return fit_.series[series].name; }
+  const std::string& unit(std::size_t series) const { return units_[series]; }
   bool filtered(std::size_t series) const { return fit_.series[series].low_pass.has_value(); }
   /// The residuals of a series within those of all.
   Eigen::VectorXd of_series(std::size_t series, const Eigen::VectorXd& residuals) const;
@@ -78,6 +77,7 @@ class Residuals {
   double least_misfit_shift(std::size_t series, const std::vector<double>& response, double low, double high) const;
 
   const options::Fit& fit_;
+  std::vector<std::string> units_;
   std::vector<Unknown> unknowns_;
   std::vector<std::vector<double>> measured_;  // filtered
   std::vector<double> sd_;

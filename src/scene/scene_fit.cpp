@@ -178,13 +178,26 @@ void check_filter(const Options& o, const std::string& target, const options::Me
     o.refuse(option, fmt::format("allowed: below {:g} Hz, half of the measured values in a second", 0.5 / mean));
 }
 
-options::MeasuredSeries read_series(const Options& o, const std::string& target) {
+/// Reads what was measured: a quantity at a station of the bridge, or any dataset.
+void read_place(const Options& o, const std::string& target, options::MeasuredSeries& series) {
+  if (o.has(name_of(target, "dataset"))) {
+    for (const char* other : {"quantity", "x"}) refuse_with(o, target, other, "dataset");
+    const std::string path = o.text(name_of(target, "dataset"));
+    series.dataset = (path.starts_with("/") ? "" : "/") + path;
+    if (o.has(name_of(target, "component"))) series.component = o.integer(name_of(target, "component"));
+    return;
+  }
   for (const char* needed : {"quantity", "x"}) refuse_without(o, target, needed, "series");
+  refuse_with(o, target, "component", "quantity");
+  series.dataset = "/probes/" + o.choice(name_of(target, "quantity"));
+  series.x = o.number(name_of(target, "x"));
+}
+
+options::MeasuredSeries read_series(const Options& o, const std::string& target) {
   refuse_with(o, target, "value", "series");
   options::MeasuredSeries series;
   series.name = target;
-  series.quantity = o.choice(name_of(target, "quantity"));
-  series.x = o.number(name_of(target, "x"));
+  read_place(o, target, series);
   if (o.has(name_of(target, "sd"))) series.sd = o.number(name_of(target, "sd"));
   series.align = o.has(name_of(target, "align")) && o.flag(name_of(target, "align"));
   series.offset = o.has(name_of(target, "offset")) && o.flag(name_of(target, "offset"));
@@ -232,9 +245,17 @@ void check_fit(const Options& o, const Scene& scene) {
     o.refuse(name_of(fit.frequencies.front().name, "frequency"),
              "the frequencies of a bridge by given modes are input; allowed: bridges by beam_spans");
   for (const options::MeasuredSeries& series : fit.series) {
-    if (scene.by_given_modes() && (series.quantity == "moment" || series.quantity == "shear"))
-      o.refuse(name_of(series.name, "quantity"), "given modes have no moments and no shear forces");
+    const bool force = series.dataset == "/probes/moment" || series.dataset == "/probes/shear";
+    if (scene.by_given_modes() && force)
+      o.refuse(name_of(series.name, "series"), "given modes have no moments and no shear forces");
   }
+}
+
+std::string start_note(const Fit& fit) {
+  std::string text;
+  for (const FitParameter& p : fit.parameters)
+    text += fmt::format("{}{} from {:g} to {:g}", text.empty() ? "" : ", ", p.option, p.low, p.high);
+  return fmt::format("fit of {}; the values of the scene are those of its start", text);
 }
 
 /// Checks the stations of the series before they are the probes of the scene.
@@ -243,14 +264,15 @@ void check_stations(const Options& o, const Fit& fit) {
   double length = 0.0;
   for (const double span : o.numbers("beam_spans")) length += span;
   for (const options::MeasuredSeries& series : fit.series)
-    if (series.x > length)
+    if (series.x && *series.x > length)
       o.refuse(name_of(series.name, "x"), fmt::format("is outside the bridge; allowed: from 0 to {:g} m", length));
 }
 
 /// The stations of the series in place of the scene's probes.
 std::string stations_of(const Fit& fit) {
   std::set<double> stations;
-  for (const options::MeasuredSeries& series : fit.series) stations.insert(series.x);
+  for (const options::MeasuredSeries& series : fit.series)
+    if (series.x) stations.insert(*series.x);
   std::string text;
   for (const double x : stations) text += fmt::format("{}{}", text.empty() ? "" : ",", x);
   return text;
@@ -279,6 +301,7 @@ Scene read_fit(const Options& given) {
   for (const FitParameter& parameter : fit.parameters) start.push_back(parameter.start);
   Scene scene = read_scene_of_fit(given, fit, start, fit.series.empty());
   scene.fit = fit;
+  scene.notes.insert(scene.notes.begin(), start_note(fit));
   scene.options = o.all();
   check_fit(o, scene);
   return scene;
@@ -295,7 +318,7 @@ Scene read_scene_of_fit(const Options& given, const Fit& fit, const std::vector<
   }
   if (modes)
     entries.set({"scene_analysis", "modes", "a fit to frequencies", 0});
-  else
+  else if (!stations_of(fit).empty())
     entries.set({"output_probes", stations_of(fit), "the stations of the measurements", 0});
   return read_scene(Options(std::move(entries)));
 }

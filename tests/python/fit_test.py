@@ -76,6 +76,17 @@ class Module(InFolder):
         with self.assertRaisesRegex(traverse.Error, "fit_to is missing"):
             traverse.fit(scene, {"beam_EI": [5e9, 2e10]})
 
+    def test_any_dataset_over_time(self):
+        """The record is a run with another mass: number 5 in the rows of the reactions is fy of the second support."""
+        scene = {"beam": {"spans": 30.0, "EI": 1.0e10, "mass": 9.0e3}, "load": {"forces": 1.0e5, "speed": 30.0},
+                 "model": {"modes": 3}, "output": {"interval": 0.01}}
+        run = traverse.run(scene, beam_mass=1.0e4)
+        fit_draws.write_series(self.folder / "r.csv", run["time"].values, run["supports_reaction"].values[:, 1, 1])
+        found = traverse.fit(scene, {"beam_mass": [5e3, 2e4]}, {"right": {
+            "series": "r.csv", "dataset": "supports/reaction", "component": 5, "offset": True}}, folder=self.folder)
+        self.assertAlmostEqual(found["estimate"].sel(unknown="beam_mass") / 1.0e4, 1.0, delta=1e-4)
+        self.assertEqual(found["series_right_measured"].attrs["units"], "N")
+
     def test_example_and_its_picture(self):
         results = traverse.fit(SOURCE / "options" / "studies" / "fit_to_a_passage.yml", output=self.folder / "fit.h5")
         for name, true in zip(NAMES, (1.08e10, 8.7e3, 0.018, 0.25)):

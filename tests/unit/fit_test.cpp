@@ -57,7 +57,7 @@ TEST(Estimates, OfAStraightLine) {
   const options::Fit fit = two_options(4);
   Eigen::MatrixXd jacobian(4, 2);
   jacobian << 0.0, 2.0, 10.0, 2.0, 20.0, 2.0, 30.0, 2.0;  // u of a from 0 to 10, of b from 0 to 2
-  const Estimates found = estimates_of(minimum(jacobian, Eigen::Vector4d(1.0, -1.0, -1.0, 1.0)), Residuals(fit));
+  const Estimates found = estimates_of(minimum(jacobian, Eigen::Vector4d(1.0, -1.0, -1.0, 1.0)), Residuals(fit, {}));
   EXPECT_DOUBLE_EQ(found.of[0].value, 5.0);
   EXPECT_NEAR(found.of[0].standard_error, std::sqrt(1.0 / 5.0), 1e-12);
   EXPECT_NEAR(found.of[1].standard_error, std::sqrt(14.0 / 20.0), 1e-12);
@@ -70,12 +70,12 @@ TEST(Estimates, NameWhatTheDataDoNotTell) {
   const options::Fit fit = two_options(3);
   Eigen::MatrixXd jacobian(3, 2);
   jacobian << 1.0, -2.0, 2.0, -4.0, 3.0, -6.0;
-  const Estimates pair = estimates_of(minimum(jacobian, Eigen::Vector3d::Zero()), Residuals(fit));
+  const Estimates pair = estimates_of(minimum(jacobian, Eigen::Vector3d::Zero()), Residuals(fit, {}));
   EXPECT_TRUE(std::isinf(pair.of[0].standard_error) && std::isinf(pair.of[1].standard_error));
   ASSERT_EQ(pair.sentences.size(), 1U);
   EXPECT_PRED2(test::contains, pair.sentences[0], "cannot tell beam_EI and beam_mass apart");
   jacobian.col(1).setZero();
-  const Estimates alone = estimates_of(minimum(jacobian, Eigen::Vector3d::Zero()), Residuals(fit));
+  const Estimates alone = estimates_of(minimum(jacobian, Eigen::Vector3d::Zero()), Residuals(fit, {}));
   EXPECT_TRUE(std::isfinite(alone.of[0].standard_error) && std::isinf(alone.of[1].standard_error));
   ASSERT_EQ(alone.sentences.size(), 1U);
   EXPECT_EQ(alone.sentences[0], "The data do not depend on beam_mass.");
@@ -87,7 +87,7 @@ TEST(Estimates, AtABoundHaveNoStandardError) {
   jacobian << 1.0, 0.0, 0.0, 1.0, 1.0, 1.0;
   Minimum one = minimum(jacobian, Eigen::Vector3d(0.0, 0.5, 0.0));
   one.u[1] = 0.0;
-  const Estimates found = estimates_of(one, Residuals(fit));
+  const Estimates found = estimates_of(one, Residuals(fit, {}));
   EXPECT_TRUE(found.of[1].at_bound);
   EXPECT_TRUE(std::isnan(found.of[1].standard_error));
   EXPECT_TRUE(std::isfinite(found.of[0].standard_error));

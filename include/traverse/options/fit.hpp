@@ -24,11 +24,12 @@ struct MeasuredFrequency {
   double value = 0.0, sd = 0.0;  // Hz, measured value and its standard deviation
 };
 
-/// A measured series at a station of the bridge.
+/// A measured series of a number that a run stores over time.
 struct MeasuredSeries {
   std::string name;
-  std::string quantity;             // a quantity of the probes, such as deflection
-  double x = 0.0;                   // m, the station
+  std::string dataset;              // its path in the results file, such as /probes/deflection
+  std::optional<double> x;          // m, the station of a dataset of the probes
+  int component = 1;                // the number in each row of any other dataset
   std::vector<double> time, value;  // s, by the clock of the measurement; SI units
   std::optional<double> sd;         // standard deviation of a value; none: from the residuals
   bool align = false;               // the difference of the clocks is estimated
