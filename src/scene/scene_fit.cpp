@@ -8,6 +8,7 @@
 
 #include "options/data_file.hpp"
 #include "scene_parts.hpp"
+#include "traverse/base/error.hpp"
 #include "traverse/options/fit.hpp"
 
 namespace traverse::app {
