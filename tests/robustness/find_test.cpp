@@ -27,7 +27,8 @@ TEST(Find, BadInputIsRefused) {
   refused(with({"-find_option", "beam_E"}), {"find_option", "beam_EI"});
   refused(with({"-find_option", "beam_EI"}), {"find_between is missing"});
   refused(with({"-find_option", "beam_EI", "-find_between", "2,1"}), {"find_between", "not above the first"});
-  refused(with({"-find_option", "beam_EI", "-find_between", "-1,1"}), {"find_between", "beam_EI", "above 0"});
+  refused(with({"-find_option", "beam_EI", "-find_between", "-1,1"}),
+          {"find_between", "-1 is not a value of beam_EI", "above"});
   refused(with({"-find_option", "beam_EI", "-find_between", "1,many"}), {"find_between", "many"});
   refused(with({"-find_option", "output_interval", "-find_between", "1,2"}), {"find_option", "output_interval"});
   refused(with({"-find_option", "beam_elements_per_span", "-find_between", "1,2"}), {"find_option", "whole numbers"});

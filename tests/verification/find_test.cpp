@@ -63,25 +63,25 @@ TEST(Find, RunsAreThoseOfAStudyOverTheSameValues) {
   EXPECT_EQ(found("/study/peak_acceleration"), study("/study/peak_acceleration"));
 }
 
-// Ten axles at 8 m: a resonance at v = f1 d, f1 = 3.927 Hz, lies within the speeds.
+// Ten axles at 12 m: a resonance at v = f1 d = 47.1 m/s, f1 = 3.927 Hz, lies within the speeds.
 TEST(Find, PermittedSpeedsOnBothSidesOfAResonance) {
   const std::string scene =
-      bridge + "load: {forces: 1.0e5*10, positions: [0, -8, -16, -24, -32, -40, -48, -56, -64, -72]}\n";
+      bridge + "load: {forces: 1.0e5*10, positions: [0, -12, -24, -36, -48, -60, -72, -84, -96, -108]}\n";
   const Values search = {{"find_option", "load_speed"},
-                         {"find_between", "72 km/h,180 km/h"},
+                         {"find_between", "129.6 km/h,60"},
                          {"find_quantity", "peak_deflection"},
-                         {"find_equals", "1.5e-2"}};
-  Results found = run_yaml(scene, search + Values{{"load_speed", "20"}});
+                         {"find_equals", "3.5e-3"}};
+  Results found = run_yaml(scene, search + Values{{"load_speed", "36"}});
   const std::vector<double> interval = found("/find/interval");
   ASSERT_EQ(interval.size(), 4U);
-  EXPECT_EQ(interval[0], 20.0);
-  EXPECT_LT(interval[1], 8.0 * 3.927);
-  EXPECT_GT(interval[2], 8.0 * 3.927);
-  EXPECT_EQ(interval[3], 50.0);
+  EXPECT_EQ(interval[0], 36.0);
+  EXPECT_LT(interval[1], 12.0 * 3.927);
+  EXPECT_GT(interval[2], 12.0 * 3.927);
+  EXPECT_EQ(interval[3], 60.0);
   for (const std::size_t end : {1, 2}) {
     const double outward = end == 1 ? 2e-3 : -2e-3;
-    EXPECT_LE(deflection(scene, {{"load_speed", text(interval[end])}}), 1.5e-2 * (1.0 + 1e-3));
-    EXPECT_GT(deflection(scene, {{"load_speed", text(interval[end] * (1.0 + outward))}}), 1.5e-2);
+    EXPECT_LE(deflection(scene, {{"load_speed", text(interval[end])}}), 3.5e-3 * (1.0 + 1e-3));
+    EXPECT_GT(deflection(scene, {{"load_speed", text(interval[end] * (1.0 + outward))}}), 3.5e-3);
   }
 }
 
