@@ -180,7 +180,7 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
     } catch (const std::exception& error) {
       const Error known = as_error(error);
       failure = {0, known.status(), known.what()};
-      course.ended = known.what();
+      course.ended = fmt::format("failed: {}", known.what());
     }
     evaluator.stop();
   } else {
