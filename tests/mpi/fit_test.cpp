@@ -9,7 +9,7 @@
 namespace traverse::test {
 namespace {
 
-TEST(Ranks, FitToAFrequencyAndASeries) {
+TEST(FitOnRanks, FitToAFrequencyAndASeries) {
   const std::string yaml = "options_file: " TRAVERSE_SOURCE_DIR
                            "/options/studies/fit_to_a_passage.yml\n"
                            "fit: {to: {first: {frequency: 1, value: 1.85, sd: 0.01}}, starts: 2}\n"
