@@ -83,6 +83,9 @@ std::vector<std::string> fewer_runs(const std::string& study) {
   if (study == "bearing_stiffness") return {"-study_vary_load_speed_step", "70"};
   if (study == "en1991_bridge" || study == "hslm_envelope")
     return {"-sweep_speed", "50,80,15", "-sweep_hslm_a", "1,10"};
+  if (study == "least_stiffness") return {"-sweep_speed", "70,84,7", "-sweep_hslm_a", "9,10", "-find_points", "5"};
+  if (study == "permitted_speeds") return {"-sweep_hslm_a", "9,10", "-find_points", "17"};
+  if (study == "sensitivity") return {"-study_draws", "4"};
   return {};
 }
 
