@@ -120,19 +120,12 @@ std::vector<Dataset> constant(const options::Fit& fit, const Residuals& residual
   return sets;
 }
 
-results::Layout layout_of(const Scene& scene) {
-  std::vector<double> ends = {scene.beam->start};
-  for (const double span : scene.beam->spans) ends.push_back(ends.back() + span);
-  results::Layout layout;
-  layout.constants = stations(scene.output.probes, ends);
-  return layout;
-}
-
 }  // namespace
 
 FitFile::FitFile(MPI_Comm comm, results::Place place, const Scene& scene, const Residuals& residuals,
                  const std::vector<std::string>& notes)
-    : fit_(*scene.fit), recorder_(comm, std::move(place), layout_of(scene), attributes(comm, scene), scene.options) {
+    : fit_(*scene.fit),
+      recorder_(comm, std::move(place), layout_without_series(scene), attributes(comm, scene), scene.options) {
   record_model(scene, notes, recorder_);
   std::vector<std::string> names, frequencies, series;
   for (const Unknown& one : residuals.unknowns()) names.push_back(one.name);

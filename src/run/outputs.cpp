@@ -35,4 +35,12 @@ std::vector<results::Layout::Constant> stations(const std::vector<double>& probe
   return constants;
 }
 
+results::Layout layout_without_series(const Scene& scene) {
+  std::vector<double> ends = {scene.beam->start};
+  for (const double span : scene.beam->spans) ends.push_back(ends.back() + span);
+  results::Layout layout;
+  layout.constants = stations(scene.output.probes, ends);
+  return layout;
+}
+
 }  // namespace traverse::app

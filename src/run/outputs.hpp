@@ -143,5 +143,7 @@ Outputs outputs_of(const Source& source);
 
 /// The stations of probes and span ends, in files of modes and of sweeps.
 std::vector<results::Layout::Constant> stations(const std::vector<double>& probes, const std::vector<double>& supports);
+/// The layout of a file of many runs of a bridge: its stations, and nothing over time.
+results::Layout layout_without_series(const Scene& scene);
 
 }  // namespace traverse::app

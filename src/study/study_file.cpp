@@ -136,14 +136,6 @@ results::StoredStudy stored_of(const results::StudyTable& table) {
 
 namespace {
 
-results::Layout layout_of(const Scene& scene) {
-  std::vector<double> ends = {scene.beam->start};
-  for (const double span : scene.beam->spans) ends.push_back(ends.back() + span);
-  results::Layout layout;
-  layout.constants = stations(scene.output.probes, ends);
-  return layout;
-}
-
 results::Recorder::Dataset digests_of(const results::StudyTable& table) {
   return {std::string("/study/") + results::row_digest,
           {table.runs()},
@@ -159,7 +151,8 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
         int rank = 0;
         MPI_Comm_rank(comm, &rank);
         const results::EarlierCopy copy(place, rank == 0 && table.finished_runs() > 0);
-        results::Recorder made(comm, std::move(place), layout_of(scene), attributes(comm, scene), scene.options);
+        results::Recorder made(comm, std::move(place), layout_without_series(scene), attributes(comm, scene),
+                               scene.options);
         record_model(scene, notes, made);
         results::record_limits(made, table.limits());
         if (!table.study().sweep) made.datasets(table.coordinates());
