@@ -22,6 +22,7 @@ class Traverse(CMakePackage):
     depends_on("hdf5@1.10: +mpi")
     depends_on("eigen@3.4:3.4")
     depends_on("yaml-cpp")
+    depends_on("boost@1.74: +random +math", type="build")
     depends_on("fmt@9:")
 
     conflicts("%gcc@:11", msg="Traverse is written in C++20 as g++ 12 and later know it")
