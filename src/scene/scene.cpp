@@ -179,16 +179,21 @@ std::vector<double> wheels_at_start(const Scene& scene) {
   return all;
 }
 
+NamedVehicles declare_parts(Options& o) {
+  declare_blocks(o);
+  NamedVehicles vehicles = declare_vehicles(o);
+  declare_couplers(o);
+  declare_stretches(o);
+  return vehicles;
+}
+
 Scene read_scene(Options o) {
   if (describes_study(o) && describes_fit(o))
     o.refuse(o.first_with_prefix("fit_")->name, "a scene is either a study or a fit; remove study_vary or fit_vary");
   if (describes_study(o)) return read_study(o);
   if (describes_fit(o)) return read_fit(o);
   Scene scene;
-  declare_blocks(o);
-  const NamedVehicles vehicles = declare_vehicles(o);
-  declare_couplers(o);
-  declare_stretches(o);
+  const NamedVehicles vehicles = declare_parts(o);
   o.check_names();
   o.check_values();
   read_run(o, scene);

@@ -286,10 +286,7 @@ bool describes_fit(const Options& o) {
 
 Scene read_fit(const Options& given) {
   Options o = given;
-  declare_blocks(o);
-  const NamedVehicles vehicles = declare_vehicles(o);
-  declare_couplers(o);
-  declare_stretches(o);
+  declare_parts(o);
   declare_fit(o);
   o.check_names();
   o.check_values();

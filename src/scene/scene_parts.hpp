@@ -26,6 +26,8 @@ struct NamedVehicles {
   std::vector<std::string> unused;  // defined, but in no train
 };
 
+/// Declares the options of all named parts of a scene: trains and loads, vehicles, couplers, parts of a layered track.
+NamedVehicles declare_parts(options::Options& options);
 /// Finds the vehicles of a scene, reads their files and declares the options of their parts.
 NamedVehicles declare_vehicles(options::Options& options);
 /// Reads one vehicle.

@@ -272,10 +272,7 @@ bool describes_study(const Options& o) { return o.first_with_prefix(study_prefix
 
 Scene read_study(const Options& given) {
   Options o = given;
-  declare_blocks(o);
-  const NamedVehicles vehicles = declare_vehicles(o);
-  declare_couplers(o);
-  declare_stretches(o);
+  const NamedVehicles vehicles = declare_parts(o);
   declare_study(o);
   o.check_names();
   o.check_values();

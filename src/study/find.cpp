@@ -77,7 +77,8 @@ std::string name_of(const Study& study, std::size_t run) {
   return name;
 }
 
-void take(FoundAnswer& answer, std::size_t place, double ratio, std::size_t run, std::size_t limit) {
+/// Records the ratio of a run if it is the greatest at its value.
+void record_greatest(FoundAnswer& answer, std::size_t place, double ratio, std::size_t run, std::size_t limit) {
   if (ratio <= answer.ratio[place]) return;  // false if none is known yet
   answer.ratio[place] = ratio;
   answer.run[place] = run;
@@ -163,8 +164,8 @@ std::vector<FoundAnswer> answers_of(const StudyTable& table) {
     const std::size_t place = study.place(run, searched.axis);
     for (const Bounded& one : bounded) {
       const double ratio = greatest(one, run) / one.bound;
-      take(answers[found->second], place, ratio, run, one.limit);
-      take(all, place, ratio, run, one.limit);
+      record_greatest(answers[found->second], place, ratio, run, one.limit);
+      record_greatest(all, place, ratio, run, one.limit);
     }
   }
   if (answers.size() > 1) {
