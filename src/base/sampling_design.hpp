@@ -19,9 +19,9 @@ std::vector<double> morris_design(std::size_t trajectories, std::size_t factors,
 inline constexpr double morris_step = 2.0 / 3.0;
 inline std::size_t morris_block(std::size_t factors) { return factors + 1; }
 
-/// Steps relative to the nominal value of central differences: the nominal point, then for each factor + and - the long
-/// step, + and - the short step.
-inline constexpr double long_step = 0.02, short_step = 0.005;
-inline constexpr std::size_t local_points_per_factor = 4;
+/// Steps relative to the nominal value of central differences: the nominal point, then for each factor + and - the
+/// step. Runs of one batch have the same steps in distance, which permits a smaller step.
+inline constexpr double local_step = 5e-3, batch_step = 3e-5;
+inline constexpr std::size_t local_points_per_factor = 2;
 
 }  // namespace traverse::base

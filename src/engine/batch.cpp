@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "engine/processor.hpp"
+#include "engine/structure_lanes.hpp"
 #include "engine/train_arrays.hpp"
 #include "train/linear_dynamics.hpp"
 #include "train/linearisation_residual.hpp"
@@ -33,6 +34,7 @@ class Batch {
   using Blocks = std::vector<std::vector<const train::MovingVehicle*>>;
   static std::vector<BatchRun> filled(std::span<const BatchRun> runs);
   static Blocks blocks_of(const std::vector<BatchRun>& runs);
+  static std::vector<const BatchStructure*> structures_of(const std::vector<BatchRun>& runs);
   void start_structure();
   void start_vehicles();
   void start_wheels();
@@ -44,9 +46,11 @@ class Batch {
   std::size_t rows(std::size_t count) const { return count * arrays_.lanes; }
 
   const BatchPlan& plan_;
-  const BatchStructure& structure_;
   const std::size_t count_;
   const std::vector<BatchRun> runs_;  // one for each lane; unused lanes repeat the last run
+  const std::vector<const BatchStructure*> structures_;
+  const BatchStructure& structure_;  // of the first run: the layout of all
+  StructureLanes structure_lanes_;
   TrainArrays arrays_;
   TrainTask& train_ = arrays_.task;
   BeamTask beam_;
@@ -75,14 +79,22 @@ Batch::Blocks Batch::blocks_of(const std::vector<BatchRun>& runs) {
   return blocks;
 }
 
+std::vector<const BatchStructure*> Batch::structures_of(const std::vector<BatchRun>& runs) {
+  std::vector<const BatchStructure*> structures;
+  for (const BatchRun& run : runs) structures.push_back(run.structure);
+  return structures;
+}
+
 Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
     : plan_(plan),
-      structure_(*plan.structure),
       count_(runs.size()),
       runs_(filled(runs)),
-      arrays_(blocks_of(runs_), plan.structure->line_.per_node,
-              plan.structure->beam_.rail() == nullptr ? plan.structure->line_.model.surface_height : 0.0),
-      beam_(structure_.task_),
+      structures_(structures_of(runs_)),
+      structure_(*structures_.front()),
+      structure_lanes_(structures_),
+      arrays_(blocks_of(runs_), structure_.line_.per_node,
+              structure_.beam_.rail() == nullptr ? structure_.line_.model.surface_height : 0.0),
+      beam_(structure_lanes_.task()),
       stored_accelerations_(runs.size()) {
   task_.train = &train_;
   task_.beam = &beam_;
@@ -189,11 +201,11 @@ void Batch::start_wheels() {
         const train::WheelContact& c = fleet.wheels[static_cast<std::size_t>(vehicle.first_wheel + j)];
         arrays_.start_contact(at, c);
         train_.along[at] = train_.station[at] = train_.place[at];  // while it is at rest
-        table_[at] = static_cast<int>(structure_.surfaces_.number(fleet.wheel(c).radius));
+        table_[at] = static_cast<int>(structure_lanes_.surface(l, fleet.wheel(c).radius));
       }
     }
   }
-  task_.surface = structure_.surfaces_.tables().data();
+  task_.surface = structure_lanes_.surfaces().data();
   task_.table = table_.data();
   task_.interval = interval_.data();
   std::fill_n(train_.h, table_.size(), 0.0);
@@ -221,7 +233,7 @@ void Batch::set_track() {
 void Batch::prepare_peaks() {
   const std::size_t n = structure_.probes_.size(), wheels = static_cast<std::size_t>(train_.wheels);
   task_.probes = static_cast<int>(n);
-  task_.probe = structure_.probes_.data();
+  task_.probe = structure_lanes_.probes().data();
   task_.kinks = static_cast<int>(structure_.kinks_.size());
   task_.kink = structure_.kinks_.data();
   for (double*& response : peaks_.response) response = arrays_.add(4 * n);
@@ -238,7 +250,8 @@ void Batch::prepare_peaks() {
   peaks_.longest_contact_loss = arrays_.add(1);
   peaks_.interior_moment = arrays_.add(n);
   peaks_.interior_moment_lagged = arrays_.add(n);
-  peaks_.lag = structure_.beam_.rayleigh().b;
+  peaks_.lags = structure_lanes_.lags();
+  peaks_.lag = structure_lanes_.lag();
   peaks_.largest_residual_root = arrays_.add(arrays_.blocks.size());
   peaks_.coordinates_at_largest = arrays_.add(static_cast<std::size_t>(train_.coordinates));
 }

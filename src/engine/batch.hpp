@@ -1,5 +1,6 @@
 // Batches of runs: passages of trains with different parameter values (speeds, tracks, masses, springs) over one
-// structure, one run in each SIMD lane. They have the same stages of the same methods as a single run
+// structure, or over structures that differ in parameter values too (stiffness, mass, damping, foundation), one run in
+// each SIMD lane. They have the same stages of the same methods as a single run
 // (coupling/system.hpp), and the kernel of its linear train (train_kernel.hpp).
 #pragma once
 
@@ -21,7 +22,7 @@
 
 namespace traverse::engine {
 
-/// The data that all runs share: the structure, its surface, the probes.
+/// The structure, its surface and the probes of one run or of several.
 class BatchStructure {
  public:
   /// The reason why a structure cannot be computed in a batch; empty: it can. modal: its modes, null for elements.
@@ -31,23 +32,28 @@ class BatchStructure {
   /// probes in m; gravity for the self-weight, m/s2 (0: none). Beam and modes must outlive this object.
   BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
                  const std::vector<double>& rest, const std::vector<double>& probes, double gravity);
+  /// Whether the other structure has the same mesh, supports and probes, so that both can be in lanes of one batch.
+  bool same_layout(const BatchStructure& other) const;
   BatchStructure(const BatchStructure&) = delete;
   BatchStructure& operator=(const BatchStructure&) = delete;
 
  private:
   friend class Batch;
+  friend class StructureLanes;
   void read_matrices(const std::vector<double>& rest);
   void read_modes(const std::vector<double>& rest);
   void find_columns();
   void add_probe(const beam::Recovery& recovery, std::size_t station);
-  void find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element, ProbeForms& p) const;
+  void find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element, ProbeForms& p,
+                            std::vector<double>& inside) const;
   const double* keep(const std::vector<double>& numbers) { return numbers_.emplace_back(numbers).data(); }
   std::vector<double> form_of_unknowns(const beam::StationForms& forms, const std::vector<double>& form) const;
 
   const beam::Beam& beam_;
   const structure::ModalBridge* modal_;
   const beam::Line& line_;  // the line that carries the wheels
-  BeamTask task_;           // without the arrays of the runs
+  BeamTask task_;           // without entries and the arrays of the runs
+  double by_mass_ = 0.0, by_stiffness_ = 0.0;  // of Rayleigh's damping, 1/s and s
   std::vector<double> mass_, damping_, stiffness_, dead_load_, shape_;
   std::vector<char> held_;
   std::vector<int> first_column_;
@@ -68,8 +74,10 @@ struct EqualSteps {
   bool stores_accelerations = false;  // whether accelerations at the end are stored
 };
 
-/// One run: a train in its initial state, on its own track. The vehicles of all runs differ in parameter values only.
+/// One run: a train in its initial state, on its own track. The vehicles of all runs differ in parameter values only,
+/// and their structures have the same layout.
 struct BatchRun {
+  const BatchStructure* structure = nullptr;
   const train::Fleet* fleet = nullptr;
   const track::HeightTable* track = nullptr;  // with the same stations in all runs
   // Displacements v and velocities w of the structure at t = 0; w belongs to the fleet's speed and is scaled to
@@ -79,7 +87,6 @@ struct BatchRun {
 };
 
 struct BatchPlan {
-  const BatchStructure* structure = nullptr;
   structure::Method method;  // coefficients for a step of 1 s, scaled to each run's step
   std::vector<EqualSteps> equal_steps;
   double level_until = 0.0;  // m: up to here track and ground are level and rigid; vehicles are at rest

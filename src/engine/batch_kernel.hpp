@@ -35,7 +35,7 @@ inline void place_wheel(const BatchTask& task, int at, int lane) {
 template <class Use>
 void with_structure(BeamTask& task, Use use) {
   if (task.shape != nullptr)
-    use(ModalRows{task});
+    task.shared ? use(ModalRows<double>{task}) : use(ModalRows<Row>{task});
   else if (task.block == 2)
     use(BeamRows<2>{task});
   else if (task.block == 3)

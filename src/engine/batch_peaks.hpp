@@ -22,14 +22,16 @@ inline double* rotate_samples(double** samples) {
   return samples[latest] = oldest;
 }
 
-inline Row product(const ProbeForms& p, const double* form, const double* values) {
+template <class Entry>
+Row product(const ProbeForms& p, const double* form, const double* values) {
   Row sum{};
-  for (int i = 0; i < p.count; ++i) sum += form[i] * rows(values)[p.unknown[i]];
+  for (int i = 0; i < p.count; ++i) sum += entries<Entry>(form)[i] * rows(values)[p.unknown[i]];
   return sum;
 }
 
 /// The contributions of wheels on the probe's element to its deflection and moment.
-inline void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection, Row& moment) {
+template <class Entry>
+void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection, Row& moment) {
   const TrainTask& train = *t.train;
   const Row length = Rows::fill(p.to - p.from);
   for (int i = 0; i < train.wheels; ++i) {
@@ -44,9 +46,11 @@ inline void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection,
     for (int kind = 0; kind < (train.surface_height != 0.0 ? 2 : 1); ++kind) {
       const auto by = [&](int response) {
         Row on_left{}, on_right{};
+        const Entry* of_left = entries<Entry>(p.inside) + (2 * kind + response) * ProbeForms::powers;
+        const Entry* of_right = of_left + ProbeForms::inner / 2;
         for (int k = ProbeForms::powers - 1; k >= 0; --k) {
-          on_left = on_left * xi + p.inside[0][kind][response][k];
-          on_right = on_right * xi + p.inside[1][kind][response][k];
+          on_left = on_left * xi + of_left[k];
+          on_right = on_right * xi + of_right[k];
         }
         return load[kind] * (left ? on_left : on_right);
       };
@@ -57,7 +61,8 @@ inline void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection,
 }
 
 /// Computes the responses of the probes after a step from `before`, m.
-inline void evaluate_probes(const BatchTask& t, double before) {
+template <class Entry>
+void evaluate_probes(const BatchTask& t, double before) {
   PeakState& s = *t.peaks;
   const BeamTask& beam = *t.beam;
   const int n = t.probes;
@@ -65,28 +70,28 @@ inline void evaluate_probes(const BatchTask& t, double before) {
   const Row h = (s.distance[latest] - before) / row(t.speed);
   for (int k = 0; k < n; ++k) {
     const ProbeForms& p = t.probe[k];
-    Row deflection = Rows::fill(p.constant[0]), interior_moment = Rows::fill(p.constant[1]);
+    Row deflection = spread(entries<Entry>(p.constant)[0]), interior_moment = spread(entries<Entry>(p.constant)[1]);
     const double* const state[3] = {beam.v, beam.w, beam.a[0]};
     for (int d = 0; d < 3; ++d) {
-      deflection += product(p, p.deflection[d], state[d]);
-      interior_moment += product(p, p.moment[d], state[d]);
+      deflection += product<Entry>(p, p.deflection[d], state[d]);
+      interior_moment += product<Entry>(p, p.moment[d], state[d]);
     }
-    add_wheels(t, p, deflection, interior_moment);
+    add_wheels<Entry>(t, p, deflection, interior_moment);
     Row &known = rows(s.interior_moment)[k], &lagged_moment = rows(s.interior_moment_lagged)[k];
-    if (s.lag <= 0.0 || s.samples == 1) {
+    if (!s.lags || s.samples == 1) {
       lagged_moment = interior_moment;
     } else {
-      Row decay{};
-      for (int l = 0; l < lanes; ++l) Rows::numbers(decay)[l] = __builtin_exp(-Rows::numbers(h)[l] / s.lag);
-      const Row late = s.lag * (interior_moment - known) / h;
+      Row decay = -h / row(s.lag);
+      for (int l = 0; l < lanes; ++l) Rows::numbers(decay)[l] = __builtin_exp(Rows::numbers(decay)[l]);
+      const Row late = row(s.lag) * (interior_moment - known) / h;
       lagged_moment = interior_moment - late + (lagged_moment - known + late) * decay;
     }
     known = interior_moment;
     response[k] = deflection;
-    response[n + k] = product(p, p.acceleration, beam.a[0]);
-    response[2 * n + k] = product(p, p.nodal_moment, beam.v) + lagged_moment;
+    response[n + k] = product<Entry>(p, p.acceleration, beam.a[0]);
+    response[2 * n + k] = product<Entry>(p, p.nodal_moment, beam.v) + lagged_moment;
     response[3 * n + k] =
-        product(p, p.nodal_moment, beam.w) + (s.lag > 0.0 ? (interior_moment - lagged_moment) / s.lag : Row{});
+        product<Entry>(p, p.nodal_moment, beam.w) + (s.lags ? (interior_moment - lagged_moment) / row(s.lag) : Row{});
   }
   Row sum{};
   for (int i = 0; i < beam.unknowns; ++i) sum += rows(beam.v)[i];
@@ -118,7 +123,7 @@ inline void record_peak(const BatchTask& t, int i, RowMask counts, Row value, Ro
 inline void interpolate_peak(const BatchTask& t, int i, int m) {
   const PeakState& s = *t.peaks;
   const bool is_moment = i >= 2 * t.probes;
-  if (is_moment && s.lag > 0.0) return;
+  if (is_moment && s.lags) return;
   const auto y = [&](int k) { return rows(s.response[k])[i]; };
   const Row middle = Rows::magnitude(y(m));
   const RowMask large = (middle > near_peak * rows(s.peak)[i]) & (middle > Rows::magnitude(y(m + 1)));
@@ -148,7 +153,8 @@ inline void interpolate_lagging_peak(const BatchTask& t, int i, RowMask counts) 
     if (!Rows::is_set(turns, l)) continue;
     double later = 0.0;
     const double top = base::extreme_of_lagging(Rows::numbers(h)[l], Rows::numbers(start)[l], Rows::numbers(last[i])[l],
-                                                Rows::numbers(rising)[l], Rows::numbers(falling)[l], s.lag, later);
+                                                Rows::numbers(rising)[l], Rows::numbers(falling)[l],
+                                                Rows::numbers(row(s.lag))[l], later);
     const double size = top < 0.0 ? -top : top;
     if (size <= Rows::numbers(rows(s.peak)[i])[l]) continue;
     Rows::numbers(rows(s.peak)[i])[l] = size;
@@ -161,7 +167,7 @@ inline void update_probe_peaks(const BatchTask& t, RowMask counts) {
   const int n = t.probes;
   for (int i = 0; i < 3 * n; ++i) {
     record_peak(t, i, counts, Rows::magnitude(rows(s.response[latest])[i]), s.distance[latest] / row(t.speed));
-    if (i < 2 * n || s.lag <= 0.0)
+    if (i < 2 * n || !s.lags)
       interpolate_peak(t, i, 2);
     else if (s.samples >= 2)
       interpolate_lagging_peak(t, i, counts);
@@ -260,7 +266,7 @@ inline void sample(const BatchTask& t, double distance, bool moved) {
   ++s.samples_since_kink;
   ++s.samples;
   const RowMask counts = runs_until(t, distance);
-  evaluate_probes(t, before);
+  t.beam->shared ? evaluate_probes<double>(t, before) : evaluate_probes<Row>(t, before);
   update_probe_peaks(t, counts);
   update_wheel_forces(t, counts, moved);
   if (moved) record_departures(t);

@@ -75,14 +75,37 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const structure::ModalBri
       kinks_(line_.mesh.kinks()) {
   task_.block = beam.block();
   task_.columns = beam.columns();
+  by_mass_ = beam.rayleigh().a;
+  by_stiffness_ = beam.rayleigh().b;
   if (modal_ != nullptr)
     read_modes(rest);
   else
     read_matrices(rest);
-  task_.dead = dead_load_.data();
   find_columns();
   const beam::Recovery recovery(beam, probes, gravity);
   for (std::size_t i = 0; i < probes.size(); ++i) add_probe(recovery, i);
+}
+
+bool BatchStructure::same_layout(const BatchStructure& other) const {
+  const auto same_element = [&](int e) {
+    const beam::Element &a = line_.mesh.element(e), &b = other.line_.mesh.element(e);
+    return a.x == b.x && a.length == b.length && a.span == b.span;
+  };
+  const auto same_probe = [](const ProbeForms& a, const ProbeForms& b) {
+    return a.count == b.count && std::equal(a.unknown, a.unknown + a.count, b.unknown) && a.x == b.x &&
+           a.from == b.from && a.to == b.to;
+  };
+  if (task_.block != other.task_.block || task_.columns != other.task_.columns ||
+      task_.unknowns != other.task_.unknowns || task_.elements != other.task_.elements ||
+      task_.proportional != other.task_.proportional || (by_stiffness_ > 0.0) != (other.by_stiffness_ > 0.0) ||
+      (modal_ == nullptr) != (other.modal_ == nullptr) || (beam_.rail() == nullptr) != (other.beam_.rail() == nullptr) ||
+      line_.model.surface_height != other.line_.model.surface_height || has_shear_ != other.has_shear_)
+    return false;
+  for (int e = 0; e < task_.elements; ++e)
+    if (!same_element(e)) return false;
+  return held_ == other.held_ && first_column_ == other.first_column_ &&
+         std::equal(std::begin(offset_), std::end(offset_), std::begin(other.offset_)) && kinks_ == other.kinks_ &&
+         std::equal(probes_.begin(), probes_.end(), other.probes_.begin(), other.probes_.end(), same_probe);
 }
 
 void BatchStructure::read_matrices(const std::vector<double>& rest) {
@@ -90,10 +113,8 @@ void BatchStructure::read_matrices(const std::vector<double>& rest) {
   const solve::BlockTridiagonal mass = read(beam_.mass()), stiffness = read(beam_.stiffness());
   solve::BlockTridiagonal damping = mass;
   task_.proportional = beam_.springs() == nullptr && beam_.dampers() == nullptr && beam_.rail() == nullptr;
-  task_.by_mass = beam_.rayleigh().a;
-  task_.by_stiffness = beam_.rayleigh().b;
   if (task_.proportional)
-    damping.combine(task_.by_mass, mass, 0.0, mass, task_.by_stiffness, stiffness);
+    damping.combine(by_mass_, mass, 0.0, mass, by_stiffness_, stiffness);
   else
     damping = read(beam_.damping());
   mass_ = by_columns(mass);
@@ -101,9 +122,6 @@ void BatchStructure::read_matrices(const std::vector<double>& rest) {
   stiffness_ = by_columns(stiffness);
   dead_load_ = product(stiffness, rest);  // load of these displacements; settlements are not in the matrices' columns
   task_.unknowns = task_.block * task_.columns;
-  task_.mass = mass_.data();
-  task_.damping = damping_.data();
-  task_.stiffness = stiffness_.data();
   task_.held = held_.data();
 }
 
@@ -116,9 +134,6 @@ void BatchStructure::read_modes(const std::vector<double>& rest) {
     stiffness_.push_back(modal_->omega()[i] * modal_->omega()[i]);
   }
   dead_load_ = rest;
-  task_.shape = shape_.data();
-  task_.modal_damping = damping_.data();
-  task_.modal_stiffness = stiffness_.data();
 }
 
 void BatchStructure::find_columns() {
@@ -154,23 +169,25 @@ void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t stati
   }
   p.acceleration = kept(forms.acceleration);
   p.nodal_moment = kept(forms.nodal_moment);
-  p.constant[0] = forms.constant_deflection;
-  p.constant[1] = forms.constant_moment;
+  std::vector<double> constant = {forms.constant_deflection, forms.constant_moment};
   lists_.push_back(forms.unknown);
   if (modal_ != nullptr) {
     for (std::size_t k = 0; k < forms.unknown.size(); ++k)
-      p.constant[0] += forms.deflection[0][k] * dead_load_[static_cast<std::size_t>(forms.unknown[k])];
+      constant[0] += forms.deflection[0][k] * dead_load_[static_cast<std::size_t>(forms.unknown[k])];
     lists_.back().resize(modal_->modes());
     std::iota(lists_.back().begin(), lists_.back().end(), 0);
   }
   p.unknown = lists_.back().data();
   p.count = static_cast<int>(lists_.back().size());
-  if (beam_.rail() == nullptr && modal_ == nullptr) find_inner_responses(recovery, station, forms.element, p);
+  p.constant = keep(constant);
+  std::vector<double> inside(ProbeForms::inner, 0.0);
+  if (beam_.rail() == nullptr && modal_ == nullptr) find_inner_responses(recovery, station, forms.element, p, inside);
+  p.inside = keep(inside);
 }
 
 /// Fits the polynomials of both sides to as many loads as they have coefficients.
 void BatchStructure::find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element,
-                                          ProbeForms& p) const {
+                                          ProbeForms& p, std::vector<double>& inside) const {
   p.x = recovery.stations()[station];
   std::tie(p.from, p.to) = recovery.element_of(station);
   const double xi = (p.x - p.from) / (p.to - p.from);
@@ -196,7 +213,8 @@ void BatchStructure::find_inner_responses(const beam::Recovery& recovery, std::s
     const Eigen::Matrix<double, n, 4> found = powers.fullPivLu().solve(values);
     for (int kind = 0; kind < 2; ++kind)
       for (int response = 0; response < 2; ++response)
-        for (int k = 0; k < n; ++k) p.inside[side][kind][response][k] = found(k, 2 * kind + response);
+        for (int k = 0; k < n; ++k)
+          inside[static_cast<std::size_t>(((2 * side + kind) * 2 + response) * n + k)] = found(k, 2 * kind + response);
   }
 }
 

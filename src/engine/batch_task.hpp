@@ -17,7 +17,8 @@ struct HeightTable {
   const double* values = nullptr;      // [station][height, slope*distance], m: numbers if shared, else rows
 };
 
-/// The response of a station: linear combinations of `count` unknowns of the structure (beam::StationForms).
+/// The response of a station: linear combinations of `count` unknowns of the structure (beam::StationForms), whose
+/// coefficients are entries (beam_task.hpp).
 struct ProbeForms {
   int count = 0;
   const int* unknown = nullptr;
@@ -25,12 +26,12 @@ struct ProbeForms {
   const double* acceleration = nullptr;  // m/s2: coefficients of a
   const double* nodal_moment = nullptr;  // N m: coefficients of v
   const double* moment[3] = {};          // N m: other parts of the moment, coefficients of v, w and a
-  double constant[2] = {};               // deflection and moment due to self-weight and temperature
+  const double* constant = nullptr;      // deflection and moment due to self-weight and temperature
   double from = 1.0, to = 0.0, x = 0.0;  // m: ends of the element, if wheels run on it; station
   /// The contributions of a force or a moment at xi of the element, left and right of the station, to deflection and
-  /// moment: coefficients of the powers of xi.
-  static constexpr int powers = 6;
-  double inside[2][2][2][powers] = {};
+  /// moment: coefficients of the powers of xi, [side][force, moment][deflection, moment][power].
+  static constexpr int powers = 6, inner = 8 * powers;
+  const double* inside = nullptr;
 };
 
 inline constexpr int kept_samples = base::samples_kept;
@@ -49,7 +50,8 @@ struct PeakState {
   // N m, for each probe: moment from loads and inertia inside the element, before and after the lag of b M' damping
   // (viscous_lag.hpp).
   double *interior_moment = nullptr, *interior_moment_lagged = nullptr;
-  double lag = 0.0;                          // s
+  bool lags = false;
+  const double* lag = nullptr;               // a row: s, above 0 in all lanes if `lags`
   double* largest_residual_root = nullptr;   // for each block: largest upper bound of sqrt(linearisation residual)
   double* coordinates_at_largest = nullptr;  // coordinates of the vehicles at that time
 };

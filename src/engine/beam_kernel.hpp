@@ -109,18 +109,19 @@ struct BeamRows {
   void find_residual(Row rate, Row displacement) const {
     Row *v = rows(t.v_predicted), *w = rows(t.w_predicted), *r = rows(t.residual), *u = rows(t.work);
     const int n = t.unknowns;
-    for (int i = 0; i < n; ++i) r[i] = Rows::fill(t.dead[i]);
+    for (int i = 0; i < n; ++i) r[i] = t.shared ? Rows::fill(t.dead[i]) : rows(t.dead)[i];
     if (!t.proportional) {
-      subtract_product(t.stiffness, v, r);
-      subtract_product(t.damping, w, r);
+      subtract_product(&ColumnMatrices::stiffness, v, r);
+      subtract_product(&ColumnMatrices::damping, w, r);
       return;
     }
-    const Row alpha = shift(rate), of_w = t.by_stiffness - alpha * (displacement + rate * t.by_stiffness);
+    const Row by_stiffness = row(t.by_stiffness), alpha = shift(rate);
+    const Row of_w = by_stiffness - alpha * (displacement + rate * by_stiffness);
     for (int i = 0; i < n; ++i) {
       u[i] = v[i] + of_w * w[i];
       v[i] -= displacement * alpha * w[i];
     }
-    subtract_product(t.stiffness, u, r);
+    subtract_product(&ColumnMatrices::stiffness, u, r);
   }
   /// The accelerations from x.
   void accelerations(Row rate, Row* a) const {
@@ -131,7 +132,7 @@ struct BeamRows {
   static constexpr int most_block = Size > 0 ? Size : most_unknowns_of_a_column;
 
  private:
-  Row shift(Row rate) const { return t.by_mass / (1.0 + rate * t.by_mass); }
+  Row shift(Row rate) const { return row(t.by_mass) / (1.0 + rate * row(t.by_mass)); }
 
   /// y -= A x, or A^T x, for one block by rows.
   template <bool transposed = false>
@@ -156,14 +157,15 @@ struct BeamRows {
 
   /// Stores the diagonal block of J, by rows.
   void set_diagonal(int column, Row rate, Row displacement) const {
-    const double *m = t.mass + 2L * column * bb, *d = t.damping + 2L * column * bb, *k = t.stiffness + 2L * column * bb;
     const char* held = t.held + static_cast<long>(column) * b;
-    for (int i = 0; i < b; ++i)
-      for (int j = 0; j < b; ++j) {
-        const int at = i + b * j;
-        pivot(column)[i * b + j] =
-            held[i] != 0 || held[j] != 0 ? Rows::fill(i == j ? 1.0 : 0.0) : m[at] + rate * d[at] + displacement * k[at];
-      }
+    with_matrices(column, [&](const auto* m, const auto* d, const auto* k) {
+      for (int i = 0; i < b; ++i)
+        for (int j = 0; j < b; ++j) {
+          const int at = i + b * j;
+          pivot(column)[i * b + j] = held[i] != 0 || held[j] != 0 ? Rows::fill(i == j ? 1.0 : 0.0)
+                                                                  : m[at] + rate * d[at] + displacement * k[at];
+        }
+    });
   }
   /// Subtracts the contribution of an eliminated neighbour from the diagonal block.
   void subtract_neighbour(int pair, int further, int nearer, Row rate, Row displacement) const {
@@ -206,19 +208,36 @@ struct BeamRows {
     invert_middle(rate, displacement);
   }
 
-  /// y -= A x.
-  void subtract_product(const double* A, const Row* x, Row* y) const {
+  /// Calls use(M, C, K) with the blocks of a column.
+  template <class Use>
+  void with_matrices(int column, Use use) const {
+    const ColumnMatrices& of = t.column[column];
+    of.rows ? use(rows(of.mass), rows(of.damping), rows(of.stiffness)) : use(of.mass, of.damping, of.stiffness);
+  }
+
+  /// y -= A x. Each block is read once: the products of a coupling block with both of its columns are computed together.
+  void subtract_product(const double* ColumnMatrices::* A, const Row* x, Row* y) const {
+    Row of_before[most_block] = {};  // contribution of the column before
     for (int c = 0; c < t.columns; ++c) {
-      const double *own = A + 2L * c * bb, *next = own + bb, *before = own - bb;
-      const Row* of = x + static_cast<long>(c) * b;
-      Row sum[most_block];
-      for (int i = 0; i < b; ++i) {
-        sum[i] = Row{};
-        for (int j = 0; j < b; ++j) sum[i] += own[i + b * j] * of[j];
-        for (int j = 0; j < b && c + 1 < t.columns; ++j) sum[i] += next[i + b * j] * of[b + j];
-        for (int j = 0; j < b && c > 0; ++j) sum[i] += before[j + b * i] * of[j - b];
-      }
-      for (int i = 0; i < b; ++i) y[static_cast<long>(c) * b + i] -= sum[i];
+      const auto subtract_column = [&](const auto* own) {
+        const auto* next = own + bb;
+        const Row* of = x + static_cast<long>(c) * b;
+        Row sum[most_block];
+        for (int i = 0; i < b; ++i) {
+          sum[i] = of_before[i];
+          for (int j = 0; j < b; ++j) sum[i] += own[i + b * j] * of[j];
+        }
+        if (c + 1 < t.columns)
+          for (int j = 0; j < b; ++j) {
+            of_before[j] = Row{};
+            for (int i = 0; i < b; ++i) {
+              sum[i] += next[i + b * j] * of[b + j];
+              of_before[j] += next[i + b * j] * of[i];
+            }
+          }
+        for (int i = 0; i < b; ++i) y[static_cast<long>(c) * b + i] -= sum[i];
+      };
+      t.column[c].rows ? subtract_column(rows(t.column[c].*A)) : subtract_column(t.column[c].*A);
     }
   }
 
@@ -231,15 +250,15 @@ struct BeamRows {
   /// Stores the coupling block of J for the pair, by rows: the rows of the right column with the left column, or the
   /// reverse.
   void couple(int pair, bool rows_of_right, Row rate, Row displacement, Row* to) const {
-    const double* m = t.mass + (2L * pair + 1) * bb;
-    const double *d = t.damping + (2L * pair + 1) * bb, *k = t.stiffness + (2L * pair + 1) * bb;
     const char* held = t.held + static_cast<long>(pair) * b;
-    for (int i = 0; i < b; ++i)  // unknown i of the left column
-      for (int j = 0; j < b; ++j) {
-        const int at = i + b * j;
-        to[rows_of_right ? j * b + i : i * b + j] =
-            held[i] != 0 || held[b + j] != 0 ? Row{} : m[at] + rate * d[at] + displacement * k[at];
-      }
+    with_matrices(pair, [&](const auto* m, const auto* d, const auto* k) {
+      for (int i = 0; i < b; ++i)  // unknown i of the left column
+        for (int j = 0; j < b; ++j) {
+          const int at = bb + i + b * j;
+          to[rows_of_right ? j * b + i : i * b + j] =
+              held[i] != 0 || held[b + j] != 0 ? Row{} : m[at] + rate * d[at] + displacement * k[at];
+        }
+    });
   }
 
   /// Computes the inverse of J within the band, column by column from the middle, at the elements' transverse unknowns.

@@ -8,19 +8,27 @@ namespace traverse::engine {
 
 inline constexpr int most_unknowns_of_a_column = 8;
 
-/// M a + C w + K v = P + forces of wheels, with block tridiagonal matrices that all runs share.
+/// The matrices' blocks of a column: of its unknowns, and of these with the next column's, each by columns. They are
+/// numbers if all runs have the same, otherwise rows.
+struct ColumnMatrices {
+  const double *mass = nullptr, *damping = nullptr, *stiffness = nullptr;
+  bool rows = false;
+};
+
+/// M a + C w + K v = P + forces of wheels, with block tridiagonal matrices. An *entry* of a constant vector is a number
+/// if all runs share the structure, otherwise a row.
 struct BeamTask {
+  bool shared = true;              // all runs share the structure
   int block = 2, columns = 0;  // unknowns of a column
   int unknowns = 0;            // block*columns, or number of modes
-  const double *mass = nullptr, *damping = nullptr,
-               *stiffness = nullptr;         // [column][2]: blocks by columns, of its
-                                             // unknowns, and of these with the next column's
-  bool proportional = false;                 // C = by_mass M + by_stiffness K
-  double by_mass = 0.0, by_stiffness = 0.0;  // 1/s, s
-  const char* held = nullptr;                // for each unknown: whether a support holds it
-  const double* dead = nullptr;  // for each unknown: P, N and N m; by modes the displacements under P, m and rad
+  const ColumnMatrices* column = nullptr;                    // one for each column
+  bool proportional = false;                                 // C = by_mass M + by_stiffness K
+  const double *by_mass = nullptr, *by_stiffness = nullptr;  // rows: 1/s, s
+  const char* held = nullptr;                                // for each unknown: whether a support holds it
+  // An entry for each unknown: P, N and N m; by modes the displacements under P, m and rad.
+  const double* dead = nullptr;
 
-  // Only by modes, otherwise null: the modes' values at every nodal unknown; 2 sigma, 1/s, and omega^2, 1/s2.
+  // Entries, only by modes, otherwise null: the modes' values at every nodal unknown; 2 sigma, 1/s, and omega^2, 1/s2.
   const double *shape = nullptr, *modal_damping = nullptr, *modal_stiffness = nullptr;
   char* under_wheels = nullptr;   // for each column: ModalRows::set_window
   double* modal_stage = nullptr;  // a row for each mode: its coordinate under the forces of the last pass

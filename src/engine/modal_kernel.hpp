@@ -12,12 +12,14 @@
 namespace traverse::engine {
 namespace {
 
+/// Entry: double for modes that all runs share, otherwise Row.
+template <class Entry>
 struct ModalRows {
   BeamTask& t;
 
   void factorise(Row rate, Row displacement) const {
-    for (int i = 0; i < t.unknowns; ++i)
-      rows(t.pivot)[i] = 1.0 / (1.0 + rate * t.modal_damping[i] + displacement * t.modal_stiffness[i]);
+    const Entry *damping = entries<Entry>(t.modal_damping), *stiffness = entries<Entry>(t.modal_stiffness);
+    for (int i = 0; i < t.unknowns; ++i) rows(t.pivot)[i] = 1.0 / (1.0 + rate * damping[i] + displacement * stiffness[i]);
     const int* o = t.transverse;
     for (int e = 0; e < t.elements; ++e) {
       const int first = t.first_column[e] * t.block,
@@ -25,7 +27,7 @@ struct ModalRows {
       Row* to = rows(t.compliance) + 10L * e;
       for (int i = 0, n = 0; i < 4; ++i)
         for (int j = i; j < 4; ++j, ++n) {
-          const double *one = shapes(unknown[i]), *other = shapes(unknown[j]);
+          const Entry *one = shapes(unknown[i]), *other = shapes(unknown[j]);
           Row sum{};
           for (int k = 0; k < t.unknowns; ++k) sum += one[k] * other[k] * rows(t.pivot)[k];
           to[n] = (i == j ? 1.0 : 2.0) * displacement * sum;
@@ -36,8 +38,8 @@ struct ModalRows {
   /// The modal forces without the forces of wheels.
   void find_residual(Row /*rate*/, Row /*displacement*/) const {
     const Row *v = rows(t.v_predicted), *w = rows(t.w_predicted);
-    for (int i = 0; i < t.unknowns; ++i)
-      rows(t.residual)[i] = -(t.modal_damping[i] * w[i] + t.modal_stiffness[i] * v[i]);
+    const Entry *damping = entries<Entry>(t.modal_damping), *stiffness = entries<Entry>(t.modal_stiffness);
+    for (int i = 0; i < t.unknowns; ++i) rows(t.residual)[i] = -(damping[i] * w[i] + stiffness[i] * v[i]);
   }
 
   /// Marks the columns under wheels; no others are loaded or evaluated.
@@ -61,7 +63,7 @@ struct ModalRows {
   void solve(Row displacement, RowMask open) const {
     Row* a = rows(t.solution);
     for (int i = 0; i < t.unknowns; ++i) a[i] = open ? rows(t.residual)[i] : a[i];
-    for_marked([&](int unknown, const double* phi) {
+    for_marked([&](int unknown, const Entry* phi) {
       const Row force = open ? rows(t.work)[unknown] : Row{};
       for (int i = 0; i < t.unknowns; ++i) a[i] += phi[i] * force;
     });
@@ -69,8 +71,8 @@ struct ModalRows {
       a[i] = open ? rows(t.pivot)[i] * a[i] : a[i];
       rows(t.modal_stage)[i] = rows(t.v_predicted)[i] + displacement * a[i];
     }
-    for_marked([&](int unknown, const double* phi) {
-      Row value = Rows::fill(t.dead[unknown]);
+    for_marked([&](int unknown, const Entry* phi) {
+      Row value = spread(entries<Entry>(t.dead)[unknown]);
       for (int i = 0; i < t.unknowns; ++i) value += phi[i] * rows(t.modal_stage)[i];
       rows(t.v_stage)[unknown] = value;
     });
@@ -81,7 +83,9 @@ struct ModalRows {
   }
 
  private:
-  const double* shapes(int unknown) const { return t.shape + static_cast<long>(unknown) * t.unknowns; }
+  const Entry* shapes(int unknown) const {
+    return entries<Entry>(t.shape) + static_cast<long>(unknown) * t.unknowns;
+  }
 
   /// Calls use(unknown, its values in the modes).
   template <class Use>

@@ -16,6 +16,13 @@ using RowMask = Rows::Mask;
 inline const Row* rows(const double* numbers) { return Rows::lanes(numbers); }
 inline Row* rows(double* numbers) { return Rows::lanes(numbers); }
 inline const Row& row(const double* numbers) { return *rows(numbers); }
+/// Entries of a matrix: numbers that all runs share, or rows with a number for each run.
+template <class Entry>
+const Entry* entries(const double* numbers) {
+  return reinterpret_cast<const Entry*>(numbers);
+}
+inline Row spread(double entry) { return Rows::fill(entry); }
+inline Row spread(Row entry) { return entry; }
 
 /// The inverse of a matrix with positive definite symmetric part, in place, without pivoting.
 inline void invert(Row* A, int n) {

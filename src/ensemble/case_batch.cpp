@@ -43,7 +43,6 @@ CaseBatch::CaseBatch(const Scene& scene, const SharedBeam& shared)
   const double gravity = scene.self_weight ? scene.gravity : 0.0;
   structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, modal(), fleet_, unloaded_,
                                                               scene.output.probes, gravity);
-  plan_.structure = structure_.get();
   plan_.level_until = scene.profile.level() && !system_.structure()->deformed_without_traffic()
                           ? shared.beam->running().mesh.start()
                           : -1e300;
@@ -148,13 +147,15 @@ CaseBatch::Ready CaseBatch::ready(std::span<const Member> members, const Steps& 
   Ready ready;
   ready.plan_ = first.plan_;
   ready.plan_.method = steps.method;
-  const double ds = spacing(steps, members.front().run.speed);
+  const LaneRun& any = members.front().run;
+  const double ds = spacing(steps, any.step_speed > 0.0 ? any.step_speed : any.speed);
   double distance = 0.0;
   for (const Member& member : members) distance = std::max(distance, member.run.speed * member.run.end);
   ready.add_equal_steps(first.events(distance), ds, distance, steps);
   for (const auto& [lanes, run] : members) {
     ready.tracks_.push_back(lanes->track(run.seed, distance + ds));
-    ready.runs_.push_back({&lanes->fleet_, ready.tracks_.back().get(), &lanes->state_, run.speed, run.end});
+    ready.runs_.push_back({lanes->structure_.get(), &lanes->fleet_, ready.tracks_.back().get(), &lanes->state_,
+                           run.speed, run.end});
   }
   return ready;
 }
@@ -182,12 +183,11 @@ bool CaseBatch::merge(const CaseBatch& other) {
   const std::vector<train::MovingVehicle>&own = fleet_.vehicles, &others = other.fleet_.vehicles;
   if (!std::equal(own.begin(), own.end(), others.begin(), others.end(), same_vehicle) ||
       !std::equal(wheels_.begin(), wheels_.end(), other.wheels_.begin(), other.wheels_.end(), same_distance) ||
-      &shared_ != &other.shared_ || kinks_ != other.kinks_ || plan_.level_until != other.plan_.level_until ||
+      !structure_->same_layout(*other.structure_) || kinks_ != other.kinks_ || plan_.level_until != other.plan_.level_until ||
       scene_.output.probes != other.scene_.output.probes || track_range_ != other.track_range_ ||
       track_distance_ != other.track_distance_)
     return false;
-  structure_ = other.structure_;
-  plan_.structure = structure_.get();
+  if (&shared_ == &other.shared_) structure_ = other.structure_;
   return true;
 }
 

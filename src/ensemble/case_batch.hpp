@@ -22,6 +22,7 @@ namespace traverse::app {
 struct LaneRun {
   double speed = 0.0, end = 0.0;      // speed in m/s; duration in s
   std::optional<std::uint64_t> seed;  // seed of its track; none: the scene's track
+  double step_speed = 0.0;            // m/s: the speed whose steps the run has; 0: its own
 };
 
 /// The method of a sweep's runs, with its coefficients for a step of 1 s.
@@ -60,7 +61,7 @@ class CaseBatch {
     std::vector<std::shared_ptr<const track::HeightTable>> tracks_;
     std::vector<engine::BatchRun> runs_;
   };
-  /// At most engine::widest runs with speeds of one step group (engine/speed_class.hpp).
+  /// At most engine::widest runs with steps of one step group (engine/speed_class.hpp).
   Ready ready(std::span<const LaneRun> runs, const Steps& steps);
   /// Distance, m, between the positions at which runs of this speed's step group store accelerations.
   static double spacing(const Steps& steps, double speed);

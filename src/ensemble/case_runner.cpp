@@ -84,13 +84,14 @@ std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& run
   std::vector<std::size_t> order(runs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto key = [&](std::size_t i) {
-    return std::tuple(engine::speed_class(runs[i].speed), runs[i].seed, runs[i].speed);
+    return std::tuple(engine::speed_class(runs[i].speed_of_steps()), runs[i].seed, runs[i].speed);
   };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
   std::vector<std::vector<std::size_t>> groups;
   for (const std::size_t i : order) {
     const bool fits = !groups.empty() && groups.back().size() < most &&
-                      engine::speed_class(runs[groups.back().front()].speed) == engine::speed_class(runs[i].speed);
+                      engine::speed_class(runs[groups.back().front()].speed_of_steps()) ==
+                          engine::speed_class(runs[i].speed_of_steps());
     if (!fits) groups.emplace_back();
     groups.back().push_back(i);
   }
@@ -127,7 +128,8 @@ std::vector<CaseResult> CaseRunner::run_batch(std::size_t train, std::span<const
                                               const std::function<void(double)>& reached) {
   std::vector<CaseBatch::Member> batch;
   for (const auto& [runner, one] : members)
-    batch.push_back({&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed}});
+    batch.push_back(
+        {&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed, one.speed_of_steps()}});
   std::vector<CaseResult> results;
   for (const engine::BatchResult& crossing :
        CaseBatch::ready(std::span<const CaseBatch::Member>(batch), batch.front().lanes->steps()).run()) {

@@ -31,6 +31,9 @@ struct CaseResult : base::PassagePeaks {
 struct CaseRun {
   double speed = 0.0;                 // m/s
   std::optional<std::uint64_t> seed;  // seed of its track; none: the scene's track
+  double step_speed = 0.0;            // m/s: the run has the steps of this speed; 0: of its own
+
+  double speed_of_steps() const { return step_speed > 0.0 ? step_speed : speed; }
 };
 
 /// The indices of runs in batches: neighbours in the order of step group, seed and speed, up to `most` of them.

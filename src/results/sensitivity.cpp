@@ -121,10 +121,10 @@ std::vector<MorrisMeasures> morris_measures(const std::vector<double>& values, c
 
 std::vector<LocalDerivative> local_derivatives(const std::vector<double>& values, const std::vector<double>& steps) {
   std::vector<LocalDerivative> derivatives;
-  for (std::size_t i = 0; 2 * i < steps.size(); ++i) {
+  for (std::size_t i = 0; i < steps.size(); ++i) {
     const double* at = &values[1 + base::local_points_per_factor * i];
-    const double rough = (at[0] - at[1]) / (2.0 * steps[2 * i]), fine = (at[2] - at[3]) / (2.0 * steps[2 * i + 1]);
-    derivatives.push_back({fine, std::abs(fine - rough)});
+    const double ahead = (at[0] - values.front()) / steps[i], behind = (values.front() - at[1]) / steps[i];
+    derivatives.push_back({0.5 * (ahead + behind), 0.5 * std::abs(ahead - behind)});
   }
   return derivatives;
 }
@@ -196,7 +196,7 @@ std::vector<double> SensitivityAnalysis::numbers(const Quantity& quantity) const
     std::vector<double> steps;
     for (std::size_t i = 0; i < factors; ++i) {
       const double* value = &factors_[i]->values[1 + base::local_points_per_factor * i];
-      steps.insert(steps.end(), {0.5 * (value[0] - value[1]), 0.5 * (value[2] - value[3])});
+      steps.push_back(0.5 * (value[0] - value[1]));
     }
     const std::vector<LocalDerivative> derivatives = local_derivatives(quantity.values, steps);
     for (std::size_t i = 0; i < factors; ++i)

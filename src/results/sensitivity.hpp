@@ -34,13 +34,12 @@ struct MorrisMeasures {
 std::vector<MorrisMeasures> morris_measures(const std::vector<double>& values, const std::vector<int>& step,
                                             std::size_t factors, double confidence, std::uint64_t seed);
 
-/// The derivative of a quantity with respect to one factor at the nominal point, by central differences of the short
-/// step; error: its difference from that of the long step, of the curvature or of a kink.
+/// The derivative of a quantity with respect to one factor at the nominal point, by a central difference; error: half
+/// the difference between those to either side, which the curvature or a kink makes and which exceeds the error.
 struct LocalDerivative {
   double value = 0.0, error = 0.0;
 };
-/// values: at the nominal point, then for each factor + and - the long step, + and - the short step; steps: the long
-/// step and the short step of each factor.
+/// values: at the nominal point, then for each factor + and - its step.
 std::vector<LocalDerivative> local_derivatives(const std::vector<double>& values, const std::vector<double>& steps);
 
 /// The analysis of a study: every peak and every limited quantity, each at the greatest value of all runs that differ

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -126,8 +125,8 @@ std::vector<double> StudyAxes::local_values(const VaryReader& reader, std::size_
   const double mean = reader.mean(), scale = mean != 0.0 ? std::abs(mean) : reader.deviation();
   std::vector<double> values(1 + base::local_points_per_factor * factors, mean);
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(1 + base::local_points_per_factor * i);
-  const std::array steps = {base::long_step, -base::long_step, base::short_step, -base::short_step};
-  for (std::size_t k = 0; k < steps.size(); ++k) at[static_cast<std::ptrdiff_t>(k)] += steps[k] * scale;
+  at[0] += base::local_step * scale;
+  at[1] -= base::local_step * scale;
   return values;
 }
 

@@ -21,6 +21,7 @@
 #include "run/process.hpp"
 #include "run/signals.hpp"
 #include "study/find.hpp"
+#include "study/local_steps.hpp"
 #include "study/study_file.hpp"
 #include "study/study_model.hpp"
 #include "study/study_refinement.hpp"
@@ -46,6 +47,13 @@ std::string description(const StudyDimension& d, bool of_design) {
   std::string list;
   for (const double value : d.values) list += fmt::format("{}{:g}", list.empty() ? "" : ", ", value);
   return fmt::format("{}: {}", d.name(), list);
+}
+
+/// What the runs of one batch may differ in.
+std::string differences(StudyScenes::Mixing mixing) {
+  if (mixing == StudyScenes::Mixing::nothing) return "speed and track";
+  if (mixing == StudyScenes::Mixing::vehicles) return "speed, track and vehicle parameters";
+  return "speed, track and parameters of vehicles and bridge";
 }
 
 void describe_runs(const Study& study, std::vector<std::string>& notes) {
@@ -88,10 +96,7 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
   if (first.has_lanes())
     notes.push_back(base::detail(
         fmt::format("up to {} runs{} are advanced together, one in each lane of {} vectors", first.width(),
-                    study.sweep ? ""
-                                : fmt::format(" that differ in {} only", scenes.mixes_vehicles(first.width())
-                                                                             ? "speed, track and vehicle parameters"
-                                                                             : "speed and track"),
+                    study.sweep ? "" : fmt::format(" that differ in {} only", differences(scenes.mixing())),
                     engine::instructions())));
   else if (!first.lane_obstacle().empty() && !scene.vehicles.empty())
     notes.push_back("runs are computed one by one: " + first.lane_obstacle());
@@ -259,9 +264,11 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   scenes.choose(choice.model);
   const Scene scene = with(scenes.base(scenes.extreme_bases().front()), choice.model);
   const results::RunModel model = stored_model(scene, choice.accuracy);
-  const CaseRunner& first = *scenes.runner(0, &notes).runs;
+  const std::shared_ptr<CaseRunner> runner = scenes.runner(0, &notes).runs;
+  const CaseRunner& first = *runner;
   std::vector<std::string> of_others;
-  for (const std::size_t base : scenes.extreme_bases()) scenes.runner(base, &of_others);
+  for (const std::size_t base : scenes.bases_of_model()) scenes.runner(base, &of_others);
+  reduce_local_steps(scenes);
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
   for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
   std::optional<SweepFindings> findings;

@@ -20,7 +20,7 @@ std::optional<Choice> unbatched(const Scene& scene, std::vector<std::string>& no
 
 /// The combined choice for the study's extreme scenes; empty if `choose` is not applicable to one of them.
 std::optional<Choice> choose_at_extremes(const StudyScenes& scenes, Choose choose, std::vector<std::string>& notes) {
-  const std::vector<std::size_t> bases = scenes.extreme_bases();
+  const std::vector<std::size_t> bases = scenes.bases_of_model();
   std::optional<Choice> all;
   std::vector<std::vector<std::string>> notes_of_bases;
   for (const std::size_t base : bases) {

@@ -41,7 +41,7 @@ bool separates_curves(const Study& study, std::size_t axis) {
 }
 
 /// " of A3" for a sweep, " at track_seed 5" for a study.
-std::string name_of(const Study& study, std::size_t run) {
+std::string curve_name(const Study& study, std::size_t run) {
   std::string name;
   if (study.sweep) {
     name = results::train_name(study, study.place(run, 0));
@@ -63,7 +63,7 @@ Curves sort_runs(const Study& study) {
     for (std::size_t axis = 0; axis < study.axes.size(); ++axis)
       if (separates_curves(study, axis)) at.push_back(study.place(run, axis));
     const auto [found, is_new] = known.try_emplace(at, curves.names.size());
-    if (is_new) curves.names.push_back(name_of(study, run));
+    if (is_new) curves.names.push_back(curve_name(study, run));
     curves.curve.push_back(found->second);
     const double speed = study.value(run, speeds);
     curves.place.push_back(

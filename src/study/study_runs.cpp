@@ -69,7 +69,7 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
     std::vector<CaseRunner::Member> members;
     std::vector<std::size_t> places;
     for (std::size_t j = i; j < group.size(); ++j) {
-      if (done[j] != 0 || !scenes.compatible(runners[j], runners[i])) continue;
+      if (done[j] != 0 || !StudyScenes::compatible(runners[j], runners[i])) continue;
       members.push_back({runners[j].runs.get(), scenes.runs()[group[j]].own});
       places.push_back(j);
       done[j] = 1;
@@ -84,7 +84,7 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
 /// ranks end at about the same time.
 Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   const bool sweep = scenes.study().sweep;
-  Groups groups = scenes.groups(scenes.runner(0).runs->width(), sweep ? known : std::vector<char>());
+  Groups groups = scenes.groups(sweep ? known : std::vector<char>());
   std::erase_if(groups, [&](const std::vector<std::size_t>& group) {
     return std::all_of(group.begin(), group.end(), [&](std::size_t run) { return known[run] != 0; });
   });

@@ -30,6 +30,10 @@ bool is_of_vehicles(const StudyDimension& d) {
                      [](const std::string& option) { return option.starts_with("vehicle_"); });
 }
 
+bool is_local(const Study& study) {
+  return study.sensitivity && study.sensitivity->method == options::Sensitivity::Method::local;
+}
+
 Study study_of_sweep(const Scene& scene) {
   std::vector<double> speeds = scene.sweep->speeds;
   if (speeds.empty()) speeds = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
@@ -70,17 +74,20 @@ void StudyScenes::enumerate(const Study& study) {
   std::map<std::vector<double>, std::size_t> known,
       bridges;  // indices of bases and bridges by the values that define them
   std::set<double> speeds;
+  const bool local = is_local(study);
   for (std::size_t run = 0; run < study.runs(); ++run) {
     StudyRun one{0, study.sweep ? study.place(run, 0) : 0, 0, {speed, {}}};
     std::vector<double> of_base, of_bridge;
     for (const StudyDimension& d : study.dimensions) {
       const double value = study.value(run, d);
-      if (is_speed(d))
+      if (is_speed(d)) {
         one.own.speed = value;
-      else if (is_seed(d))
+        if (local && d.axis == study.sensitivity->axis) one.own.step_speed = d.values.front();
+      } else if (is_seed(d)) {
         one.own.seed = static_cast<std::uint64_t>(value);
-      else if (!study.sweep)
+      } else if (!study.sweep) {
         of_base.push_back(value);
+      }
       if (!study.sweep && !is_speed(d) && !is_seed(d) && !is_of_vehicles(d)) of_bridge.push_back(value);
     }
     if (!(one.own.speed > 0.0))
@@ -100,7 +107,9 @@ void StudyScenes::enumerate(const Study& study) {
       seeds_.push_back(*one.own.seed);
     speeds.insert(one.own.speed);
   }
+  const bool same_range = !speeds_.empty() && speeds_.front() == *speeds.begin() && speeds_.back() == *speeds.rbegin();
   speeds_.assign(speeds.begin(), speeds.end());
+  if (!same_range) runners_.clear();  // their tracks have the range that the fastest run needs
 }
 
 Scene StudyScenes::base(std::size_t base) const {
@@ -135,9 +144,11 @@ std::vector<std::size_t> StudyScenes::extreme_bases() const {
   return {found.begin(), found.end()};
 }
 
-bool StudyScenes::compatible(const Runner& a, const Runner& b) const {
-  const auto bridge = [&](const Runner& one) { return runs_[first_run_[one.base]].bridge; };
-  return a.base == b.base || (a.merged && b.merged && bridge(a) == bridge(b));
+std::vector<std::size_t> StudyScenes::bases_of_model() const {
+  const bool only_factors = std::all_of(study_.dimensions.begin(), study_.dimensions.end(), [&](const auto& d) {
+    return is_speed(d) || is_seed(d) || (study_.sensitivity && d.axis == study_.sensitivity->axis);
+  });
+  return is_local(study_) && only_factors ? std::vector<std::size_t>{0} : extreme_bases();
 }
 
 StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::string>* notes) {
@@ -146,9 +157,11 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
       known.base = wanted;
       return known;
     }
-  // All bases of a bridge use the model of its first base and can be computed in one batch with it.
+  // All bases of a bridge use the model of its first base and can be computed in one batch with it. Bridges that differ
+  // in parameter values only can be computed in one batch with the bridge of the first base.
   const std::size_t first = first_of_bridge_[runs_[first_run_[wanted]].bridge];
-  const std::shared_ptr<CaseRunner> model = wanted == first ? nullptr : runner(first).runs;
+  const std::size_t with = wanted != first ? first : 0;
+  const std::optional<Runner> other = wanted != 0 ? std::optional(runner(with)) : std::nullopt;
   const Scene scene = chosen_ ? completed(base(wanted), *chosen_) : base(wanted);
   if (runners_.size() == max_runners) {
     const auto oldest = std::find_if(runners_.begin(), runners_.end(), [&](const Runner& one) {
@@ -159,11 +172,12 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
     runners_.erase(oldest);
   }
   std::vector<std::string> ignored;
-  const bool same_beam = model != nullptr && scene.beam->axial == model->axial();
+  const bool same_beam = wanted != first && scene.beam->axial == other->runs->axial();
   auto made = std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored,
-                                           same_beam ? model->beam() : nullptr, notes != nullptr);
-  const bool merged = model == nullptr || (same_beam && made->merge(*model));
-  return runners_.emplace_back(Runner{wanted, merged, std::move(made), values_of_bases_[wanted]});
+                                           same_beam ? other->runs->beam() : nullptr, notes != nullptr);
+  const std::vector<double>& values = values_of_bases_[wanted];
+  const bool merged = other && made->merge(*other->runs);
+  return runners_.emplace_back(Runner{wanted, std::move(made), values, merged ? other->batch : values});
 }
 
 long StudyScenes::separate_runs() const {
@@ -172,21 +186,33 @@ long StudyScenes::separate_runs() const {
   return sum;
 }
 
-bool StudyScenes::mixes_vehicles(std::size_t width) const {
-  return width > 1 && bases() > first_of_bridge_.size() && runs_.size() < width * bases();
+StudyScenes::Mixing StudyScenes::mixing() {
+  const CaseRunner& any = *runner(0).runs;
+  const std::size_t width = any.width(), bridges = first_of_bridge_.size();
+  if (!any.has_lanes() || width == 1) return Mixing::nothing;
+  if (bridges > 1 && runs_.size() < width * bridges) return Mixing::vehicles_and_bridges;
+  return bases() > bridges && runs_.size() < width * bases() ? Mixing::vehicles : Mixing::nothing;
 }
 
-std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width, const std::vector<char>& excluded) const {
+std::vector<std::vector<std::size_t>> StudyScenes::groups(const std::vector<char>& excluded) {
+  const Mixing mixing = this->mixing();
+  const std::size_t width = runner(0).runs->width();
+  // The part of the study whose runs may be in one batch. Each part with several runs of a bridge has few bridges, so
+  // that their models are assembled once.
+  const auto part = [&](const StudyRun& run) {
+    if (mixing == Mixing::nothing) return run.base;
+    if (mixing == Mixing::vehicles) return run.bridge;
+    return runs_.size() > first_of_bridge_.size() ? run.bridge / width : 0;
+  };
   // Blocks of `width` seeds are computed together: each track is generated once, and the tracks in use fit into memory.
-  using Block = std::array<std::size_t, 3>;  // scene, train, block of seeds
+  using Block = std::array<std::size_t, 3>;  // part, train, block of seeds
   std::map<Block, std::vector<std::size_t>> blocks;
   std::map<std::uint64_t, std::size_t> seeds;
-  const bool mixed = mixes_vehicles(width);
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     if (!excluded.empty() && excluded[i] != 0) continue;
     const StudyRun& run = runs_[i];
     const std::size_t seed = run.own.seed ? seeds.try_emplace(*run.own.seed, seeds.size()).first->second : 0;
-    blocks[{mixed ? run.bridge : run.base, run.train, seed / width}].push_back(i);
+    blocks[{part(run), run.train, seed / width}].push_back(i);
   }
   std::vector<std::vector<std::size_t>> groups;
   for (const auto& block : blocks) {

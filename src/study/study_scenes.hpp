@@ -26,7 +26,7 @@ class StudyScenes {
   /// The scene must have a study or a sweep and must outlive this object. Throws InputError if speeds contradict each
   /// other.
   explicit StudyScenes(const Scene& scene);
-  /// Replaces the study by one with more speeds between its slowest and its fastest.
+  /// Replaces the study by one with more speeds between its slowest and its fastest, or with other values.
   void enumerate(const Study& study);
 
   const Study& study() const { return study_; }
@@ -35,29 +35,32 @@ class StudyScenes {
   std::size_t bases() const { return first_run_.size(); }
   /// A base as the user describes it, with all speeds of the study in its sweep.
   Scene base(std::size_t base) const;
-  /// The bases that may need the finest model: the base of the first run, and the bases with the least and the greatest
-  /// value of each option.
+  /// The base of the first run, and the bases with the least and the greatest value of each option.
   std::vector<std::size_t> extreme_bases() const;
+  /// The bases that may need the finest model: the extreme ones, or the first one if all differ little from it.
+  std::vector<std::size_t> bases_of_model() const;
 
   /// Sets the model chosen for the study, for mesh, step, modes and others that a base leaves open.
   void choose(const NumericalModel& chosen) { chosen_ = chosen; }
   /// The object that computes the runs of a base.
   struct Runner {
     std::size_t base = 0;
-    bool merged = false;  // its runs are compatible with the runs of the other merged bases on its bridge
     std::shared_ptr<CaseRunner> runs;
     std::vector<double> values;  // of its base
+    std::vector<double> batch;   // values of the base with which it was merged; its own values if with none
   };
   /// The last used runners are stored. With `notes`, which get the description of the model, its runs are checked.
   Runner runner(std::size_t base, std::vector<std::string>* notes = nullptr);
   /// Whether runs of two bases can be computed in one batch.
-  bool compatible(const Runner& a, const Runner& b) const;
+  static bool compatible(const Runner& a, const Runner& b) { return a.batch == b.batch; }
 
-  /// Whether one batch may contain runs of vehicles with different parameters.
-  bool mixes_vehicles(std::size_t width) const;
-  /// Indices of the runs of each batch, sorted by bridge. Runs with a nonzero flag in `excluded` (one flag for each
-  /// run; empty: none) are in no group.
-  std::vector<std::vector<std::size_t>> groups(std::size_t width, const std::vector<char>& excluded = {}) const;
+  /// What the runs of a batch may differ in, besides speed and track.
+  enum class Mixing { nothing, vehicles, vehicles_and_bridges };
+  /// Runs are mixed only if there are too few of one bridge, or of one base, to fill batches.
+  Mixing mixing();
+  /// Indices of the runs of each batch. Runs with a nonzero flag in `excluded` (one flag for each run; empty: none) are
+  /// in no group.
+  std::vector<std::vector<std::size_t>> groups(const std::vector<char>& excluded = {});
   /// Simulated time of all runs of a group, s, by the first base.
   double duration(const std::vector<std::size_t>& group);
   long separate_runs() const;  // on this rank, runs computed outside their batch

@@ -16,31 +16,52 @@ namespace {
 
 using Eigen::Index;
 
-/// A chain of columns with three symmetric positive matrices and some held unknowns.
+/// A chain of columns with three symmetric positive matrices and some held unknowns. own: the lanes have different
+/// chains, whose first columns differ and whose last ones are equal.
 struct Chain {
-  Chain(int block, int columns, bool proportional) : size(block * columns), held(static_cast<std::size_t>(size), 0) {
-    for (Eigen::MatrixXd* A : {&M, &C, &K}) {
-      A->setZero(size, size);
+  struct Lane {
+    Eigen::MatrixXd M, C, K;
+    double by_mass = 0.0, by_stiffness = 0.0;
+  };
+  Chain(int block, int columns, bool proportional, bool own)
+      : size(block * columns), held(static_cast<std::size_t>(size), 0), of_lane(lanes) {
+    for (Eigen::MatrixXd Lane::* A : {&Lane::M, &Lane::C, &Lane::K}) {
+      for (Lane& lane : of_lane) (lane.*A).setZero(size, size);
       for (int c = 0; c + 1 < columns; ++c) {
         const Eigen::MatrixXd R = Eigen::MatrixXd::NullaryExpr(2 * block, 2 * block, [&] { return random(); });
-        A->block(c * block, c * block, 2 * block, 2 * block) +=
-            R * R.transpose() + 0.1 * Eigen::MatrixXd::Identity(2 * block, 2 * block);
+        for (int l = 0; l < lanes; ++l)
+          (of_lane[static_cast<std::size_t>(l)].*A).block(c * block, c * block, 2 * block, 2 * block) +=
+              (own && c < columns / 2 ? 1.0 + 0.1 * l : 1.0) *
+              (R * R.transpose() + 0.1 * Eigen::MatrixXd::Identity(2 * block, 2 * block));
       }
     }
-    if (proportional) C = 0.3 * M + 0.02 * K;
+    task.shared = !own;
+    double *by_mass = rows_of(1), *by_stiffness = rows_of(1), *own_dead = rows_of(size);
+    for (int l = 0; l < lanes; ++l) {
+      Lane& lane = of_lane[static_cast<std::size_t>(l)];
+      lane.by_mass = by_mass[l] = own ? 0.3 + 0.01 * l : 0.3;
+      lane.by_stiffness = by_stiffness[l] = own ? 0.02 + 0.001 * l : 0.02;
+      if (proportional) lane.C = lane.by_mass * lane.M + lane.by_stiffness * lane.K;
+    }
     for (const int i : {0, (columns / 2) * block, size - block}) held[static_cast<std::size_t>(i)] = 1;
-    for (int i = 0; i < size; ++i) dead.push_back(random());
+    for (int i = 0; i < size; ++i) {
+      dead.push_back(random());
+      std::fill_n(own_dead + i * lanes, lanes, dead.back());
+    }
     for (int e = 0; e + 1 < columns; ++e) first_column.push_back(e);
     task.block = block;
     task.columns = columns;
-    task.mass = by_columns(M);
-    task.damping = by_columns(C);
-    task.stiffness = by_columns(K);
+    for (int c = 0; c < columns; ++c) {
+      const bool in_rows = own && c <= columns / 2;  // with proportional damping C differs everywhere
+      const bool rows = in_rows || (own && proportional);
+      column.push_back({blocks(&Lane::M, c, rows), blocks(&Lane::C, c, rows), blocks(&Lane::K, c, rows), rows});
+    }
+    task.column = column.data();
     task.proportional = proportional;
-    task.by_mass = 0.3;
-    task.by_stiffness = 0.02;
+    task.by_mass = by_mass;
+    task.by_stiffness = by_stiffness;
     task.held = held.data();
-    task.dead = dead.data();
+    task.dead = own ? own_dead : dead.data();
     const int bb = block * block;
     task.pivot = rows_of(columns * bb);
     task.factor = rows_of(columns * bb);
@@ -64,18 +85,21 @@ struct Chain {
     memory.push_back(std::make_unique<Aligned>(static_cast<std::size_t>(count * lanes)));
     return memory.back()->data();
   }
-  const double* by_columns(const Eigen::MatrixXd& A) {
-    std::vector<double>& to = *matrices.emplace_back(std::make_unique<std::vector<double>>());
-    const int b = task.block;
-    for (int c = 0; c < task.columns; ++c)
-      for (const int next : {0, 1})
+  /// The blocks of a column (ColumnMatrices).
+  const double* blocks(Eigen::MatrixXd Lane::* A, int column, bool in_rows) {
+    const int b = task.block, width = in_rows ? lanes : 1;
+    double* to = rows_of(2 * b * b);
+    for (int l = 0; l < width; ++l)
+      for (int k = 0, next = 0; next < 2; ++next)
         for (int j = 0; j < b; ++j)
-          for (int i = 0; i < b; ++i) to.push_back(c + next < task.columns ? A(c * b + i, (c + next) * b + j) : 0.0);
-    return to.data();
+          for (int i = 0; i < b; ++i, ++k)
+            if (column + next < task.columns)
+              to[k * width + l] = (of_lane[static_cast<std::size_t>(l)].*A)(column * b + i, (column + next) * b + j);
+    return to;
   }
   /// (M + rate C + displacement K)^-1 of the unknowns that are not held, 0 of others.
-  Eigen::MatrixXd inverse(double rate, double displacement) const {
-    Eigen::MatrixXd J = M + rate * C + displacement * K;
+  Eigen::MatrixXd inverse(const Lane& lane, double rate, double displacement) const {
+    Eigen::MatrixXd J = lane.M + rate * lane.C + displacement * lane.K;
     for (int i = 0; i < size; ++i) {
       if (held[static_cast<std::size_t>(i)] == 0) continue;
       J.row(i).setZero();
@@ -90,13 +114,13 @@ struct Chain {
 
   std::mt19937 generator{7};
   int size;
-  Eigen::MatrixXd M, C, K;
   std::vector<char> held;
+  std::vector<Lane> of_lane;
+  std::vector<ColumnMatrices> column;
   std::vector<double> dead;
   std::vector<int> first_column;
   BeamTask task;
   std::vector<std::unique_ptr<Aligned>> memory;
-  std::vector<std::unique_ptr<std::vector<double>>> matrices;
 };
 
 /// One wheel in every lane, on an element.
@@ -112,11 +136,11 @@ struct Wheels {
   TrainTask task;
 };
 
-class BeamKernel : public testing::TestWithParam<std::tuple<int, int, bool>> {};
+class BeamKernel : public testing::TestWithParam<std::tuple<int, int, bool, bool>> {};
 
 TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
-  const auto [block, columns, proportional] = GetParam();
-  Chain chain(block, columns, proportional);
+  const auto [block, columns, proportional, own] = GetParam();
+  Chain chain(block, columns, proportional, own);
   BeamTask& t = chain.task;
   Row rate{}, displacement{};
   for (int l = 0; l < lanes; ++l) {
@@ -158,10 +182,11 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
     }
     for (int l = 0; l < lanes; ++l) {
       const double d = Rows::numbers(displacement)[l];
-      const Eigen::MatrixXd inverse = chain.inverse(Rows::numbers(rate)[l], d);
+      const Chain::Lane& lane = chain.of_lane[static_cast<std::size_t>(l)];
+      const Eigen::MatrixXd inverse = chain.inverse(lane, Rows::numbers(rate)[l], d);
       const Eigen::VectorXd P = Eigen::Map<const Eigen::VectorXd>(chain.dead.data(), chain.size);
       const Eigen::VectorXd exact =
-          inverse * (P - chain.C * w[static_cast<std::size_t>(l)] - chain.K * v[static_cast<std::size_t>(l)]);
+          inverse * (P - lane.C * w[static_cast<std::size_t>(l)] - lane.K * v[static_cast<std::size_t>(l)]);
       EXPECT_LT((column(a, l) - exact).cwiseAbs().maxCoeff(), 1e-13);
       // v~ and what the accelerations add is where the structure is.
       const Eigen::VectorXd there = column(t.v_predicted, l) + d * column(t.solution, l);
@@ -179,7 +204,8 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Chains, BeamKernel,
-                         testing::Combine(testing::Values(2, 3, 5), testing::Values(2, 3, 6, 27, 80), testing::Bool()));
+                         testing::Combine(testing::Values(2, 3, 5), testing::Values(2, 3, 6, 27, 80), testing::Bool(),
+                                          testing::Bool()));
 
 }  // namespace
 }  // namespace traverse::engine
