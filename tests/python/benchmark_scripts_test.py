@@ -197,6 +197,14 @@ class Scripts(InAFolder):
         self.assert_positive(rows, "seconds")
         self.assert_errors(rows[:1], "uncertainty", 1e-3)
 
+    def test_gradient(self):
+        self.run_smallest("gradient")
+        rows = self.table("gradient.csv", ["scene", "passage", "in_lanes", "single", "passages", "passages_single",
+                                           "largest_error"])
+        self.assertEqual([row["scene"] for row in rows], ["quarter car"])
+        self.assert_positive(rows, "passage", "in_lanes", "single", "passages", "passages_single")
+        self.assert_errors(rows, "largest_error", 1e-2)
+
     def test_long_bridge(self):
         self.run_smallest("long_bridge")
         rows = self.table("long_bridge.csv", ["bridge", "method", "times real time, 1 rank", "2 ranks",

@@ -81,7 +81,7 @@ TEST(Gradient, AgreesWithDifferencesOfAThirdOfTheStep) {
     }
   }
   record("differences of other steps", worst);
-  EXPECT_LT(worst, 1e-5);
+  EXPECT_LT(worst, 1e-6);
 }
 
 }  // namespace

@@ -152,6 +152,32 @@ TEST(Study, TrainsInLanesAreThoseOfRunsAlone) {
   EXPECT_LT(worst, 1e-9);
 }
 
+// Bridges whose stiffness and damping differ in lanes of one batch.
+TEST(Study, BridgesInLanesAreThoseOfRunsAlone) {
+  testing::internal::CaptureStdout();
+  Results study = run_yaml(coach, by_elements + Values{{"study_vary_beam_EI", "2e10,2.5e10,3e10"},
+                                                       {"study_vary_beam_damping_ratios", "0.01,0.02"},
+                                                       {"verbose", "true"}});
+  const std::string said = testing::internal::GetCapturedStdout();
+  EXPECT_NE(said.find("parameters of vehicles and bridge only are advanced together"), said.npos) << said;
+  double worst = 0.0;
+  std::size_t run = 0;
+  for (const char* EI : {"2e10", "2.5e10", "3e10"})
+    for (const char* damping : {"0.01", "0.02"}) {
+      Results alone = run_yaml(
+          coach, by_elements + Values{{"study_vary_beam_EI", EI}, {"beam_damping_ratios", damping}});
+      for (const char* name : {"peak_deflection", "peak_acceleration", "peak_moment", "least_wheel_force"}) {
+        const std::vector<double>&all = study(std::string("/study/") + name),
+              &one = alone(std::string("/study/") + name);
+        for (std::size_t p = 0; p < one.size(); ++p)
+          worst = std::max(worst, std::abs(all[run * one.size() + p] / one[p] - 1.0));
+      }
+      ++run;
+    }
+  record("bridges side by side and alone", worst);
+  EXPECT_LT(worst, 1e-9);
+}
+
 // Each by itself, driven by TS: steps lie elsewhere, so that what is left falls with their length.
 TEST(Study, TracksInLanesAgainstEachByItself) {
   double errors[2] = {};
