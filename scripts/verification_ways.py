@@ -117,6 +117,8 @@ WAYS = [
             [Check("EXPECT_LT(worst, {});", "sums of elasticities")]),
         Row("derivatives of peaks with respect to eight parameters", "differences of a third of the step", "Gradient.AgreesWithDifferencesOfAThirdOfTheStep",
             [Check("EXPECT_LT(worst, {});", "differences of other steps")]),
+        Row("stiffness, mass of a vehicle and speed, fitted by runs in batches", "values of the recorded single run", "FitOfVehicles.InLanesAndOneByOne",
+            [Check('EXPECT_LT(worst, {}) << "estimates";', "estimates in lanes")]),
         Row("filtered accelerations and rotations of a sweep by modes with limits", "single runs", "JudgedRuns.OfASweepByModes",
             [Check("EXPECT_NEAR(found[l], wanted[l], {} * wanted[l]) << run")]),
     ]),

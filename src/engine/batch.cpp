@@ -42,7 +42,7 @@ class Batch {
   void prepare_peaks();
   void set_step(double ds);
   void activate_vehicles(double distance);
-  void store_accelerations();
+  void store_responses();
   std::size_t rows(std::size_t count) const { return count * arrays_.lanes; }
 
   const BatchPlan& plan_;
@@ -62,7 +62,7 @@ class Batch {
   double ds_ = 0.0, ds_before_ = 0.0;
   std::size_t unknowns_ = 0;
   double* roots_ = nullptr;
-  std::vector<std::vector<double>> stored_accelerations_;  // for each run
+  std::vector<std::vector<double>> samples_;  // for each run
 };
 
 std::vector<BatchRun> Batch::filled(std::span<const BatchRun> runs) {
@@ -95,7 +95,7 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
       arrays_(blocks_of(runs_), structure_.line_.per_node,
               structure_.beam_.rail() == nullptr ? structure_.line_.model.surface_height : 0.0),
       beam_(structure_lanes_.task()),
-      stored_accelerations_(runs.size()) {
+      samples_(runs.size()) {
   task_.train = &train_;
   task_.beam = &beam_;
   task_.peaks = &peaks_;
@@ -268,24 +268,24 @@ void Batch::activate_vehicles(double distance) {
   for (std::size_t v = 0; v < arrays_.active.size(); ++v) arrays_.active[v] = distance > inactive_until_[v] ? 1 : 0;
 }
 
-void Batch::store_accelerations() {
+void Batch::store_responses() {
   const std::size_t n = structure_.probes_.size();
   for (std::size_t l = 0; l < count_; ++l)
-    for (std::size_t p = 0; p < n; ++p)
-      stored_accelerations_[l].push_back(peaks_.response[kept_samples - 1][rows(n + p) + l]);
+    for (const Response response : plan_.stored)
+      for (std::size_t p = 0; p < n; ++p)
+        samples_[l].push_back(
+            peaks_.response[kept_samples - 1][rows(static_cast<std::size_t>(response) * n + p) + l]);
 }
 
 void Batch::run() {
   constexpr double same_step = 1e-10;  // far above the rounding errors of differences of distances
   const std::vector<EqualSteps>& equal_steps = plan_.equal_steps;
-  const bool stores_accelerations =
-      std::any_of(equal_steps.begin(), equal_steps.end(), [](const EqualSteps& s) { return s.stores_accelerations; });
   const auto any_running = [&] {
     return std::any_of(task_.failed, task_.failed + arrays_.lanes,
                        [](double failure) { return static_cast<int>(failure) == none; });
   };
   TRAVERSE_LANES_CALL(start_batch_peaks(task_));
-  if (stores_accelerations) store_accelerations();
+  store_responses();
   double from = 0.0;
   bool new_step = true;
   for (const EqualSteps& series : equal_steps) {
@@ -307,7 +307,7 @@ void Batch::run() {
       ds_before_ = ds;
     }
     if (series.ends_at_event) TRAVERSE_LANES_CALL(end_peaks_at_kink(task_));
-    if (series.stores_accelerations) store_accelerations();
+    if (series.stores) store_responses();
     if (!any_running()) break;
     from = series.to;
   }
@@ -324,7 +324,7 @@ std::vector<BatchResult> Batch::results() const {
       return base::Extreme{peaks_.peak[rows(row) + l], peaks_.peak_time[rows(row) + l]};
     };
     for (std::size_t p = 0; p < n; ++p) r.peaks.push_back({peak(p), peak(n + p), peak(2 * n + p)});
-    r.accelerations = stored_accelerations_[l];
+    r.samples = samples_[l];
     r.least_wheel_force = peaks_.least[l];
     r.greatest_wheel_force = peaks_.greatest[l];
     r.contact_losses = peaks_.contact_loss_count[l];

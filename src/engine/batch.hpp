@@ -71,7 +71,7 @@ struct EqualSteps {
   double to = 0.0;  // m travelled since t = 0, at the end
   long steps = 0;
   bool ends_at_event = true;          // whether a wheel is at a kink of the surface or at a probe at the end
-  bool stores_accelerations = false;  // whether accelerations at the end are stored
+  bool stores = false;                // whether responses at the end are stored
 };
 
 /// One run: a train in its initial state, on its own track. The vehicles of all runs differ in parameter values only,
@@ -86,7 +86,10 @@ struct BatchRun {
   double speed = 0.0, end_time = 0.0;  // m/s; s: end of the peaks' interval
 };
 
+enum class Response { deflection, acceleration, moment };
+
 struct BatchPlan {
+  std::vector<Response> stored;  // at the start and at the end of the series that store
   structure::Method method;  // coefficients for a step of 1 s, scaled to each run's step
   std::vector<EqualSteps> equal_steps;
   double level_until = 0.0;  // m: up to here track and ground are level and rigid; vehicles are at rest
@@ -94,7 +97,7 @@ struct BatchPlan {
 
 struct BatchResult : base::PassagePeaks {
   RunFailure failure = none;
-  std::vector<double> accelerations;           // at each stored instant those of all probes
+  std::vector<double> samples;                 // [instant][stored response][probe]
   std::vector<double> coordinates_at_largest;  // for each vehicle the coordinates at its largest linearisation residual
 };
 

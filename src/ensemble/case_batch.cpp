@@ -119,14 +119,14 @@ void CaseBatch::Ready::add_equal_steps(const std::vector<double>& events, double
     from = to;
   };
   const auto store_until = [&](double to) {  // also adds the series of equal steps up to `to`
-    if (!steps.stores) return;
+    if (steps.stored.empty()) return;
     for (double next = static_cast<double>(stored + 1) * ds; next < to - same_position;
          next = static_cast<double>(++stored + 1) * ds)
       add(next, false, true);
   };
   for (const double event : events) {
     store_until(event);
-    const bool stores = steps.stores && static_cast<double>(stored + 1) * ds < event + same_position;
+    const bool stores = !steps.stored.empty() && static_cast<double>(stored + 1) * ds < event + same_position;
     add(event, true, stores);
     stored += stores ? 1 : 0;
   }
@@ -147,6 +147,7 @@ CaseBatch::Ready CaseBatch::ready(std::span<const Member> members, const Steps& 
   Ready ready;
   ready.plan_ = first.plan_;
   ready.plan_.method = steps.method;
+  ready.plan_.stored = steps.stored;
   const LaneRun& any = members.front().run;
   const double ds = spacing(steps, any.step_speed > 0.0 ? any.step_speed : any.speed);
   double distance = 0.0;

@@ -40,8 +40,8 @@ class CaseBatch {
     structure::Method method;  // coefficients for a step of 1 s
     double longest = 0.0;      // s
     bool trial = false;  // all runs have the same distance, whose end is sampled exactly; a batch may have one run
-    bool stores =
-        false;  // accelerations are stored at positions at the distance `spacing`, at which time steps end too
+    /// Responses that are stored at positions at the distance `spacing`, at which time steps end too.
+    std::vector<engine::Response> stored = {};
   };
   /// The steps that the scene defines.
   Steps steps() const;
@@ -63,7 +63,7 @@ class CaseBatch {
   };
   /// At most engine::widest runs with steps of one step group (engine/speed_class.hpp).
   Ready ready(std::span<const LaneRun> runs, const Steps& steps);
-  /// Distance, m, between the positions at which runs of this speed's step group store accelerations.
+  /// Distance, m, between the positions at which runs of this speed's step group store responses.
   static double spacing(const Steps& steps, double speed);
   /// A run of a common batch of trains with different parameters. `lanes` of all members were merged with the same
   /// batch.

@@ -21,14 +21,14 @@ namespace {
 /// Filters the stored accelerations and sets the peaks before the unsettled end.
 void filter_stored(BatchResult& result, std::size_t probes, double frequency, double interval) {
   if (result.failure != engine::none) return;
-  const std::size_t settled = filter(result.accelerations, probes, frequency, interval);
+  const std::size_t settled = filter(result.samples, probes, frequency, interval);
   ResponseExtremes peaks(std::vector<std::vector<double>>(probes), 0);
-  peaks.add_low_passed(std::span<const double>(result.accelerations).first(settled * probes), interval);
+  peaks.add_low_passed(std::span<const double>(result.samples).first(settled * probes), interval);
   for (std::size_t p = 0; p < probes; ++p) {
     const Extreme& peak = peaks.largest_of_each(low_passed)[p];
     result.peaks[p].low_passed = {std::abs(peak.value), peak.time};
   }
-  result.accelerations = {};
+  result.samples = {};
 }
 
 }  // namespace
@@ -96,13 +96,15 @@ void BatchTrialRuns::check_memory(const NumericalModel& model) const {
     const double places = runs.front().speed * runs.front().end / CaseBatch::spacing(steps, runs.front().speed);
     numbers += places * static_cast<double>(runs.size() * scene_.output.probes.size());
   }
-  if (steps.stores && numbers > DeckAcceleration::max_stored)
+  if (!steps.stored.empty() && numbers > DeckAcceleration::max_stored)
     throw Refused{"storing the accelerations of all probes needs too much memory"};
 }
 
 CaseBatch::Steps BatchTrialRuns::steps_of(const NumericalModel& model) const {
   const structure::MethodRow& method = *structure::find_method(model.method);
-  return {method.make(method.parameter.value), *model.step, true, is_controlled(scene_, low_passed)};
+  CaseBatch::Steps steps{method.make(method.parameter.value), *model.step, true};
+  if (is_controlled(scene_, low_passed)) steps.stored = {engine::Response::acceleration};
+  return steps;
 }
 
 /// Runs the batches of one model. Its accelerations are filtered run by run, because one place per step is a different
@@ -114,7 +116,7 @@ std::vector<BatchResult> BatchTrialRuns::run_all(const std::vector<CaseBatch::Re
     const std::vector<LaneRun>& runs = groups_[g];
     const double spacing = CaseBatch::spacing(steps, runs.front().speed);
     std::vector<BatchResult> group_results = groups[g].run();
-    for (std::size_t i = 0; i < group_results.size() && steps.stores; ++i)
+    for (std::size_t i = 0; i < group_results.size() && !steps.stored.empty(); ++i)
       filter_stored(group_results[i], scene_.output.probes.size(), *scene_.output.low_pass, spacing / runs[i].speed);
     std::move(group_results.begin(), group_results.end(), std::back_inserter(results));
   }

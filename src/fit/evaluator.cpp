@@ -1,4 +1,4 @@
-// A number of points is broadcast, then the points; every rank computes each of its points, and the results are added,
+// A number of points is broadcast, then the points; every rank computes its groups of points, and the results are added,
 // with zeros from all other ranks, so that they do not depend on the number of ranks.
 #include "fit/evaluator.hpp"
 
@@ -17,9 +17,8 @@ namespace {
 constexpr std::size_t most_stored = 32;
 }
 
-Evaluator::Evaluator(MPI_Comm comm, std::size_t dimension, std::size_t size,
-                     std::function<Values(const Values&)> compute)
-    : comm_(comm), dimension_(dimension), size_(size), compute_(std::move(compute)) {
+Evaluator::Evaluator(MPI_Comm comm, std::size_t dimension, std::size_t size, std::size_t width, Compute compute)
+    : comm_(comm), dimension_(dimension), size_(size), width_(width), compute_(std::move(compute)) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &ranks_);
 }
@@ -28,11 +27,17 @@ void Evaluator::compute_in_turn(const Values& points, std::vector<Values>& resul
   const std::size_t count = points.size() / dimension_;
   results.assign(count, Values());
   RunFailure failure;
-  for (std::size_t i = static_cast<std::size_t>(rank_); i < count && !failure.failed();
-       i += static_cast<std::size_t>(ranks_)) {
+  const auto ranks = static_cast<std::size_t>(ranks_);
+  const std::size_t group = std::min(width_, (count + ranks - 1) / ranks);
+  for (std::size_t i = group * static_cast<std::size_t>(rank_); i < count && !failure.failed(); i += group * ranks) {
     try {
-      const auto from = points.begin() + static_cast<std::ptrdiff_t>(i * dimension_);
-      results[i] = compute_(Values(from, from + static_cast<std::ptrdiff_t>(dimension_)));
+      std::vector<Values> own;
+      for (std::size_t k = i; k < std::min(i + group, count); ++k) {
+        const auto from = points.begin() + static_cast<std::ptrdiff_t>(k * dimension_);
+        own.emplace_back(from, from + static_cast<std::ptrdiff_t>(dimension_));
+      }
+      std::vector<Values> computed = compute_(own);
+      std::move(computed.begin(), computed.end(), results.begin() + static_cast<std::ptrdiff_t>(i));
     } catch (const std::exception& error) {
       const Error known = as_error(error);
       failure = {static_cast<int>(i), known.status(), known.what()};

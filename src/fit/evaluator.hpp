@@ -14,8 +14,10 @@ namespace traverse::app {
 class Evaluator {
  public:
   using Values = std::vector<double>;
-  /// compute: `size` results at a point of `dimension` values, the same on every rank.
-  Evaluator(MPI_Comm comm, std::size_t dimension, std::size_t size, std::function<Values(const Values&)> compute);
+  /// compute: `size` results at each of at most `width` points of `dimension` values, the same on every rank and in any
+  /// company.
+  using Compute = std::function<std::vector<Values>(const std::vector<Values>& points)>;
+  Evaluator(MPI_Comm comm, std::size_t dimension, std::size_t size, std::size_t width, Compute compute);
 
   /// On rank 0, while the others serve: the results at all points, which the ranks compute in turn. The results at the
   /// last points are stored and not computed again. Throws the Error of the first point that fails, and
@@ -39,8 +41,8 @@ class Evaluator {
 
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
-  std::size_t dimension_, size_;
-  std::function<Values(const Values&)> compute_;
+  std::size_t dimension_, size_, width_;
+  Compute compute_;
   std::deque<std::pair<Values, Values>> stored_;
   long evaluations_ = 0;
 };

@@ -10,6 +10,7 @@
 
 #include "base/notes.hpp"
 #include "base/random_stream.hpp"
+#include "engine/processor.hpp"
 #include "ensemble/parallel_cases.hpp"
 #include "fit/evaluator.hpp"
 #include "fit/fit_file.hpp"
@@ -106,7 +107,7 @@ void align_clocks(ForwardModel& model, const options::Fit& fit, Residuals& resid
   std::vector<double> response;
   if (std::any_of(fit.series.begin(), fit.series.end(), aligned)) {
     model.set_end(model.duration());
-    response = model.run(model.start());
+    response = model.run({model.start()}).front();
   }
   residuals.align(response, model.interval(), shift_range * model.duration());
   model.set_end(residuals.end());
@@ -124,6 +125,9 @@ void describe(const options::Fit& fit, const ForwardModel& model, std::vector<st
   if (!fit.series.empty())
     notes.push_back(
         base::detail(fmt::format("every run has {} samples every {:g} s", model.instants(), model.interval())));
+  if (model.width() > 1)
+    notes.push_back(base::detail(fmt::format("up to {} runs are advanced together, one in each lane of {} vectors",
+                                             model.width(), engine::instructions())));
   const double end = model.interval() * static_cast<double>(model.instants());
   if (end > long_record * model.duration() && model.duration() > 0.0)
     notes.push_back(
@@ -132,18 +136,6 @@ void describe(const options::Fit& fit, const ForwardModel& model, std::vector<st
                     end, model.duration()));
   for (const std::string& note : options::notes_on_unused(options::in_force()))
     if (!note.starts_with("tao_")) notes.push_back(note);
-}
-
-/// A run, whose failure names its values.
-std::vector<double> run_of(const ForwardModel& model, const options::Fit& fit, const std::vector<double>& values) {
-  try {
-    return model.run(values);
-  } catch (const Error& error) {
-    std::string point;
-    for (std::size_t j = 0; j < values.size(); ++j)
-      point += fmt::format("{}{} = {:g}", j == 0 ? "" : ", ", fit.parameters[j].option, values[j]);
-    throw Error(fmt::format("the run of the fit with {}: {}", point, error.what()), error.status());
-  }
 }
 
 }  // namespace
@@ -161,8 +153,8 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   print_notes(comm, scene, notes);
   const DeferredSignals deferred;
   FitFile file(comm, std::move(place), scene, residuals, notes);
-  Evaluator evaluator(comm, fit.parameters.size(), model.size(),
-                      [&](const std::vector<double>& values) { return run_of(model, fit, values); });
+  Evaluator evaluator(comm, fit.parameters.size(), model.size(), model.width(),
+                      [&](const std::vector<Evaluator::Values>& points) { return model.run(points); });
   const auto begin = Clock::now();
   const results::Stage stage("fit");
   FitCourse course;

@@ -29,13 +29,6 @@ namespace {
 constexpr double samples_per_period = 8.0;  // of the fastest mode that is exact in time
 constexpr double most_samples = 2e6;        // of a run
 
-/// The beam of one run, with everything that a passage needs.
-SharedBeam& prepared(SharedBeam& shared, const Scene& scene, std::vector<std::string>& notes) {
-  shared.damp(scene, !scene.model.step || scene.model.modes > 0, notes);
-  shared.prepare(scene, notes);
-  return shared;
-}
-
 /// The place of a series among the numbers of a sample, and its unit.
 struct Channel {
   std::size_t index = 0;
@@ -86,6 +79,12 @@ std::vector<std::string> controlled_peaks(const options::Fit& fit) {
 }
 
 }  // namespace
+
+void prepare(SharedBeam& shared, const Scene& scene) {
+  std::vector<std::string> ignored;
+  shared.damp(scene, !scene.model.step || scene.model.modes > 0, ignored);
+  shared.prepare(scene, ignored);
+}
 
 ForwardModel::ForwardModel(const Scene& scene, std::vector<std::string>& notes) : fit_(*scene.fit), name_(scene.name) {
   choose(notes);
@@ -151,7 +150,8 @@ void ForwardModel::set_interval() {
   const Scene first = scene(start(), false);
   std::vector<std::string> ignored;
   SharedBeam shared(PETSC_COMM_SELF, first, ignored);
-  Passage passage(first, prepared(shared, first, ignored), ignored);
+  prepare(shared, first);
+  Passage passage(first, shared, ignored);
   const Outputs outputs = outputs_of({first, passage.system().fleet(), shared.bridge()});
   for (const options::MeasuredSeries& series : fit_.series)
     units_.push_back(channel_of(series, first, outputs.layout()).unit);
@@ -164,6 +164,7 @@ void ForwardModel::set_interval() {
                             ? 2.0 * std::numbers::pi / shared.modal->omega().back() / samples_per_period
                             : passage.plan().time_step;
   interval_ = measured / std::ceil(measured / needed * (1.0 - 1e-9));
+  find_lanes(first, shared);
 }
 
 void ForwardModel::set_end(double end) {
@@ -177,13 +178,28 @@ void ForwardModel::set_end(double end) {
   end_ = static_cast<double>(instants_ - 1) * interval_;
 }
 
-std::vector<double> ForwardModel::run(const std::vector<double>& values) const {
+std::vector<std::vector<double>> ForwardModel::run(const std::vector<std::vector<double>>& points) const {
   const options::WithoutMonitors without_monitors;
-  std::vector<double> response;
-  response.reserve(size());
-  if (!fit_.frequencies.empty()) add_frequencies(values, response);
-  if (!fit_.series.empty()) add_series(values, response);
-  return response;
+  std::vector<std::vector<double>> responses(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    naming(points[i], [&] {
+      responses[i].reserve(size());
+      if (!fit_.frequencies.empty()) add_frequencies(points[i], responses[i]);
+      if (!fit_.series.empty() && stored_.empty()) add_series(points[i], responses[i]);
+    });
+  if (!stored_.empty()) add_series_in_lanes(points, responses);
+  return responses;
+}
+
+void ForwardModel::naming(const std::vector<double>& values, const std::function<void()>& compute) const {
+  try {
+    compute();
+  } catch (const Error& error) {
+    std::string point;
+    for (std::size_t j = 0; j < values.size(); ++j)
+      point += fmt::format("{}{} = {:g}", j == 0 ? "" : ", ", fit_.parameters[j].option, values[j]);
+    throw Error(fmt::format("the run of the fit with {}: {}", point, error.what()), error.status());
+  }
 }
 
 void ForwardModel::add_frequencies(const std::vector<double>& values, std::vector<double>& response) const {
@@ -204,7 +220,8 @@ void ForwardModel::add_series(const std::vector<double>& values, std::vector<dou
   const Scene own = scene(values, false);
   std::vector<std::string> ignored;
   SharedBeam shared(PETSC_COMM_SELF, own, ignored);
-  Passage passage(own, prepared(shared, own, ignored), ignored);
+  prepare(shared, own);
+  Passage passage(own, shared, ignored);
   passage.start(ignored);
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
   RunObserver observer(own, passage.system(), shared.bridge(), none);

@@ -1,9 +1,12 @@
 // The computed counterparts of the measurements of a fit, as functions of its options.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "engine/batch.hpp"
+#include "run/shared_beam.hpp"
 #include "traverse/options/fit.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -27,9 +30,11 @@ class ForwardModel {
   const std::vector<std::string>& units() const { return units_; }  // of the series
   std::size_t instants() const { return instants_; }
 
-  /// The frequencies (Hz) of all measured frequencies, then the samples of each series. SolverError if the run fails or
-  /// ends early.
-  std::vector<double> run(const std::vector<double>& values) const;
+  /// For each point, one after another: the frequencies (Hz) of all measured frequencies, then the samples of each
+  /// series. Throws the error of the first run that fails or ends early, with its values.
+  std::vector<std::vector<double>> run(const std::vector<std::vector<double>>& points) const;
+  /// The number of points that are computed together.
+  std::size_t width() const;
   std::size_t size() const { return fit_.frequencies.size() + fit_.series.size() * instants_; }
 
   /// The scene of the run or of the modes at these values, with the chosen model.
@@ -37,9 +42,17 @@ class ForwardModel {
 
  private:
   void choose(std::vector<std::string>& notes);
+  /// Adds the values to the message of an error.
+  void naming(const std::vector<double>& values, const std::function<void()>& compute) const;
   void set_interval();
+  void find_lanes(const Scene& scene, const SharedBeam& shared);
   void add_frequencies(const std::vector<double>& values, std::vector<double>& response) const;
   void add_series(const std::vector<double>& values, std::vector<double>& response) const;
+  /// The series of all points, as runs in the lanes of batches.
+  void add_series_in_lanes(const std::vector<std::vector<double>>& points,
+                           std::vector<std::vector<double>>& responses) const;
+  void add_samples(const std::vector<double>& samples, const Scene& scene, double spacing,
+                   std::vector<double>& response) const;
 
   const options::Fit fit_;
   std::string name_;
@@ -47,6 +60,12 @@ class ForwardModel {
   NumericalModel model_, model_of_modes_;
   double duration_ = 0.0, interval_ = 0.0, end_ = 0.0;
   std::size_t instants_ = 0;
+  /// The stored responses of a batch, one for each series; empty: runs are computed one by one.
+  std::vector<engine::Response> stored_;
+  double step_speed_ = 0.0, fastest_ = 0.0;  // m/s: of the steps of all batches; of any point
 };
+
+/// Computes everything that a passage needs.
+void prepare(SharedBeam& shared, const Scene& scene);
 
 }  // namespace traverse::app

@@ -204,6 +204,10 @@ class Scripts(InAFolder):
         self.assertEqual([row["scene"] for row in rows], ["quarter car"])
         self.assert_positive(rows, "passage", "in_lanes", "single", "passages", "passages_single")
         self.assert_errors(rows, "largest_error", 1e-2)
+        names = ["beam_EI", "beam_damping_ratios", "foundation_vertical_k", "vehicle_car_box_mass"]
+        lanes, single = self.table("gradient_fit.csv", ["lanes", "runs", "seconds", *names])
+        for name in names:
+            self.assertAlmostEqual(float(lanes[name]) / float(single[name]), 1.0, delta=1e-3)
 
     def test_long_bridge(self):
         self.run_smallest("long_bridge")

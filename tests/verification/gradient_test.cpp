@@ -1,17 +1,19 @@
 // Derivatives of peaks with respect to parameters of beam, foundation, vehicle and speed, from runs in the lanes of
-// batches, against a theorem and against differences of other steps.
+// batches, against a theorem and against differences of other steps; fits by these runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "support/curve.hpp"
 #include "support/paths.hpp"
 #include "support/record.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace traverse::test {
 namespace {
@@ -82,6 +84,30 @@ TEST(Gradient, AgreesWithDifferencesOfAThirdOfTheStep) {
   }
   record("differences of other steps", worst);
   EXPECT_LT(worst, 1e-6);
+}
+
+// The record has the steps of a single run at its own speed; batches have steps in distance.
+TEST(FitOfVehicles, InLanesAndOneByOne) {
+  Results run = run_yaml(single_run(), {{"beam_EI", "1.9e9"}, {"vehicle_car_box_mass", "5300"}, {"train_speed", "31"}});
+  const std::vector<double>&time = run("/time"), &deflection = run("/probes/deflection");
+  const TemporaryFolder folder;
+  std::ostringstream rows;
+  rows.precision(17);
+  for (std::size_t k = 0; k < time.size(); ++k) rows << time[k] << ", " << deflection[2 * k + 1] << "\n";
+  folder.write("measured.csv", rows.str());
+  const std::string fit =
+      "fit: {vary: {beam_EI: [1.0e9, 4.0e9], vehicle_car_box_mass: [4.0e3, 7.0e3], train_speed: [28, 34]}, "
+      "to: {span: {series: measured.csv, quantity: deflection, x: 15.0}}}\n";
+  const double exact[] = {1.9e9, 5300.0, 31.0};
+  const std::string path_of_scene = folder.write("scene.yml", single_run() + fit);
+  Results lanes = run_scene(path_of_scene), single = run_scene(path_of_scene, {{"sweep_lanes", "0"}});
+  double worst = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(single("/fit/estimate")[i] / exact[i], 1.0, 1e-6);
+    worst = std::max(worst, std::abs(lanes("/fit/estimate")[i] / exact[i] - 1.0));
+  }
+  record("estimates in lanes", worst);
+  EXPECT_LT(worst, 1e-6) << "estimates";
 }
 
 }  // namespace
