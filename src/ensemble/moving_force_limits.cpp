@@ -71,11 +71,12 @@ void MovingForceLimits::sample_run(std::size_t train, const Plan& plan, LimitChe
   series_.resize(instants * count_);
   for (std::size_t k = 0; k < instants; ++k) {
     const double t = static_cast<double>(k) * plan.interval;
-    motion.advance(t > plan.end_time - slack ? plan.end_time : t);
+    const double at = t > plan.end_time - slack ? plan.end_time : t;
+    rotates_ ? motion.advance(at) : motion.advance_acceleration(at);
     sample();
     double* row = &series_[k * count_];
     if (by_modes_)
-      std::copy_n(motion.acceleration().data(), modes, row);
+      for (std::size_t i = 0; i < modes; ++i) row[i] = motion.acceleration()[i];
     else
       at_probes(motion.acceleration().data(), row);
   }
@@ -104,28 +105,27 @@ Extreme MovingForceLimits::largest_at_probes(double interval) {
   for (std::size_t i = 0; i < count_; ++i)
     for (std::size_t p = 0; p < probes; ++p)
       greatest_shape[i] = std::max(greatest_shape[i], std::abs(shapes[i * probes + p]));
-  const auto bound = [&](std::size_t k) {
+  bounds_.resize(instants);
+  for (std::size_t k = 0; k < instants; ++k) {
     double sum = 0.0;
     for (std::size_t i = 0; i < count_; ++i) sum += greatest_shape[i] * std::abs(series_[k * count_ + i]);
-    return sum;
-  };
-  std::size_t largest = 0;
-  for (std::size_t k = 1; k < instants; ++k)
-    if (bound(k) > bound(largest)) largest = k;
+    bounds_[k] = sum;
+  }
+  const auto largest = static_cast<std::size_t>(std::max_element(bounds_.begin(), bounds_.end()) - bounds_.begin());
   rows_.resize(instants * probes);
   at_probes(&series_[largest * count_], rows_.data());
   double reached = 0.0;
   for (std::size_t p = 0; p < probes; ++p) reached = std::max(reached, std::abs(rows_[p]));
   Extreme peak;
   for (std::size_t k = 0; k < instants;) {
-    if (bound(k) < share_of_largest_sample * reached) {
+    if (bounds_[k] < share_of_largest_sample * reached) {
       ++k;
       continue;
     }
     const std::size_t first = k - std::min<std::size_t>(k, 2);
     std::size_t past = k;  // the end of the stretch: three instants without the bound
     for (std::size_t quiet = 0; past < instants && quiet < 3; ++past)
-      quiet = bound(past) < share_of_largest_sample * reached ? quiet + 1 : 0;
+      quiet = bounds_[past] < share_of_largest_sample * reached ? quiet + 1 : 0;
     for (std::size_t j = first; j < past; ++j) at_probes(&series_[j * count_], &rows_[(j - first) * probes]);
     const Extreme one =
         largest_peak(std::span<const double>(rows_).first((past - first) * probes), probes, interval, first);

@@ -47,6 +47,7 @@ class MovingForceLimits {
   structure::ModalSlopes slopes_;
   std::map<std::size_t, integrate::ForceHistory> histories_;  // the key is the train
   std::vector<double> series_, rows_;  // accelerations at every instant; accelerations of the probes
+  std::vector<double> bounds_;         // of the accelerations of all probes at every instant
 };
 
 }  // namespace traverse::app

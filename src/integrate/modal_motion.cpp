@@ -106,6 +106,16 @@ double ModalMotion::next_event() const {
 }
 
 void ModalMotion::advance(double t) {
+  move_to(t);
+  update_state();
+}
+
+void ModalMotion::advance_acceleration(double t) {
+  move_to(t);
+  update_acceleration();
+}
+
+void ModalMotion::move_to(double t) {
   for (double event = next_event(); event < t; event = next_event()) {
     move(event - time_);
     time_ = event;
@@ -114,7 +124,6 @@ void ModalMotion::advance(double t) {
   }
   move(t - time_);
   time_ = t;
-  update_state();
 }
 
 void ModalMotion::pass_event() {
@@ -199,12 +208,19 @@ void ModalMotion::move_coupled_with_energy(double dt) {
 }
 
 void ModalMotion::update_state() {
-  const double t = speed_ > 0.0 ? time_ - history_.start[interval_] / speed_ : 0.0;
+  const double t = since_event();
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    q_[i] = value(modes_[i].particular, t) + modes_[i].u;
+    rate_[i] = first(modes_[i].particular, t) + modes_[i].w;
+  }
+  update_acceleration();
+}
+
+void ModalMotion::update_acceleration() {
+  const double t = since_event();
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const Mode& mode = modes_[i];
     const double omega = bridge_.omega()[i], sigma = bridge_.sigma()[i];
-    q_[i] = value(mode.particular, t) + mode.u;
-    rate_[i] = first(mode.particular, t) + mode.w;
     acceleration_[i] = second(mode.particular, t) - 2.0 * sigma * mode.w - omega * omega * mode.u;
   }
   if (coupled_) Eigen::Map<Eigen::VectorXd>(acceleration_.data(), w_.size()).noalias() -= bridge_.cross_damping() * w_;

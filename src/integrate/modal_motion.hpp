@@ -28,6 +28,8 @@ class ModalMotion {
   void integrate_energy() { integrates_energy_ = true; }
   /// Moves to a time t not before the last one; q, rate and acceleration are then the values at t, before a jump at t.
   void advance(double t);
+  /// Like advance(), but only the acceleration is that at t, which costs less.
+  void advance_acceleration(double t);
   /// The next time at which a force passes a break; infinite after the last one.
   double next_event() const;
   /// At the time of an event: changes q, rate and acceleration to the values after it.
@@ -58,7 +60,10 @@ class ModalMotion {
   void move_coupled_with_energy(double dt);
   void record_free();
   void add_channels_at(double s, std::size_t first, std::size_t count, double* sum) const;
+  void move_to(double t);
   void update_state();
+  void update_acceleration();
+  double since_event() const { return speed_ > 0.0 ? time_ - history_.start[interval_] / speed_ : 0.0; }
 
   const structure::ModalBridge& bridge_;
   const ForceHistory& history_;
