@@ -2,7 +2,7 @@
 """Converts a results file for other programs: export.py RESULTS.h5 [--series NAME...] [-o FOLDER]
 
 The script writes a CSV file for each name: a time series such as probes/deflection, a group of them such as vehicles/0,
-sweep, study, rail_forces/stress, or another table listed by --list. Without names it writes all of them. The heads
+sweep, study, sensitivity, rail_forces/stress, or another table listed by --list. Without names it writes all of them. The heads
 contain names and units; the first column is the time, or the position along the rails. --xdmf writes the bridge and
 the vehicles over time for ParaView, or the envelopes along the rails: NAME.xdmf, with its data in NAME.xdmf.h5.
 """
@@ -56,7 +56,7 @@ def export(given):
         folder = pathlib.Path(given.o or ".")
         wanted = given.series if given.series or given.xdmf else all_names(file)
         if not wanted and not given.xdmf:
-            raise ValueError("holds neither series over time nor a sweep or a study nor forces of the rails")
+            raise ValueError("holds no series over time and no table")
         tables = [export_tables.table_of(file, name) for name in wanted]  # finds unknown names before writing
         folder.mkdir(parents=True, exist_ok=True)
         written = [write_csv(file, name, folder) for name in wanted]

@@ -1,5 +1,6 @@
 """Tables of a results file for export.py: columns with the names and units of the file as heads."""
 
+import export_answers
 import h5py
 import numpy as np
 
@@ -49,7 +50,8 @@ def series_names(file):
 def names(file):
     """Names of all time series and of the other tables."""
     others = ["sweep", *OVER_RUNS]
-    return series_names(file) + [name for name in others if datasets(file, name)] + rail_names(file)
+    return (series_names(file) + [name for name in others if datasets(file, name)] + rail_names(file) +
+            list(export_answers.tables(file)))
 
 
 def rail_names(file):
@@ -188,7 +190,11 @@ def table_of(file, name):
         return over_runs(file, name)
     if name in rail_names(file):
         return of_rail(file, name)
+    if write := export_answers.tables(file).get(name):
+        table = Table()
+        write(file, table.add)
+        return table
     chosen = [one for one in series_names(file) if one == name or one.startswith(f"{name}/")]
     if not chosen:
-        raise ValueError(f"no series, sweep or study {name}; --list names what there is")
+        raise ValueError(f"no series or table {name}; --list names what there is")
     return over_time(file, chosen)

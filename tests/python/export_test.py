@@ -158,8 +158,8 @@ class Tables(Files):
         h5py.File(self.folder / "empty.h5", "w").close()
         for words, complaint in ((("none.h5",), "none.h5: is no results file that can be read"),
                                  (("text.h5", "--list"), "is no results file that can be read"),
-                                 (("empty.h5",), "holds neither series over time nor a sweep"),
-                                 (("run.h5", "--series", "probes", "probes/shear"), "no series, sweep or study probes"),
+                                 (("empty.h5",), "holds no series over time and no table"),
+                                 (("run.h5", "--series", "probes", "probes/shear"), "no series or table probes"),
                                  (("sweep.h5", "--xdmf"), "no deflections of a bridge over time: it is that of"),
                                  (("run.h5", "--xdmf", "--every", "0"), "--every: a number of samples from 1")):
             self.assertIn(complaint, self.refused("export", *words))
