@@ -7,12 +7,20 @@ MOST_NAMES = 40
 LONGEST_NAME = 14  # characters
 
 
-def draw(ax, results):
+TITLE, LABEL = "Largest response over its limit, bridges by formations", "response / limit"
+
+
+def order_of(ratio):
+    """The bridges and the formations of [b, f] ratios, those with the largest one first."""
+    known = np.nan_to_num(ratio)
+    return [np.argsort(-known.max(axis=axis), kind="stable") for axis in (1, 0)]
+
+
+def draw(ax, results, title=TITLE, label=LABEL):
     """Draws a heat map of the ratios: blue where the limits are kept, red where a limit is exceeded."""
     ratio = results.values("screen/ratio")
     bridges, formations = names_of(results, "bridge"), names_of(results, "formation")
-    worst_bridges = np.argsort(-np.nanmax(np.nan_to_num(ratio), axis=1), kind="stable")
-    worst_formations = np.argsort(-np.nanmax(np.nan_to_num(ratio), axis=0), kind="stable")
+    worst_bridges, worst_formations = order_of(ratio)
     values = ratio[np.ix_(worst_bridges, worst_formations)]
     mesh = ax.pcolormesh(np.ma.masked_invalid(values), cmap="RdBu_r", vmin=0.0, vmax=2.0, rasterized=True)
     name_ticks(ax.set_yticks, [bridges[i] for i in worst_bridges], {})
@@ -21,9 +29,9 @@ def draw(ax, results):
         keep(ax, bridges[i], np.array([formations[j] for j in worst_formations]), row, "ratio")
     ax.invert_yaxis()
     ax.grid(False)
-    ax.set(title="Largest response over its limit, bridges by formations")
+    ax.set(title=title)
     bar = ax.figure.colorbar(mesh, cax=ax.inset_axes([1.035, 0.0, 0.02, 1.0]), extend="max")
-    bar.set_label("response / limit")
+    bar.set_label(label)
 
 
 def in_words(results):

@@ -63,7 +63,8 @@ def of_bridge(source):
                               ("mass", "mass per length", "mass_per_length")):
         if name in model.group:
             varied = source.runs is not None and f"beam_{name}" in source.runs.parameters
-            rows.append((t(words), t("varied in the study") if varied else along(model.group[name][:], kind),
+            rows.append((t(words), t("varied in the study") if varied else t("estimated by the fit")
+                         if source.is_estimated(f"beam_{name}") else along(model.group[name][:], kind),
                          origin(source, f"beam_{name}", f"beam_{name}_file")))
     if "modes/frequency" in source.file:
         shown_ones = "; ".join(num(f) for f in source.file["modes/frequency"][:FIRST_FREQUENCIES])
@@ -105,6 +106,8 @@ def of_damping(source):
                         ("beam_damping_ratios", "ratios of the first natural modes: {value}"),
                         ("model_damping_ratios", "ratio of each natural mode: {value}"),
                         ("beam_rayleigh", "Rayleigh a, b: {value}")):
+        if source.is_estimated(name):
+            return [(t("damping"), t("estimated by the fit"), origin(source, name))]
         if name in options:
             said = options[name] if name in ("model_damping_bound", "beam_rayleigh") else \
                 "; ".join(percent(float(part)) for part in options[name].split(","))
@@ -126,6 +129,8 @@ def of_loads(source):
         rows.append((t("speeds"), t("{count} speeds from {low} to {high}", count=len(each), low=num(factor * each[0]),
                                     high=f"{num(factor * each[-1])} {unit}"),
                      origin(source, "sweep_speed", "study_vary_train_speed")))
+    elif source.is_estimated("train_speed", "load_speed"):
+        rows.append((t("speed"), t("estimated by the fit"), origin(source, "train_speed", "load_speed")))
     elif source.results.speed():
         rows.append((t("speed"), f"{num(factor * source.results.speed())} {unit}",
                      origin(source, "train_speed", "load_speed")))
@@ -160,6 +165,9 @@ def spread_of(source):
 
 def method_of(source):
     """The method of the analysis in words, with its mesh, modes and step."""
+    if source.is_fit:
+        return t("least squares by the method of Levenberg and Marquardt; starts: {count}",
+                 count=len(source.file["fit/starts/misfit"]))
     if not source.is_dynamic:
         return t("static analysis with non-linear track resistance") if source.is_rail else \
             t("static analysis by influence lines")
@@ -244,7 +252,7 @@ def uncertainty_of(source):
 
 def rows_of(source):
     """Rows (assumption, value, source)."""
-    return of_bridge(source) + (of_damping(source) if source.is_dynamic else []) + of_loads(source) + of_method(source)
+    return of_bridge(source) + (of_damping(source) if source.is_dynamic or source.is_fit else []) + of_loads(source) + of_method(source)
 
 
 def sheet(report, source):

@@ -32,9 +32,12 @@ def headline(entries):
                        share=percent(verdict.utilisation),
                        place="; ".join(filter(None, (place, verdict.run))), result=t(WORDS[verdict.word]),
                        quantity="; ".join(filter(None, (verdict.limit.words, verdict.limit.clause)))))
-    alarms = list(dict.fromkeys(said for source, _ in entries for said in checks_sheet.alarms(source)))
+    alarms = list(dict.fromkeys(said for source, _ in entries if source.is_verification
+                                for said in checks_sheet.alarms(source)))
     lines += alarms
-    lines.append(t("The result covers only the requirements that the section Scope of verification marks as verified."))
+    if any(source.is_verification for source, _ in entries):
+        lines.append(t("The result covers only the requirements that the section Scope of verification marks as "
+                       "verified."))
     colours = [colour for _, colour in own] + ([AMBER] if alarms else [])
     return lines, max(colours, key=SEVERITY.index)
 

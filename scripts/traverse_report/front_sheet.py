@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from . import find_sheet, model_sheet, norm_sheet, rail_sheet, static_sheet
+from . import find_sheet, fit_sheet, model_sheet, norm_sheet, rail_sheet, screen_sheet, static_sheet
 from .language import capital, digits, known, num, percent, place_in_words, t
 from .limits import STATIC
 from .page import AMBER, GREEN, GREY, LEFT, RED, table
@@ -38,7 +38,9 @@ def outcome(verdicts):
 
 def outcome_of(source, verdicts):
     """The same of a results file; red if its computation has not reached its end."""
-    said, colour = outcome(verdicts) if not source.is_search else (find_sheet.outcome(source), GREY)
+    answer = next((one for kind, one in ((source.is_search, find_sheet), (source.is_fit, fit_sheet),
+                                         (source.is_screen, screen_sheet)) if kind), None)
+    said, colour = (answer.outcome(source), GREY) if answer is not None else outcome(verdicts)
     ended = source.summary.get("ended", t("it was killed"))
     if ended == "reached its end":
         return said, colour
@@ -73,6 +75,10 @@ def peak_rows(source):
         return rail_sheet.peak_rows(source)
     if source.is_static:
         return static_sheet.peak_rows(source)
+    if source.is_fit:
+        return fit_sheet.peak_rows(source)
+    if source.is_screen:
+        return screen_sheet.peak_rows(source)
     return peaks_of_run(source) if source.runs is None else peaks_of_runs(source)
 
 
@@ -113,7 +119,7 @@ def sheet(report, source, verdicts, governing):
     """The first page of a file: the scene, the verdicts and their utilisation."""
     page = report.page(t("Summary of results"))
     page.text(LEFT, source.title(), size=11, weight="bold")
-    several = source.runs is not None and "hslm_a" in source.runs.parameters
+    several = source.is_screen or source.runs is not None and "hslm_a" in source.runs.parameters
     train = "" if several else f"{source.train_in_words()}; "
     page.text(LEFT, train + source.kind_in_words(), size=9)
     page.text(LEFT, t("Results file {name}", name=source.path.name), size=8, colour=GREY)
@@ -122,9 +128,10 @@ def sheet(report, source, verdicts, governing):
     page.y -= 0.05
     said, colour = outcome_of(source, verdicts)
     page.text(LEFT, said, size=11, colour=colour, weight="bold")
-    page.text(LEFT, t("The result covers only the requirements that the section Scope of verification marks as "
-                      "verified."), size=8,
-              colour=GREY)
+    if source.is_verification:
+        page.text(LEFT, t("The result covers only the requirements that the section Scope of verification marks as "
+                          "verified."), size=8,
+                  colour=GREY)
     page.y -= 0.1
     if verdicts:
         page = verdict_table(report, page, verdicts)
@@ -133,11 +140,13 @@ def sheet(report, source, verdicts, governing):
         page.text(LEFT, said)
         page.y -= 0.1
     head = t("greatest values of all runs") if source.runs is not None else t("greatest values of the run") \
-        if source.is_run else t("greatest values")
+        if source.is_run else t("estimate") if source.is_fit else t("greatest values")
+    last = t("remark") if source.is_fit else t("bridge, formation, speed") if source.is_screen else \
+        t("run, position, time")
     rows = [(capital(words), f"{digits(value)} {unit}".strip(), where)
             for words, value, unit, where in peak_rows(source)]
     page = table(report, page,
-                 [(head, 2.5, "left"), (t("value"), 1.0, "right"), (t("run, position, time"), 3.3, "left")], rows)
+                 [(head, 2.5, "left"), (t("value"), 1.0, "right"), (last, 3.3, "left")], rows)
     if governing is not None:
         page = page if page.room() > 0.8 else report.page(page.heading)
         page.text(LEFT, t("The governing run, {run}, was repeated with closer stations and stored time histories, "

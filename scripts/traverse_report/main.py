@@ -14,8 +14,8 @@ from traverse_check.rules import CheckError
 
 from . import (
     annex_sheet, assumptions_sheet, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet, fatigue_sheet,
-    find_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, sensitivity_sheet, static_sheet,
-    statistics, title_sheet, workbook_sheets)
+    find_sheet, fit_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, screen_sheet,
+    sensitivity_sheet, static_sheet, statistics, title_sheet, workbook_sheets)
 from . import governing as again
 from . import limits as judging
 from .language import LANGUAGES, choose, t
@@ -134,14 +134,18 @@ def governing_of(source, limits, arguments, scratch):
 def add_pages(report, entry, asked, program):
     source, limits, verdicts, governing = entry
     front_sheet.sheet(report, source, verdicts, governing)
-    assumptions_sheet.sheet(report, source)
-    loads_sheet.sheet(report, source)
-    checks_sheet.sheet(report, source, verdicts)
+    if not source.is_screen:  # its bridges and formations are in its tables
+        assumptions_sheet.sheet(report, source)
+        loads_sheet.sheet(report, source)
+    if source.is_verification:
+        checks_sheet.sheet(report, source, verdicts)
     norm_sheet.sheet(report, source)
     static_sheet.sheet(report, source)
     rail_sheet.sheet(report, source)
     find_sheet.sheet(report, source)
     sensitivity_sheet.sheet(report, source)
+    fit_sheet.sheet(report, source)
+    screen_sheet.sheet(report, source)
     if source.runs is not None:
         curve_sheet.line_sheet(report, source, limits)
         curve_sheet.curve_sheets(report, source, limits)

@@ -155,9 +155,11 @@ class Source:
         self.is_search, self.is_sensitivity = "find/ratio" in self.file, "sensitivity/units" in self.file
         self.is_static = self.runs is None and not self.is_run and not self.is_rail and "static/x" in self.file
         self.is_dynamic = self.runs is not None or self.is_run
-        if not self.is_dynamic and not self.is_rail and not self.is_static:
+        self.is_fit, self.is_screen = "fit/estimate" in self.file, "screen/ratio" in self.file
+        self.is_verification = self.is_dynamic or self.is_rail or self.is_static  # of one structure
+        if not self.is_verification and not self.is_fit and not self.is_screen:
             raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor static effects, "
-                              "nor forces of the rails: nothing to report on")
+                              "nor forces of the rails, nor a fit or a screen: nothing to report on")
 
     def _judged(self, runs):
         """Adds the values of quantities with limits, one per run."""
@@ -206,7 +208,28 @@ class Source:
     def title(self):
         return self.options.get("report_structure") or self.results.scene()
 
+    def is_estimated(self, *options):
+        """Whether a fit estimates one of these options."""
+        return self.is_fit and not set(options).isdisjoint(self.file["unknown"].asstr()[:])
+
+    def _fit_in_words(self):
+        frequencies = len(self.file["fit/frequencies/measured"]) if "fit/frequencies" in self.file else 0
+        values = sum(len(group["time"]) for group in self.file.get("fit/series", {}).values())
+        return t("fit to measurements (unknowns: {unknowns}; frequencies: {frequencies}; values of series: {values})",
+                 unknowns=len(self.file["unknown"]), frequencies=frequencies, values=number(values))
+
+    def _screen_in_words(self):
+        speed, (unit, factor) = self.file["screen/speed"][:], shown("speed")
+        return t("screen (bridges: {bridges}; formations: {formations}; speeds: {speeds} from {low} to {high})",
+                 bridges=number(len(self.file["bridge"])), formations=number(len(self.file["formation"])),
+                 speeds=number(len(speed)), low=number(factor * speed.min()),
+                 high=f"{number(factor * speed.max())} {unit}")
+
     def kind_in_words(self):
+        if self.is_fit:
+            return self._fit_in_words()
+        if self.is_screen:
+            return self._screen_in_words()
         if self.is_rail:
             return t("track-bridge interaction, static analysis")
         if self.is_static:
@@ -233,6 +256,8 @@ class Source:
         model = self.model
         if self.is_static:
             return ", ".join(self.static_loads())
+        if self.is_screen:
+            return t("formations of a fleet")
         if self.is_rail:
             return t("a train at {count} positions", count=len(self.file["rail_forces/front"]))
         if len(model.train):

@@ -138,13 +138,19 @@ def draw_signatures(page, title):
     page.y = bottom - 0.3
 
 
+def heading_of(sources):
+    """What the report is about."""
+    kinds = ((t("Fit to measurements"), [source.is_fit for source in sources]),
+             (t("Screen of bridges and formations"), [source.is_screen for source in sources]),
+             (t("Computations of bridges under moving loads"), [not source.is_verification for source in sources]),
+             (t("Verification of the bridge under static load models"), [source.is_static for source in sources]),
+             (t("Verification of track-bridge interaction"), [source.is_rail for source in sources]),
+             (t("Verification of the bridge under moving loads"), [not source.is_rail for source in sources]))
+    return next((words for words, of_kind in kinds if all(of_kind)), t("Verification of the bridge and of its track"))
+
+
 def title_page(report, title, sources, lines, colour):
-    page = report.page(t("Verification of the bridge under static load models")
-                       if all(source.is_static for source in sources)
-                       else t("Verification of the bridge under moving loads")
-                       if not any(source.is_rail for source in sources)
-                       else t("Verification of track-bridge interaction") if all(source.is_rail for source in sources)
-                       else t("Verification of the bridge and of its track"), numbered=False, drop=0.55)
+    page = report.page(heading_of(sources), numbered=False, drop=0.55)
     if title.logo is not None:
         draw_logo(page, title.logo)
     page.y -= 0.2

@@ -41,10 +41,12 @@ def add_source(book, prefix, entry, asked, program):
     source, limits, verdicts, governing = entry
     if verdicts:
         add_verdicts(book, f"{prefix}{t('verdicts')}", verdicts)
-    add_scope(book, f"{prefix}{t('scope')}", source, verdicts)
+    if source.is_verification:
+        add_scope(book, f"{prefix}{t('scope')}", source, verdicts)
     book.add(f"{prefix}{t('greatest values')}", [t("quantity"), t("value"), t("unit"), t("run, position, time")],
              [[words, value, unit or "1", where] for words, value, unit, where in peak_rows(source)])
-    book.add(f"{prefix}{t('basis')}", [t("assumption"), t("value"), t("source")], assumptions_sheet.rows_of(source))
+    if not source.is_screen:
+        book.add(f"{prefix}{t('basis')}", [t("assumption"), t("value"), t("source")], assumptions_sheet.rows_of(source))
     trains = loads_sheet.hslm_rows(source)
     unit, factor = unit_of_si("N")
     if trains:
@@ -59,7 +61,12 @@ def add_source(book, prefix, entry, asked, program):
                                (t("rail stresses"), rail_sheet.envelope_rows(source)),
                                (t("Search for values"), find_sheet.interval_rows(source)),
                                (t("Ratio to the bound"), find_sheet.ratio_rows(source)),
-                               (t("Sensitivity analysis"), sensitivity_sheet.workbook_rows(source))):
+                               (t("Sensitivity analysis"), sensitivity_sheet.workbook_rows(source)),
+                               (t("Fit to measurements"), fit_sheet.workbook_rows(source)),
+                               (t("measured frequencies"), fit_sheet.workbook_frequencies(source)),
+                               (t("Measured and computed"), fit_sheet.workbook_series(source)),
+                               (t("bridges"), screen_sheet.workbook_bridges(source)),
+                               (t("pairs"), screen_sheet.workbook_pairs(source))):
         if rows:
             book.add(f"{prefix}{name}", head, rows)
     if source.runs is not None:

@@ -273,8 +273,7 @@ void Batch::store_responses() {
   for (std::size_t l = 0; l < count_; ++l)
     for (const Response response : plan_.stored)
       for (std::size_t p = 0; p < n; ++p)
-        samples_[l].push_back(
-            peaks_.response[kept_samples - 1][rows(static_cast<std::size_t>(response) * n + p) + l]);
+        samples_[l].push_back(peaks_.response[kept_samples - 1][rows(static_cast<std::size_t>(response) * n + p) + l]);
 }
 
 void Batch::run() {

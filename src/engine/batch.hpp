@@ -51,8 +51,8 @@ class BatchStructure {
 
   const beam::Beam& beam_;
   const structure::ModalBridge* modal_;
-  const beam::Line& line_;  // the line that carries the wheels
-  BeamTask task_;           // without entries and the arrays of the runs
+  const beam::Line& line_;                     // the line that carries the wheels
+  BeamTask task_;                              // without entries and the arrays of the runs
   double by_mass_ = 0.0, by_stiffness_ = 0.0;  // of Rayleigh's damping, 1/s and s
   std::vector<double> mass_, damping_, stiffness_, dead_load_, shape_;
   std::vector<char> held_;
@@ -70,8 +70,8 @@ class BatchStructure {
 struct EqualSteps {
   double to = 0.0;  // m travelled since t = 0, at the end
   long steps = 0;
-  bool ends_at_event = true;          // whether a wheel is at a kink of the surface or at a probe at the end
-  bool stores = false;                // whether responses at the end are stored
+  bool ends_at_event = true;  // whether a wheel is at a kink of the surface or at a probe at the end
+  bool stores = false;        // whether responses at the end are stored
 };
 
 /// One run: a train in its initial state, on its own track. The vehicles of all runs differ in parameter values only,
@@ -90,7 +90,7 @@ enum class Response { deflection, acceleration, moment };
 
 struct BatchPlan {
   std::vector<Response> stored;  // at the start and at the end of the series that store
-  structure::Method method;  // coefficients for a step of 1 s, scaled to each run's step
+  structure::Method method;      // coefficients for a step of 1 s, scaled to each run's step
   std::vector<EqualSteps> equal_steps;
   double level_until = 0.0;  // m: up to here track and ground are level and rigid; vehicles are at rest
 };

@@ -98,7 +98,8 @@ bool BatchStructure::same_layout(const BatchStructure& other) const {
   if (task_.block != other.task_.block || task_.columns != other.task_.columns ||
       task_.unknowns != other.task_.unknowns || task_.elements != other.task_.elements ||
       task_.proportional != other.task_.proportional || (by_stiffness_ > 0.0) != (other.by_stiffness_ > 0.0) ||
-      (modal_ == nullptr) != (other.modal_ == nullptr) || (beam_.rail() == nullptr) != (other.beam_.rail() == nullptr) ||
+      (modal_ == nullptr) != (other.modal_ == nullptr) ||
+      (beam_.rail() == nullptr) != (other.beam_.rail() == nullptr) ||
       line_.model.surface_height != other.line_.model.surface_height || has_shear_ != other.has_shear_)
     return false;
   for (int e = 0; e < task_.elements; ++e)

@@ -215,8 +215,9 @@ struct BeamRows {
     of.rows ? use(rows(of.mass), rows(of.damping), rows(of.stiffness)) : use(of.mass, of.damping, of.stiffness);
   }
 
-  /// y -= A x. Each block is read once: the products of a coupling block with both of its columns are computed together.
-  void subtract_product(const double* ColumnMatrices::* A, const Row* x, Row* y) const {
+  /// y -= A x. Each block is read once: the products of a coupling block with both of its columns are computed
+  /// together.
+  void subtract_product(const double* ColumnMatrices::*A, const Row* x, Row* y) const {
     Row of_before[most_block] = {};  // contribution of the column before
     for (int c = 0; c < t.columns; ++c) {
       const auto subtract_column = [&](const auto* own) {

@@ -18,9 +18,9 @@ struct ColumnMatrices {
 /// M a + C w + K v = P + forces of wheels, with block tridiagonal matrices. An *entry* of a constant vector is a number
 /// if all runs share the structure, otherwise a row.
 struct BeamTask {
-  bool shared = true;              // all runs share the structure
-  int block = 2, columns = 0;  // unknowns of a column
-  int unknowns = 0;            // block*columns, or number of modes
+  bool shared = true;                                        // all runs share the structure
+  int block = 2, columns = 0;                                // unknowns of a column
+  int unknowns = 0;                                          // block*columns, or number of modes
   const ColumnMatrices* column = nullptr;                    // one for each column
   bool proportional = false;                                 // C = by_mass M + by_stiffness K
   const double *by_mass = nullptr, *by_stiffness = nullptr;  // rows: 1/s, s

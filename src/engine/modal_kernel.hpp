@@ -19,7 +19,8 @@ struct ModalRows {
 
   void factorise(Row rate, Row displacement) const {
     const Entry *damping = entries<Entry>(t.modal_damping), *stiffness = entries<Entry>(t.modal_stiffness);
-    for (int i = 0; i < t.unknowns; ++i) rows(t.pivot)[i] = 1.0 / (1.0 + rate * damping[i] + displacement * stiffness[i]);
+    for (int i = 0; i < t.unknowns; ++i)
+      rows(t.pivot)[i] = 1.0 / (1.0 + rate * damping[i] + displacement * stiffness[i]);
     const int* o = t.transverse;
     for (int e = 0; e < t.elements; ++e) {
       const int first = t.first_column[e] * t.block,
@@ -83,9 +84,7 @@ struct ModalRows {
   }
 
  private:
-  const Entry* shapes(int unknown) const {
-    return entries<Entry>(t.shape) + static_cast<long>(unknown) * t.unknowns;
-  }
+  const Entry* shapes(int unknown) const { return entries<Entry>(t.shape) + static_cast<long>(unknown) * t.unknowns; }
 
   /// Calls use(unknown, its values in the modes).
   template <class Use>

@@ -8,8 +8,9 @@ namespace traverse::engine {
 StructureLanes::StructureLanes(std::span<const BatchStructure* const> of_lanes)
     : of_lanes_(of_lanes), task_(of_lanes.front()->task_) {
   const BatchStructure& first = *of_lanes.front();
-  task_.shared = std::all_of(of_lanes.begin(), of_lanes.end(), [&](const BatchStructure* one) { return one == &first; });
-  const auto of = [&](std::vector<double> BatchStructure::* numbers) {
+  task_.shared =
+      std::all_of(of_lanes.begin(), of_lanes.end(), [&](const BatchStructure* one) { return one == &first; });
+  const auto of = [&](std::vector<double> BatchStructure::*numbers) {
     return entries((first.*numbers).size(), [&](const BatchStructure& one) { return (one.*numbers).data(); });
   };
   if (first.modal_ == nullptr) {
@@ -64,7 +65,7 @@ const double* StructureLanes::in_rows(std::size_t count, Numbers numbers) {
 /// The matrices of a column that is equal in all structures are the numbers of the first structure.
 void StructureLanes::add_column(std::size_t column) {
   const auto block = static_cast<std::size_t>(task_.block), size = 2 * block * block;
-  const auto of = [&](const BatchStructure& one, std::vector<double> BatchStructure::* matrix) {
+  const auto of = [&](const BatchStructure& one, std::vector<double> BatchStructure::*matrix) {
     return (one.*matrix).data() + column * size;
   };
   const BatchStructure& first = *of_lanes_.front();
@@ -74,11 +75,11 @@ void StructureLanes::add_column(std::size_t column) {
              return std::equal(of(first, matrix), of(first, matrix) + size, of(*one, matrix));
            });
   });
-  const auto blocks = [&](std::vector<double> BatchStructure::* matrix) {
+  const auto blocks = [&](std::vector<double> BatchStructure::*matrix) {
     return equal ? of(first, matrix) : in_rows(size, [&](const BatchStructure& one) { return of(one, matrix); });
   };
-  columns_.push_back({blocks(&BatchStructure::mass_), blocks(&BatchStructure::damping_),
-                      blocks(&BatchStructure::stiffness_), !equal});
+  columns_.push_back(
+      {blocks(&BatchStructure::mass_), blocks(&BatchStructure::damping_), blocks(&BatchStructure::stiffness_), !equal});
 }
 
 void StructureLanes::add_probe(std::size_t index) {

@@ -155,8 +155,8 @@ CaseBatch::Ready CaseBatch::ready(std::span<const Member> members, const Steps& 
   ready.add_equal_steps(first.events(distance), ds, distance, steps);
   for (const auto& [lanes, run] : members) {
     ready.tracks_.push_back(lanes->track(run.seed, distance + ds));
-    ready.runs_.push_back({lanes->structure_.get(), &lanes->fleet_, ready.tracks_.back().get(), &lanes->state_,
-                           run.speed, run.end});
+    ready.runs_.push_back(
+        {lanes->structure_.get(), &lanes->fleet_, ready.tracks_.back().get(), &lanes->state_, run.speed, run.end});
   }
   return ready;
 }
@@ -184,9 +184,9 @@ bool CaseBatch::merge(const CaseBatch& other) {
   const std::vector<train::MovingVehicle>&own = fleet_.vehicles, &others = other.fleet_.vehicles;
   if (!std::equal(own.begin(), own.end(), others.begin(), others.end(), same_vehicle) ||
       !std::equal(wheels_.begin(), wheels_.end(), other.wheels_.begin(), other.wheels_.end(), same_distance) ||
-      !structure_->same_layout(*other.structure_) || kinks_ != other.kinks_ || plan_.level_until != other.plan_.level_until ||
-      scene_.output.probes != other.scene_.output.probes || track_range_ != other.track_range_ ||
-      track_distance_ != other.track_distance_)
+      !structure_->same_layout(*other.structure_) || kinks_ != other.kinks_ ||
+      plan_.level_until != other.plan_.level_until || scene_.output.probes != other.scene_.output.probes ||
+      track_range_ != other.track_range_ || track_distance_ != other.track_distance_)
     return false;
   if (&shared_ == &other.shared_) structure_ = other.structure_;
   return true;

@@ -1,5 +1,5 @@
-// A number of points is broadcast, then the points; every rank computes its groups of points, and the results are added,
-// with zeros from all other ranks, so that they do not depend on the number of ranks.
+// A number of points is broadcast, then the points; every rank computes its groups of points, and the results are
+// added, with zeros from all other ranks, so that they do not depend on the number of ranks.
 #include "fit/evaluator.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// The runs of a fit in the lanes of batches: bridges, vehicles and speeds of the points differ, the steps in distance are
-// the same, so that the computed series are smooth functions of the options.
+// The runs of a fit in the lanes of batches: bridges, vehicles and speeds of the points differ, the steps in distance
+// are the same, so that the computed series are smooth functions of the options.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -77,10 +77,10 @@ void ForwardModel::add_series_in_lanes(const std::vector<std::vector<double>>& p
   std::deque<Point> all;
   const double longest = *model_.step;
   for (const std::vector<double>& values : points)
-    naming(values, [&] {
-      all.emplace_back(scene(values, false), fastest_ * (end_ + 2.0 * beyond_end * longest));
-    });
-  const auto end = [&](const Point& point, double spacing) { return end_ + beyond_end * spacing / point.scene.train.speed; };
+    naming(values, [&] { all.emplace_back(scene(values, false), fastest_ * (end_ + 2.0 * beyond_end * longest)); });
+  const auto end = [&](const Point& point, double spacing) {
+    return end_ + beyond_end * spacing / point.scene.train.speed;
+  };
   for (std::size_t i = 0; i < points.size();) {
     // The points from i on that form a batch.
     std::size_t past = i + 1;

@@ -25,7 +25,7 @@ struct Chain {
   };
   Chain(int block, int columns, bool proportional, bool own)
       : size(block * columns), held(static_cast<std::size_t>(size), 0), of_lane(lanes) {
-    for (Eigen::MatrixXd Lane::* A : {&Lane::M, &Lane::C, &Lane::K}) {
+    for (Eigen::MatrixXd Lane::*A : {&Lane::M, &Lane::C, &Lane::K}) {
       for (Lane& lane : of_lane) (lane.*A).setZero(size, size);
       for (int c = 0; c + 1 < columns; ++c) {
         const Eigen::MatrixXd R = Eigen::MatrixXd::NullaryExpr(2 * block, 2 * block, [&] { return random(); });
@@ -86,7 +86,7 @@ struct Chain {
     return memory.back()->data();
   }
   /// The blocks of a column (ColumnMatrices).
-  const double* blocks(Eigen::MatrixXd Lane::* A, int column, bool in_rows) {
+  const double* blocks(Eigen::MatrixXd Lane::*A, int column, bool in_rows) {
     const int b = task.block, width = in_rows ? lanes : 1;
     double* to = rows_of(2 * b * b);
     for (int l = 0; l < width; ++l)

@@ -96,7 +96,7 @@ results::LocalDerivative derivative(Function f) {
 TEST(Sensitivity, LocalDerivativesAndTheirErrors) {
   const results::LocalDerivative square = derivative([](double x) { return x * x; });
   EXPECT_NEAR(square.value, 4.0, 1e-11);
-  EXPECT_NEAR(square.error, 0.01, 1e-11);  // h f''/2
+  EXPECT_NEAR(square.error, 0.01, 1e-11);                                                 // h f''/2
   const results::LocalDerivative cubic = derivative([](double x) { return x * x * x; });  // error h^2
   EXPECT_NEAR(cubic.value, 12.0 + 1e-4, 1e-9);
   EXPECT_NEAR(cubic.error, 0.06, 1e-9);

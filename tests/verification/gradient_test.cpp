@@ -72,8 +72,7 @@ TEST(Gradient, AgreesWithDifferencesOfAThirdOfTheStep) {
   double worst = 0.0;
   for (std::size_t i = 0; i < factors; ++i) {
     const std::string pair = text(nominal[i] * (1.0 - step)) + "," + text(nominal[i] * (1.0 + step));
-    Results both =
-        run_yaml(single_run(), {{"study_vary_" + std::string(parameters[i]), pair}, {"sweep_refine", "0"}});
+    Results both = run_yaml(single_run(), {{"study_vary_" + std::string(parameters[i]), pair}, {"sweep_refine", "0"}});
     for (std::size_t q = 0; q < 3; ++q) {
       const char* const names[] = {"peak_deflection", "peak_acceleration", "peak_moment"};
       const std::vector<double>& peak = both(std::string("/study/") + names[q]);  // [run][probe]

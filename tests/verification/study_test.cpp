@@ -164,8 +164,8 @@ TEST(Study, BridgesInLanesAreThoseOfRunsAlone) {
   std::size_t run = 0;
   for (const char* EI : {"2e10", "2.5e10", "3e10"})
     for (const char* damping : {"0.01", "0.02"}) {
-      Results alone = run_yaml(
-          coach, by_elements + Values{{"study_vary_beam_EI", EI}, {"beam_damping_ratios", damping}});
+      Results alone =
+          run_yaml(coach, by_elements + Values{{"study_vary_beam_EI", EI}, {"beam_damping_ratios", damping}});
       for (const char* name : {"peak_deflection", "peak_acceleration", "peak_moment", "least_wheel_force"}) {
         const std::vector<double>&all = study(std::string("/study/") + name),
               &one = alone(std::string("/study/") + name);
