@@ -16,7 +16,8 @@ import sys
 
 here = pathlib.Path(__file__).resolve().parent
 PARTS = here / "traverse_page"
-SCRIPTS = ("format.js", "symbols.js", "places.js", "stage.js", "gestures.js", "charts.js", "tables.js", "runs.js", "page.js")
+SCRIPTS = ("format.js", "symbols.js", "places.js", "stage.js", "gestures.js", "charts.js", "tables.js", "runs.js",
+           "heat.js", "page.js")
 LARGEST = 3_000_000  # bytes
 LIBRARY = ("chart.min.js", "Chart.min.js", "chart.umd.js", "chart.js")
 FOLDERS = ("/usr/share/javascript/chart.js", "/usr/share/nodejs/chart.js/dist", "/usr/local/share/javascript/chart.js")

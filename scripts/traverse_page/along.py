@@ -1,11 +1,11 @@
 """Charts along the bridge or the track: envelopes, static effects, rail stresses, natural modes; and the ratios of a
-search over its values."""
+search over its values; and the measured series of a fit."""
 
 import numpy as np
 from engineering_units import shown
 from picture_axes import legible
 from picture_data import MOST_CURVES
-from traverse_report import find_sheet
+from traverse_report import find_sheet, fit_sheet
 from traverse_report.language import Chosen, known, t
 from traverse_report.rail_sheet import CASES
 from traverse_report.source import Source
@@ -109,6 +109,23 @@ def search_charts(results):
                 ((t("bound"), 1.0),))
 
 
+def fit_charts(results):
+    """Each measured series of a fit with its computed counterpart."""
+    if "fit/estimate" not in results.file:
+        return
+    for one in fit_sheet.series_of(results.file):
+        curves = [Curve(t("measured"), one.measured)]
+        curves += [Curve(t("computed"), one.computed)] if np.isfinite(one.computed).all() else []
+        yield Chart(f"{one.name}: {one.place}", one.unit, curves, one.time, t("time"), "s")
+
+
+def heading(results):
+    """The heading of these charts."""
+    if "fit/estimate" in results.file:
+        return t("Measured and computed")
+    return t("Search for values") if "find/ratio" in results.file else t("Along the bridge")
+
+
 def charts(results):
-    kinds = (search_charts, rail_charts, rest_charts, envelope_charts, static_charts, mode_charts)
+    kinds = (search_charts, fit_charts, rail_charts, rest_charts, envelope_charts, static_charts, mode_charts)
     return [chart for kind in kinds for chart in kind(results)]

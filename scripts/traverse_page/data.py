@@ -10,7 +10,7 @@ from traverse_report.language import decimal, num, t
 from traverse_report.limits import stored
 from traverse_report.source import ReportError, Source
 
-from . import along, histories, runs, stage, tables
+from . import along, heat, histories, runs, stage, tables
 from .packing import packed_chart, packed_charts
 from .words import words
 
@@ -18,7 +18,8 @@ from .words import words
 def kind_in_words(results):
     """What the file contains, in words."""
     analysis = results.options.get("scene_analysis", "")
-    if "sweep/speed" in results.file or "study/finished" in results.file or "rail_forces/x" in results.file:
+    if any(name in results.file for name in ("sweep/speed", "study/finished", "rail_forces/x", "fit/estimate",
+                                             "screen/ratio")):
         return Source(results.file.filename).kind_in_words()
     if analysis == "modes":
         return t("{count} natural modes", count=len(results.values("modes/frequency")))
@@ -49,7 +50,7 @@ def collect(path):
             raise ValueError(str(error)) from None
         except (LookupError, TypeError, AttributeError, ValueError, LinAlgError) as error:
             raise ValueError(f"contains data of another form than traverse writes ({error})") from None
-    if not any(found[name] for name in ("stage", "charts", "along", "runs")):
+    if not any(found[name] for name in ("stage", "charts", "along", "runs", "heat")):
         raise ValueError("contains nothing that can be shown")
     return found
 
@@ -59,14 +60,14 @@ def collected(results):
     language.choose(asked if asked in language.LANGUAGES else "en")
     limits, verdicts = tables.limits(results), stored(results.file)
     shown = [tables.verdicts(results, limits, verdicts),
-             *(table(results) for table in (tables.search, tables.sensitivity, tables.norm, tables.rail, tables.rest,
-                                            tables.envelope)),
+             *(table(results) for table in (tables.search, tables.sensitivity, tables.fit, tables.screen, tables.norm,
+                                            tables.rail, tables.rest, tables.envelope)),
              *tables.pairs(results)]
     of_runs = runs.packed_runs(results, limits)
     travels = of_runs is not None and of_runs["speeds"] is not None
     return {"title": results.scene(), "kind": kind_in_words(results), "about": about(results),
             "said": unfinished(results) or "; ".join(summary_in_words(results)), "verdict": overall(verdicts),
-            "words": words("find/ratio" in results.file),
+            "words": words(along.heading(results)), "heat": heat.heat(results),
             "stage": stage.moving(results) if results.rows > 1 else stage.still(results, travels),
             "charts": packed_charts(histories.charts(results), results.time),
             "along": [packed_chart(chart, None) for chart in along.charts(results)],

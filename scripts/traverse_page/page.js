@@ -1,4 +1,4 @@
-// The page: heading, drawing with its time bar, charts, tables, keys.
+// The page: heading, drawing with its time bar, charts, heat map, tables, keys.
 
 const page = { time: 0, playing: false, cards: [], all: [] }; // `page` is also what the tests look at
 
@@ -134,6 +134,7 @@ function showCharts() {
     new ChartCard(byId("along-charts"), { ...spec, range: spec.xName === said("bridge") ? ofBridge : null }));
   byId("along").hidden = !along.length;
   byId("reset").addEventListener("click", () => zoom(null));
+  if (data.heat) page.heat = new HeatMap(byId("heat"), data.heat);
   if (data.runs) page.runs = new Runs(data.runs, page.stage);
   page.all = [...page.cards, ...along, ...(page.runs ? page.runs.cards : [])];
   page.cards.forEach((card) => {
@@ -168,4 +169,5 @@ document.addEventListener("keydown", onKey);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
   if (page.stage) page.stage.draw(page.stage.time);
   page.all.forEach((card) => card.paint());
+  if (page.heat) page.heat.paint();
 });

@@ -1,12 +1,12 @@
 """Tables of the page: verdicts, EN 1991-2 6.4.6.5, rail and bridge, forces at rest, envelopes, searches, sensitivity
-analyses, summary, options."""
+analyses, fits, screens, summary, options."""
 
 import re
 
 import numpy as np
 from engineering_units import shown
 from picture_vehicles import wheels_of
-from traverse_report import find_sheet, sensitivity_sheet
+from traverse_report import find_sheet, fit_sheet, screen_sheet, sensitivity_sheet
 from traverse_report.language import capital, known, num, percent, t
 from traverse_report.language import number as in_digits
 from traverse_report.limits import factors_of
@@ -17,6 +17,8 @@ from traverse_report.source import Source, parameter_words
 from .along import ENVELOPES, FEWEST_STATIONS
 from .histories import named
 from .packing import number
+
+MOST_BRIDGES = 300  # rows of the table of a screen
 
 
 def unit_of_limit(quantity, unit):
@@ -159,6 +161,27 @@ def sensitivity(results):
     words = sensitivity_sheet.Words(Source(results.file.filename))
     return {"title": t("Sensitivity analysis"), "first": True, "head": [capital(name) for name in words.head()],
             "rows": words.rows(), "note": words.explanation()}
+
+
+def fit(results):
+    """The unknowns of a fit; None for another file."""
+    if "fit/estimate" not in results.file:
+        return None
+    source = Source(results.file.filename)
+    said = [fit_sheet.correlations(source.file, fit_sheet.unknowns_of(source.file)), *fit_sheet.findings_of(source)]
+    return {"title": t("Fit to measurements"), "first": True, "head": [capital(name) for name in fit_sheet.head()],
+            "rows": fit_sheet.rows(source), "note": " ".join(said)}
+
+
+def screen(results):
+    """The bridges of a screen; None for another file."""
+    if "screen/ratio" not in results.file:
+        return None
+    found = screen_sheet.Screen(results.file)
+    rows = [[cell[0] if isinstance(cell, tuple) else cell for cell in row]
+            for row in screen_sheet.cells_of_bridges(found, MOST_BRIDGES)]
+    return {"title": t("Bridges"), "first": True, "head": [capital(name) for name in screen_sheet.head()], "rows": rows,
+            "note": screen_sheet.shortened(len(found.bridges), MOST_BRIDGES)}
 
 
 def plain(value):

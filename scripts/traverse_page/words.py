@@ -3,8 +3,8 @@
 from traverse_report.language import Chosen, capital, t
 
 
-def words(of_search):
-    """{name: text} for page.html and the scripts. of_search: whether the page shows a search, over its values."""
+def words(along):
+    """{name: text} for page.html and the scripts. along: the heading of charts that are not over time."""
     return {
         "language": Chosen.language,
         "decimal": "." if Chosen.language == "en" else ",",
@@ -25,7 +25,7 @@ def words(of_search):
         "chosenRun": t("Chosen run: {run}"), "numbered": t("run {number}"), "chosen": t("chosen run"),
         "largest": t("largest of all runs"), "variedOption": t("varied option"), "at": t("at x"),
         "bridge": t("position along the bridge"), "histories": t("Over time"),
-        "along": t("Search for values") if of_search else t("Along the bridge"),
+        "along": along, "point": t("Point at a pair to see its ratio."),
         "reset": t("Reset zoom"),
         "chartsNote": t("Drag across a chart to zoom in all of them, click to go to an instant, click a name to hide "
                         "its curve. The numbers beside the names are the values at the instant of the drawing."),

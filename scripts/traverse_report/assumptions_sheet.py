@@ -166,7 +166,7 @@ def spread_of(source):
 def method_of(source):
     """The method of the analysis in words, with its mesh, modes and step."""
     if source.is_fit:
-        return t("least squares by the method of Levenberg and Marquardt; starts: {count}",
+        return t("nonlinear least squares; starts: {count}",
                  count=len(source.file["fit/starts/misfit"]))
     if not source.is_dynamic:
         return t("static analysis with non-linear track resistance") if source.is_rail else \

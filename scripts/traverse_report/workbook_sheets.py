@@ -3,8 +3,8 @@
 from openpyxl.styles import Font, PatternFill
 
 from . import (
-    annex_sheet, assumptions_sheet, checks_sheet, find_sheet, loads_sheet, norm_sheet, rail_sheet, sensitivity_sheet,
-    workbook_results)
+    annex_sheet, assumptions_sheet, checks_sheet, find_sheet, fit_sheet, loads_sheet, norm_sheet, rail_sheet,
+    screen_sheet, sensitivity_sheet, workbook_results)
 from .front_sheet import WORDS, peak_rows
 from .language import known, t
 from .limits import stored
