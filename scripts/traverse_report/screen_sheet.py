@@ -11,6 +11,7 @@ from .page import GREY, LEFT, RED, table
 from .quantities import speed_in_words
 
 MOST_BRIDGES, MOST_PAIRS = 60, 30  # rows of the tables
+MOST_IN_WORKBOOK = 100_000  # pairs
 MAP_HEIGHT = 3.6  # inches
 DECIDED = {0.0: "no common speed", 1.0: "bound", 2.0: "passages"}
 
@@ -64,8 +65,9 @@ class Row(NamedTuple):
 
 def bridge_rows(screen, most=None):
     """The bridges, those with the largest ratio first."""
+    order = np.argsort(-np.nan_to_num(screen.bridge_ratio, nan=-np.inf), kind="stable")[:most]
     return [Row(screen.bridges[i], screen.length[i], screen.frequency[i], screen.formation(i), screen.bridge_ratio[i],
-                screen.permitted_to_all(i)) for i in screen.worst_bridges[:most]]
+                screen.permitted_to_all(i)) for i in order]
 
 
 def permitted_in_words(speed):
@@ -105,9 +107,9 @@ def said_of(screen, source):
     missing = len(screen.bridges) - int(source.summary.get("bridges_finished", len(screen.bridges)))
     if missing:
         said.append(t("Bridges without a result: {count}.", count=missing))
-    said.append(t("A ratio is the largest response over its limit; of pairs decided by the bound it is the bound, which "
-                  "is not below the response."))
-    said.append(t("The map has the worst pairs above and on the left."))
+    said.append(t("A ratio is the largest response over its limit; of pairs decided by the bound it is the bound, "
+                  "which is not below the response."))
+    said.append(t("The map has the worst pairs above and on the left; blue: limits kept, red: a limit exceeded."))
     return " ".join(said)
 
 
@@ -136,18 +138,16 @@ def workbook_bridges(source):
         for row in bridge_rows(Screen(source.file))]
 
 
-MOST_IN_WORKBOOK = 100_000  # pairs
-
-
 def workbook_pairs(source):
     """Head and rows of the pairs with a ratio, those with the largest one first."""
     if not source.is_screen:
         return [], []
     screen, (unit, factor) = Screen(source.file), shown("speed")
-    return [t("bridge"), t("formation"), t("ratio"), f"{t('permitted speed')} ({unit})",
-            f"{t('speed of the ratio')} ({unit})", t("decided by")], [
-        [screen.bridges[pair[0]], screen.formations[pair[1]], screen.ratio[pair], factor * screen.permitted[pair],
-         factor * screen.worst_speed[pair], t(DECIDED[screen.decided[pair]])] for pair in screen.pairs(MOST_IN_WORKBOOK)]
+    names = [t("bridge"), t("formation"), t("ratio"), f"{t('permitted speed')} ({unit})",
+             f"{t('speed of the ratio')} ({unit})", t("decided by")]
+    return names, [[screen.bridges[pair[0]], screen.formations[pair[1]], screen.ratio[pair],
+                    factor * screen.permitted[pair], factor * screen.worst_speed[pair],
+                    t(DECIDED[screen.decided[pair]])] for pair in screen.pairs(MOST_IN_WORKBOOK)]
 
 
 def sheet(report, source):
@@ -156,14 +156,16 @@ def sheet(report, source):
     screen, page = Screen(source.file), report.page(t("Screen of bridges and formations"))
     report.anchor("screen")
     page.text(LEFT, said_of(screen, source), size=8)
-    draw(page, source)
+    draw(page, source, screen)
     page = table_of_bridges(report, page, screen)
     table_of_pairs(report, page, screen)
 
 
-def draw(page, source):
-    """Draws the heat map, with room for names of formations below it."""
-    ax = page.axes(MAP_HEIGHT, left=1.3, right=0.8, below=1.25)
+def draw(page, source, screen):
+    """Draws the heat map, with room for the names that it has."""
+    left, below = (1.3 if len(screen.bridges) <= picture_screen.MOST_NAMES else 0.3,
+                   1.25 if len(screen.formations) <= picture_screen.MOST_NAMES else 0.4)
+    ax = page.axes(MAP_HEIGHT, left=left, right=0.8, below=below)
     picture_screen.draw(ax, source.results, t("Largest response over its limit"), t("response / limit"))
     ax.child_axes[0].yaxis.set_major_formatter(Ticks())
     page.fit(ax)
