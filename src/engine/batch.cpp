@@ -20,8 +20,7 @@ TRAVERSE_LANES_DECLARE(void set_batch_step(const BatchTask& t);
                        void start_batch_peaks(const BatchTask& t); void end_peaks_at_kink(const BatchTask& t);
                        void finish_batch(const BatchTask& t);)
 
-constexpr double last_change = 1e-7;  // of a force, over the vehicle's weight
-constexpr double no_station = -1e9;   // m: initial profile_station, far from any track
+constexpr double no_station = -1e9;  // m: initial profile_station, far from any track
 
 /// The memory of a batch and the loop over its steps.
 class Batch {
@@ -155,7 +154,7 @@ void Batch::start_structure() {
   train_.nodal = beam_.v_stage = arrays_.add(nodal);
   train_.dissipated = train_.drive_power = nullptr;
   train_.converged = arrays_.add(arrays_.blocks.size());
-  train_.tolerance = last_change;
+  train_.tolerance = plan_.last_change;
   train_.load = beam_.work;
 }
 

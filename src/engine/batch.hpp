@@ -92,7 +92,8 @@ struct BatchPlan {
   std::vector<Response> stored;  // at the start and at the end of the series that store
   structure::Method method;      // coefficients for a step of 1 s, scaled to each run's step
   std::vector<EqualSteps> equal_steps;
-  double level_until = 0.0;  // m: up to here track and ground are level and rigid; vehicles are at rest
+  double last_change = 1e-7;  // of a force in the last pass of a stage, over the vehicle's weight
+  double level_until = 0.0;   // m: up to here track and ground are level and rigid; vehicles are at rest
 };
 
 struct BatchResult : base::PassagePeaks {

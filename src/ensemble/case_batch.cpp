@@ -148,6 +148,7 @@ CaseBatch::Ready CaseBatch::ready(std::span<const Member> members, const Steps& 
   ready.plan_ = first.plan_;
   ready.plan_.method = steps.method;
   ready.plan_.stored = steps.stored;
+  ready.plan_.last_change = steps.last_change;
   const LaneRun& any = members.front().run;
   const double ds = spacing(steps, any.step_speed > 0.0 ? any.step_speed : any.speed);
   double distance = 0.0;

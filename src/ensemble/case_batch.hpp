@@ -42,6 +42,7 @@ class CaseBatch {
     bool trial = false;  // all runs have the same distance, whose end is sampled exactly; a batch may have one run
     /// Responses that are stored at positions at the distance `spacing`, at which time steps end too.
     std::vector<engine::Response> stored = {};
+    double last_change = engine::BatchPlan().last_change;  // BatchPlan
   };
   /// The steps that the scene defines.
   Steps steps() const;

@@ -20,7 +20,8 @@
 namespace traverse::app {
 namespace {
 
-constexpr double beyond_end = 2.0;  // spacings of the stored samples: the last instant is between two of them
+constexpr double last_change = 1e-11;  // of a force: the changes of a misfit near its minimum are small
+constexpr double beyond_end = 2.0;     // spacings of the stored samples: the last instant is between two of them
 
 /// One point: its scene and what computes it.
 struct Point {
@@ -91,6 +92,7 @@ void ForwardModel::add_series_in_lanes(const std::vector<std::vector<double>>& p
     if (all[i].batch) {
       CaseBatch::Steps steps = all[i].batch->steps();
       steps.stored = stored_;
+      steps.last_change = last_change;
       spacing = CaseBatch::spacing(steps, step_speed_);
       std::vector<CaseBatch::Member> members;
       for (std::size_t k = i; k < past; ++k)
