@@ -30,7 +30,9 @@ ModalMotion::ModalMotion(const structure::ModalBridge& bridge, const ForceHistor
   rate_ = acceleration_ = q_;
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     highest_ = std::max(highest_, bridge_.omega()[i]);
-    if (equilibrium) q_[i] = history_.interval(0)[i] / (bridge_.omega()[i] * bridge_.omega()[i]);
+    modes_[i].omega2 = bridge_.omega()[i] * bridge_.omega()[i];
+    modes_[i].damping = 2.0 * bridge_.sigma()[i];
+    if (equilibrium) q_[i] = history_.interval(0)[i] / modes_[i].omega2;
   }
   if (bridge.coupled()) coupled_.emplace(bridge);
   enter(0);
@@ -56,7 +58,7 @@ void ModalMotion::enter(std::size_t interval) {
   const double* g = history_.interval(interval);
   if (coupled_) return enter_coupled();
   for (std::size_t i = 0; i < modes_.size(); ++i) {
-    const double square = bridge_.omega()[i] * bridge_.omega()[i], c = 2.0 * bridge_.sigma()[i];
+    const double square = modes_[i].omega2, c = modes_[i].damping;
     auto& p = modes_[i].particular;
     p[3] = g[3 * n + i] * speed_ * speed_ * speed_ / square;
     p[2] = (g[2 * n + i] * speed_ * speed_ - 3.0 * c * p[3]) / square;
@@ -220,8 +222,7 @@ void ModalMotion::update_acceleration() {
   const double t = since_event();
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const Mode& mode = modes_[i];
-    const double omega = bridge_.omega()[i], sigma = bridge_.sigma()[i];
-    acceleration_[i] = second(mode.particular, t) - 2.0 * sigma * mode.w - omega * omega * mode.u;
+    acceleration_[i] = second(mode.particular, t) - mode.damping * mode.w - mode.omega2 * mode.u;
   }
   if (coupled_) Eigen::Map<Eigen::VectorXd>(acceleration_.data(), w_.size()).noalias() -= bridge_.cross_damping() * w_;
 }

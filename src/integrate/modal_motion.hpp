@@ -52,6 +52,7 @@ class ModalMotion {
   struct Mode {
     std::array<double, 4> particular{};  // coefficients of the powers of the time since the interval's start
     double u = 0.0, w = 0.0;             // the free oscillation and its rate at the present time
+    double omega2 = 0.0, damping = 0.0;  // omega^2, 1/s2; 2 sigma, 1/s
   };
   void enter(std::size_t interval);
   void enter_coupled();
