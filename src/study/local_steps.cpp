@@ -1,9 +1,6 @@
 // Compares the runner of one point of each factor with that of the nominal point.
 #include "study/local_steps.hpp"
 
-#include <algorithm>
-#include <iterator>
-
 #include "base/sampling_design.hpp"
 
 namespace traverse::app {
