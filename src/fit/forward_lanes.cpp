@@ -52,7 +52,7 @@ std::optional<engine::Response> response_of(const options::MeasuredSeries& serie
 /// Batches compute a whole layered track, single runs only the part of it that moves: these are faster.
 void ForwardModel::find_lanes(const Scene& scene, const SharedBeam& shared) {
   const options::Options given(options::in_force());
-  if (given.integer("sweep_lanes") == 0 || !shared.beam || shared.beam->rail() != nullptr) return;
+  if (given.integer("sweep_lanes") == 0 || shared.beam->rail() != nullptr) return;
   if (!batch_obstacle(scene, shared).empty()) return;
   std::vector<engine::Response> found;
   for (const options::MeasuredSeries& series : fit_.series) {
