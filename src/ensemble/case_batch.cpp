@@ -195,7 +195,7 @@ bool CaseBatch::merge(const CaseBatch& other) {
 
 double CaseBatch::residual(const engine::BatchResult& result) {
   double largest = 0.0;
-  for (train::MovingVehicle& vehicle : fleet_.vehicles)
+  for (train::MovingVehicle vehicle : fleet_.vehicles)  // a copy: the next batch starts from the vehicle's own state
     largest = std::max(
         largest, train::linearisation_residual_at(vehicle, result.coordinates_at_largest.data() + vehicle.offset));
   return largest;

@@ -152,6 +152,21 @@ TEST(Study, TrainsInLanesAreThoseOfRunsAlone) {
   EXPECT_LT(worst, 1e-9);
 }
 
+// Nine speeds of one class are two batches of one train; the second starts like the first.
+TEST(Study, LaterBatchesStartLikeTheFirst) {
+  Results all = run_yaml(coach, by_elements + Values{{"study_vary_train_speed", "77,77.5,78,78.5,79,79.5,80,80.5,81"}});
+  Results two = run_yaml(coach, by_elements + Values{{"study_vary_train_speed", "77,81"}});
+  double worst = 0.0;
+  for (const char* name : {"peak_deflection", "peak_acceleration", "peak_moment", "greatest_wheel_force"}) {
+    const std::vector<double>&of_all = all(std::string("/study/") + name), &of_two = two(std::string("/study/") + name);
+    const std::size_t width = of_two.size() / 2;
+    for (std::size_t p = 0; p < width; ++p)
+      worst = std::max(worst, std::abs(of_all[8 * width + p] / of_two[width + p] - 1.0));
+  }
+  record("later batches", worst);
+  EXPECT_LT(worst, 1e-12);
+}
+
 // Bridges whose stiffness and damping differ in lanes of one batch.
 TEST(Study, BridgesInLanesAreThoseOfRunsAlone) {
   testing::internal::CaptureStdout();
