@@ -152,10 +152,12 @@ TEST(Study, TrainsInLanesAreThoseOfRunsAlone) {
   EXPECT_LT(worst, 1e-9);
 }
 
-// Nine speeds of one class are two batches of one train; the second starts like the first.
+// Nine speeds of one class are two batches of one train, whose wheels follow the deflected bridge at the start.
 TEST(Study, LaterBatchesStartLikeTheFirst) {
-  Results all = run_yaml(coach, by_elements + Values{{"study_vary_train_speed", "77,77.5,78,78.5,79,79.5,80,80.5,81"}});
-  Results two = run_yaml(coach, by_elements + Values{{"study_vary_train_speed", "77,81"}});
+  const Values on_the_bridge = by_elements + Values{{"train_positions", "20"}};
+  Results all =
+      run_yaml(coach, on_the_bridge + Values{{"study_vary_train_speed", "77,77.5,78,78.5,79,79.5,80,80.5,81"}});
+  Results two = run_yaml(coach, on_the_bridge + Values{{"study_vary_train_speed", "77,81"}});
   double worst = 0.0;
   for (const char* name : {"peak_deflection", "peak_acceleration", "peak_moment", "greatest_wheel_force"}) {
     const std::vector<double>&of_all = all(std::string("/study/") + name), &of_two = two(std::string("/study/") + name);
