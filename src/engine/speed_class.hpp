@@ -1,5 +1,5 @@
-// Classes of speeds with the same steps in distance, so that the steps of a run depend on its own speed only, not on
-// the other runs of a batch.
+// Classes of speeds with the same steps in distance, and octaves with the same windows, so that the steps of a run
+// depend on its own speed only, not on the other runs of a batch.
 #pragma once
 
 #include <cmath>
@@ -15,5 +15,8 @@ inline int speed_class(double speed) {
 
 /// The lowest speed of a class, m/s.
 inline double speed_of_class(int number) { return std::exp2(number / classes_an_octave); }
+
+/// The power of two that a speed (m/s) is in the octave of.
+inline int speed_octave(double speed) { return static_cast<int>(std::floor(speed_class(speed) / classes_an_octave)); }
 
 }  // namespace traverse::engine

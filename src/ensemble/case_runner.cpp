@@ -13,6 +13,7 @@
 #include "engine/processor.hpp"
 #include "engine/speed_class.hpp"
 #include "ensemble/batch_obstacle.hpp"
+#include "ensemble/greatest_peaks.hpp"
 #include "integrate/modal_peaks.hpp"
 #include "run/run_observer.hpp"
 #include "run/signals.hpp"
@@ -117,10 +118,7 @@ std::vector<CaseResult> CaseRunner::run_together(std::size_t train, std::span<co
   } else {
     for (const auto& [runner, one] : members) results.push_back(runner->run(train, one, reached));
   }
-  if (first.scene_.by_given_modes())
-    for (CaseResult& result : results)
-      for (base::ProbePeaks& peak : result.peaks) peak.moment = {unknown, unknown};
-  for (CaseResult& result : results) result.evaluated.resize(first.scene_.limits.size());  // unknown if not evaluated
+  for (CaseResult& result : results) first.hide_unknown(result);
   return results;
 }
 
@@ -270,13 +268,49 @@ CaseResult CaseRunner::run_with_mechanisms(std::size_t train, const CaseRun& run
   return result;
 }
 
-std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<const CaseRun> runs) {
+const modal_engine::MovingForcePassages& CaseRunner::passages_of(std::size_t train) {
   auto passage = passages_.find(train);
   if (passage == passages_.end()) {
-    const train::MovingLoad& load = scene_of(train, runs.front()).load;
+    const train::MovingLoad& load = scene_of(train, {speeds_.front(), {}}).load;
     passage = passages_.try_emplace(train, *beam_->modal, load, scene_.start == Start::equilibrium).first;
     static_deflection_[train] = passage->second.static_peaks();
   }
+  return passage->second;
+}
+
+std::vector<CaseResult> CaseRunner::greatest(std::size_t train, std::span<const Member> members) {
+  std::vector<CaseRunner*> runners;
+  std::vector<const modal_engine::MovingForcePassages*> passages;
+  std::vector<ForceRun> runs;
+  for (const auto& [runner, one] : members) {
+    const auto place = static_cast<std::size_t>(std::find(runners.begin(), runners.end(), runner) - runners.begin());
+    if (place == runners.size()) {
+      runners.push_back(runner);
+      passages.push_back(&runner->passages_of(train));
+    }
+    runs.push_back({place, one.speed, runner->duration(train, one.speed)});
+  }
+  const auto peaks = greatest_peaks(passages, runs, runners.front()->scene_.sweep->instants,
+                                    [] { return caught_signal() == 0; });
+  std::vector<CaseResult> results(runners.size());
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    results[i].peaks = peaks[i];
+    results[i].static_deflection = runners[i]->static_deflection_[train];
+    results[i].ended = true;
+    runners[i]->hide_unknown(results[i]);
+  }
+  return results;
+}
+
+/// The moment of given modes is unknown, and limits that were not evaluated.
+void CaseRunner::hide_unknown(CaseResult& result) const {
+  if (scene_.by_given_modes())
+    for (base::ProbePeaks& peak : result.peaks) peak.moment = {unknown, unknown};
+  result.evaluated.resize(scene_.limits.size());
+}
+
+std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<const CaseRun> runs) {
+  const modal_engine::MovingForcePassages& passages = passages_of(train);
   std::vector<double> speeds, ends;
   for (const CaseRun& one : runs) {
     speeds.push_back(one.speed);
@@ -287,11 +321,11 @@ std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<co
   std::vector<std::vector<base::ProbePeaks>> peaks;
   if (beam_->modal->dampers_couple())
     for (std::size_t i = 0; i < speeds.size(); ++i)
-      peaks.push_back(integrate::modal_peaks(*beam_->modal, passage->second.history(), speeds[i],
+      peaks.push_back(integrate::modal_peaks(*beam_->modal, passages.history(), speeds[i],
                                              scene_.start == Start::equilibrium, ends[i], scene_.sweep->instants,
                                              no_signal));
   else
-    peaks = passage->second.peaks(speeds, ends, scene_.sweep->instants, no_signal);
+    peaks = passages.peaks(speeds, ends, scene_.sweep->instants, no_signal);
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     results[i].peaks = peaks[i];
     results[i].static_deflection = static_deflection_[train];

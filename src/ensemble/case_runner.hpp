@@ -72,6 +72,13 @@ class CaseRunner {
   /// first.
   static std::vector<CaseResult> run_together(std::size_t train, std::span<const Member> members,
                                               const std::function<void(double)>& reached = {});
+  /// Whether the greatest peaks of many runs are found without computing all of them.
+  bool has_bounds() const {
+    return scene_.exact_in_time() && !scene_.has_run_limits() && !beam_->modal->dampers_couple();
+  }
+  /// The greatest results of the runs of each runner, in the order of the first run of each; all runners have bounds.
+  /// Peaks that are not the greatest of all runners, absolutely or relative to the static deflection, may be unknown.
+  static std::vector<CaseResult> greatest(std::size_t train, std::span<const Member> members);
   /// Makes the runs compatible with the runs of another runner on the same bridge; false if that is not possible.
   bool merge(const CaseRunner& other) { return lanes_ && other.lanes_ && lanes_->merge(*other.lanes_); }
   const std::shared_ptr<SharedBeam>& beam() const { return beam_; }
@@ -84,6 +91,8 @@ class CaseRunner {
   CaseResult run_by_elements(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
   CaseResult run_with_mechanisms(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
   std::vector<CaseResult> run_by_modes(std::size_t train, std::span<const CaseRun> runs);
+  const modal_engine::MovingForcePassages& passages_of(std::size_t train);
+  void hide_unknown(CaseResult& result) const;
   static std::vector<CaseResult> run_batch(std::size_t train, std::span<const Member> members,
                                            const std::function<void(double)>& reached);
   CaseResult result_of(const engine::BatchResult& crossing, std::size_t train) const;

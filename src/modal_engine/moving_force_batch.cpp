@@ -1,13 +1,13 @@
-// Prepares the tables of the vectorised kernel: modal forces over the distance, modal coefficients and the breaks where
-// a response has a kink or a jump. Static peaks follow from the extremes of cubic polynomials.
+// Prepares the tables of the vectorised kernel: modal forces over the distance, modal coefficients, windows with bounds
+// and the breaks where a response has a kink or a jump.
 //
 // Channels of the force history: modal forces; then for each probe the static correction of the deflection (the static
 // deflection minus the contribution of the modes), then for each probe that of the moment.
 #include "modal_engine/moving_force_batch.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "engine/processor.hpp"
@@ -21,39 +21,7 @@ TRAVERSE_LANES_DECLARE(long work_size(const ForceTask& task); void run_passages(
 namespace {
 
 constexpr double negligible_kink = 1e-6;  // fraction of the largest slope, or of the largest value for a jump
-
-/// The coefficients of one channel in an interval, by powers of the distance since its start.
-std::array<double, 4> cubic_of(const integrate::ForceHistory& history, std::size_t interval, std::size_t channel) {
-  const double* c = history.interval(interval) + channel;
-  const std::size_t n = history.channels;
-  return {c[0], c[n], c[2 * n], c[3 * n]};
-}
-
-/// The largest magnitudes of each channel and of its slope at the starts of the intervals, and the jumps of both there.
-struct Jumps {
-  explicit Jumps(const integrate::ForceHistory& history)
-      : largest(history.channels, 0.0), steepest(largest), value(history.coefficients.size() / 4), slope(value) {
-    const std::size_t n = history.channels;
-    for (std::size_t i = 0; i < history.start.size(); ++i) {
-      const double* c = history.interval(i);
-      for (std::size_t k = 0; k < n; ++k) {
-        largest[k] = std::max(largest[k], std::abs(c[k]));
-        steepest[k] = std::max(steepest[k], std::abs(c[n + k]));
-      }
-      if (i == 0) continue;
-      const double d = history.start[i] - history.start[i - 1];
-      const double* b = history.interval(i - 1);
-      for (std::size_t k = 0; k < n; ++k) {
-        const double b1 = b[n + k], b2 = b[2 * n + k], b3 = b[3 * n + k];
-        value[i * n + k] = std::abs(c[k] - (b[k] + d * (b1 + d * (b2 + d * b3))));
-        slope[i * n + k] = std::abs(c[n + k] - (b1 + d * (2.0 * b2 + 3.0 * d * b3)));
-      }
-    }
-  }
-
-  std::vector<double> largest, steepest;  // for each channel
-  std::vector<double> value, slope;       // [interval][channel]
-};
+constexpr double window_samples = 16.0;   // of a window at the lowest speed of its octave, about
 
 }  // namespace
 
@@ -67,13 +35,14 @@ MovingForcePassages::MovingForcePassages(const structure::ModalBridge& bridge, c
   }
   const std::vector<double>& moments = bridge.probes().weight_moment;
   self_weight_.insert(self_weight_.end(), moments.begin(), moments.end());
-  find_kinks();
+  const Jumps jumps(history_);
+  find_kinks(jumps);
+  bounds_ = std::make_unique<ForceBounds>(bridge, history_, jumps, event_);
 }
 
 /// If a modal force has a kink, all responses have one; otherwise the responses whose static correction has a kink.
-void MovingForcePassages::find_kinks() {
+void MovingForcePassages::find_kinks(const Jumps& jumps) {
   const std::size_t modes = bridge_.modes(), n = history_.channels, probes = bridge_.probes().count;
-  const Jumps jumps(history_);
   // A kink is ignored if it is small relative to the whole response.
   std::vector<double> largest = jumps.largest, steepest = jumps.steepest;
   for (std::size_t k = modes; k < n; ++k)
@@ -106,7 +75,24 @@ void MovingForcePassages::find_kinks() {
 std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<const double> speeds,
                                                                       std::span<const double> end_times,
                                                                       double samples_per_period,
-                                                                      const std::function<bool()>& proceed) const {
+                                                                      const std::function<bool()>& proceed,
+                                                                      std::span<const base::ProbePeaks> least) const {
+  return run(speeds, end_times, samples_per_period, proceed, least, false);
+}
+
+std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::bounds(std::span<const double> speeds,
+                                                                       std::span<const double> end_times,
+                                                                       double samples_per_period,
+                                                                       const std::function<bool()>& proceed) const {
+  return run(speeds, end_times, samples_per_period, proceed, {}, true);
+}
+
+std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(std::span<const double> speeds,
+                                                                    std::span<const double> end_times,
+                                                                    double samples_per_period,
+                                                                    const std::function<bool()>& proceed,
+                                                                    std::span<const base::ProbePeaks> least,
+                                                                    bool only_bounds) const {
   const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 2 ? 4 : 2, probes = bridge_.probes().count;
   engine::Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
   for (std::size_t lane = 0; lane < width; ++lane) {
@@ -129,6 +115,20 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<
   task.event = event_.data();
   task.first_kink = first_kink_.data();
   task.kink = kink_.data();
+  task.lengths = static_cast<int>(bounds_->lengths().size());
+  task.length = bounds_->lengths().data();
+  task.length_of = bounds_->length_of().data();
+  task.least_speed = std::exp2(engine::speed_octave(speeds.front()));
+  const double window = window_samples * task.instant * task.least_speed;
+  auto windows = windows_.find(window);
+  if (windows == windows_.end()) windows = windows_.emplace(window, bounds_->windows(window)).first;
+  task.windows = static_cast<long>(windows->second.end.size());
+  task.window_end = windows->second.end.data();
+  task.window_last = windows->second.last.data();
+  task.window_numbers = windows->second.numbers.data();
+  task.last_window = windows->second.length;
+  task.by_amplitude = bounds_->by_amplitude().data();
+  task.only_bounds = only_bounds;
   task.modes = static_cast<int>(bridge_.modes());
   task.omega2 = omega2_.data();
   task.damping = damping_.data();
@@ -140,6 +140,12 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<
   task.moment_by_rate = forms.moment_by_rate.data();
   task.moment_by_acceleration = forms.moment_by_acceleration.data();
   task.weight = self_weight_.data();
+  for (std::size_t p = 0; p < least.size(); ++p)
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      peak.data()[p * width + lane] = least[p].deflection.value;
+      peak.data()[(probes + p) * width + lane] = least[p].acceleration.value;
+      peak.data()[(2 * probes + p) * width + lane] = least[p].moment.value;
+    }
   bool stopped = false;
   const auto check = [&] {
     stopped = stopped || !proceed();
@@ -158,39 +164,12 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::peaks(std::span<
     for (std::size_t p = 0; p < probes; ++p) {
       const auto of = [&](std::size_t response) {
         const std::size_t at = (response * probes + p) * width + lane;
-        return base::Extreme{peak.data()[at], time.data()[at]};
+        if (time.data()[at] >= 0.0) return base::Extreme{peak.data()[at], time.data()[at]};
+        const double none = least.empty() ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+        return base::Extreme{none, none};
       };
       peaks[lane][p] = {of(0), of(1), of(2)};
     }
-  return peaks;
-}
-
-std::vector<double> MovingForcePassages::static_peaks() const {
-  const std::size_t modes = bridge_.modes();
-  const structure::ModalProbes& probes = bridge_.probes();
-  std::vector<double> peaks;
-  for (const double weight : probes.weight_deflection) peaks.push_back(std::abs(weight));
-  for (std::size_t interval = 0; interval + 1 < history_.start.size(); ++interval) {
-    const double length = history_.start[interval + 1] - history_.start[interval];
-    for (std::size_t p = 0; p < probes.count; ++p) {
-      std::array<double, 4> c = cubic_of(history_, interval, modes + p);  // deflection over the distance
-      for (std::size_t i = 0; i < modes; ++i) {
-        const std::array<double, 4> force = cubic_of(history_, interval, i);
-        for (std::size_t k = 0; k < 4; ++k) c[k] += probes.deflection[i * probes.count + p] * force[k] / omega2_[i];
-      }
-      c[0] += probes.weight_deflection[p];
-      const auto evaluate = [&](double s) {
-        if (s >= 0.0 && s <= length) peaks[p] = std::max(peaks[p], std::abs(c[0] + s * (c[1] + s * (c[2] + s * c[3]))));
-      };
-      evaluate(0.0);
-      evaluate(length);
-      const double discriminant = c[2] * c[2] - 3.0 * c[1] * c[3];  // for the zeros of the slope
-      if (discriminant < 0.0) continue;
-      const double larger_root_numerator = -(c[2] + std::copysign(std::sqrt(discriminant), c[2]));
-      if (c[3] != 0.0) evaluate(larger_root_numerator / (3.0 * c[3]));
-      if (larger_root_numerator != 0.0) evaluate(c[1] / larger_root_numerator);
-    }
-  }
   return peaks;
 }
 

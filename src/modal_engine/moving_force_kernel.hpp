@@ -1,8 +1,9 @@
 // Passages of the same moving forces at several speeds, one in each SIMD lane. All runs are sampled at the same
 // distances, so that the static correction is the same number in every lane.
 //
-// Responses are sampled at regular intervals, and peaks between samples are interpolated by parabolas. When a force
-// passes a break of the influence lines, only the responses with a kink there are sampled.
+// The modes move exactly from window to window. Only windows with a bound above the largest value so far are sampled,
+// at regular intervals, and peaks between samples are interpolated by parabolas. When a force passes a break of the
+// influence lines in a window, only the responses with a kink there are sampled.
 #pragma once
 
 #include "modal_engine/moving_force_motion.hpp"
@@ -31,9 +32,14 @@ class MovingForceBatch : Lanes<W> {
 
   void run() {
     begin();
-    for (long k = 1; any(runs_); ++k) {
-      if (k % instants_between_checks == 0 && !task_.proceed(task_.context)) return;
-      advance_to(static_cast<double>(k) * task_.ds);
+    for (long k = 1; begin_window(); ++k) {
+      if (k % windows_between_checks == 0 && !task_.proceed(task_.context)) return;
+      find_bounds();
+      if (task_.only_bounds)
+        for (int i = 0; i < 3 * probes_; ++i) record_largest(i, runs_, bound_[i], fill(motion_.s));
+      else if (is_of_interest())
+        sample_window();
+      leave_window();
     }
     for (int i = 0; i < 3 * probes_; ++i) {
       lanes(task_.peak)[i] = peak_[i];
@@ -46,10 +52,13 @@ class MovingForceBatch : Lanes<W> {
   // eighth of the drop to the next point. For points a twentieth of a period apart the drop beside a peak is less than
   // 16 %. Therefore a middle point below this limit cannot lead to a larger peak.
   static constexpr double near_largest = 0.98;
+  static constexpr double least_parts = 2.0;  // of a window: three samples define a parabola
   static constexpr double least_gap =
       1e-6;  // relative to the next distance: points closer than this define no parabola
-  static constexpr double same_end = 1.0 + 1e-12;        // equal distances except for rounding
-  static constexpr long instants_between_checks = 4096;  // between calls of `proceed`
+  static constexpr double same_end = 1.0 + 1e-12;       // equal distances except for rounding
+  static constexpr double same_step = 1.0 - 1e-9;       // equal steps except for rounding
+  static constexpr double rounding = 1e-9;              // relative error of bounds, and much more
+  static constexpr long windows_between_checks = 1024;  // between calls of `proceed`
 
   // --- memory ------------------------------------------------------------------------------------------------------
 
@@ -66,7 +75,8 @@ class MovingForceBatch : Lanes<W> {
       own.flagged = allocate_from<int>(work, used_, W, 3L * probes_);
       own.value = in_lanes(3L * probes_);
     }
-    Lane** const of_responses[] = {&peak_, &peak_place_, &limit_, &kink_value_};
+    amplitude_ = in_lanes(modes_);
+    Lane** const of_responses[] = {&peak_, &peak_place_, &limit_, &kink_value_, &bound_};
     for (Lane** own : of_responses) *own = in_lanes(3L * probes_);
     kink_sample_ = allocate_from<long>(work, used_, W, 3L * probes_);
     kink_place_ = numbers(3L * probes_);
@@ -78,23 +88,75 @@ class MovingForceBatch : Lanes<W> {
   void begin() {
     speed_ = *lanes(task_.speed);
     end_ = *lanes(task_.end);
-    runs_ = end_ >= Lane{};
-    find_next_end();
     for (int i = 0; i < 3 * probes_; ++i) {
-      peak_[i] = peak_place_[i] = limit_[i] = Lane{};
-      limit_alone_[i] = 0.0;
+      peak_[i] = lanes(task_.peak)[i];
+      peak_place_[i] = fill(-1.0);
+      limit_[i] = near_largest * peak_[i];
+      limit_alone_[i] = limit_[i][0];
       kink_sample_[i] = -1;
     }
     motion_.begin();
+  }
+
+  // --- windows -----------------------------------------------------------------------------------------------------
+
+  /// Finds the runs that have not ended and the end of this window; false after the end of all runs.
+  bool begin_window() {
+    runs_ = motion_.s > 0.0 ? end_ > fill(motion_.s * same_end) : end_ >= Lane{};
+    find_next_end();
+    window_end_ = window_ + 1 < task_.windows ? task_.window_end[window_] : motion_.s + task_.last_window;
+    return any(runs_);
+  }
+
+  /// Bounds of all responses in this window (force_bounds.hpp).
+  void find_bounds() {
+    const double *mode = task_.window_numbers + window_ * (2L * modes_ + 6L * probes_), *response = mode + 2L * modes_;
+    for (int i = 0; i < modes_; ++i)
+      amplitude_[i] = motion_.amplitude(i) + mode[2 * i] * speed_ + mode[2 * i + 1];
+    const int count = 3 * probes_;
+    for (int i = 0; i < count; ++i) {
+      Lane sum = response[i] + response[count + i] * speed_;
+      for (int k = 0; k < modes_; ++k) sum += task_.by_amplitude[k * count + i] * amplitude_[k];
+      bound_[i] = (1.0 + rounding) * sum;
+    }
+  }
+  bool is_of_interest() const {
+    Mask greater{};
+    for (int i = 0; i < 3 * probes_; ++i) greater |= bound_[i] > peak_[i];
+    return any(greater & runs_);
+  }
+
+  void sample_window() {
+    motion_.keep();
+    const double from = motion_.s, wanted = __builtin_ceil((window_end_ - from) / task_.ds * same_step);
+    const double parts = wanted > least_parts ? wanted : least_parts, step = (window_end_ - from) / parts;
+    motion_.set_step(step);
+    first_sample_ = samples_ + 1;
     sample();
+    for (double k = 1.0; k <= parts && any(runs_); k += 1.0) advance_to(k < parts ? from + k * step : window_end_);
+    for (int k = 0; k < last_[2]->count && any(runs_); ++k) check_last_sample(last_[2]->flagged[k]);
+    motion_.go_back();
+  }
+
+  /// Moves to the start of the next window.
+  void leave_window() {
+    const long last = task_.window_last[window_];
+    for (; motion_.interval < last; motion_.enter_next()) motion_.move_far(motion_.next_event());
+    motion_.move_far(window_end_);
+    if (window_end_ == motion_.next_event()) motion_.enter_next();
+    if (window_ + 1 < task_.windows) ++window_;
+  }
+
+  bool has_event_until(double to) const {
+    return motion_.interval < task_.window_last[window_] && motion_.next_event() <= to;
   }
 
   void advance_to(double to) {
-    if (motion_.next_event() > to) {
+    if (!has_event_until(to)) {
       end_runs_until(to);
       motion_.move_regularly(to);
     } else {
-      while (motion_.next_event() <= to) {
+      while (has_event_until(to)) {
         const double event = motion_.next_event();
         end_runs_until(event);
         motion_.move_to(event);
@@ -109,17 +171,6 @@ class MovingForceBatch : Lanes<W> {
   // --- events ------------------------------------------------------------------------------------------------------
 
   void pass_event() {
-    const ForceEvent event = task_.event[motion_.interval + 1];
-    if (event == ForceEvent::all_kink || event == ForceEvent::all_jump) {
-      sample();
-      motion_.enter_next();
-      if (event == ForceEvent::all_jump) {
-        smooth_from_ = samples_ + 1;
-        sample();
-      }
-      smooth_from_ = samples_;
-      return;
-    }
     const int first = task_.first_kink[motion_.interval + 1], last = task_.first_kink[motion_.interval + 2];
     for (int k = first; k < last; ++k) sample_before_kink(task_.kink[k]);
     motion_.enter_next();
@@ -244,9 +295,12 @@ class MovingForceBatch : Lanes<W> {
       for (; p + 4 <= probes_; p += 4) flag_large<4>(p, now);
     for (; p < probes_; ++p) flag_large<1>(p, now);
     for (int k = 0; k < now.count; ++k) record_largest(now.flagged[k], runs_, magnitude(now.value[k]), fill(motion_.s));
-    if (samples_ - 2 < smooth_from_) return;
+    if (samples_ < first_sample_ + 2) return;
     const Instant& last = *last_[1];
     for (int k = 0; k < last.count; ++k) check_vertex(last.flagged[k], last.value[k]);
+    if (samples_ > first_sample_ + 2) return;
+    const Instant& first = *last_[0];
+    for (int k = 0; k < first.count; ++k) check_first_sample(first.flagged[k], first.value[k]);
   }
 
   void evaluate_static_parts(double* static_part) const {
@@ -329,7 +383,9 @@ class MovingForceBatch : Lanes<W> {
     }
   }
 
+  /// Records a value, which cannot exceed the bound; an interpolated one might do so slightly.
   void record_largest(int i, Mask where, Lane value, Lane at) {
+    value = value < bound_[i] ? value : bound_[i];
     const Mask larger = where & (value > peak_[i]);
     peak_[i] = larger ? value : peak_[i];
     peak_place_[i] = larger ? at : peak_place_[i];
@@ -348,9 +404,27 @@ class MovingForceBatch : Lanes<W> {
                   last_[1]->place, middle, fill(last_[2]->place), after);
   }
 
+  /// Interpolates a peak between the first two samples of a window, or between the last two.
+  void check_first_sample(int i, Lane first) {
+    if (kink_sample_[i] >= first_sample_) return;
+    const Lane middle = response(i, *last_[1]);
+    const Mask turns = runs_ & (magnitude(first) > limit_[i]) & (magnitude(first) > magnitude(middle));
+    if (any(turns))
+      record_vertex(i, turns, last_[0]->place, first, last_[1]->place, middle, fill(last_[2]->place),
+                    response(i, *last_[2]));
+  }
+  void check_last_sample(int i) {
+    if (samples_ < first_sample_ + 2 || kink_sample_[i] >= samples_ - 2) return;
+    const Lane middle = response(i, *last_[1]), last = response(i, *last_[2]);
+    const Mask turns = runs_ & (magnitude(last) > limit_[i]) & (magnitude(last) > magnitude(middle));
+    if (any(turns))
+      record_vertex(i, turns, last_[0]->place, response(i, *last_[0]), last_[1]->place, middle, fill(last_[2]->place),
+                    last);
+  }
+
   /// Interpolates a peak near the last sample, before a later value.
   void check_last_vertex(int i, Mask where, Lane at, Lane after) {
-    if (kink_sample_[i] == samples_ || samples_ - 1 < smooth_from_) return;
+    if (kink_sample_[i] == samples_ || samples_ <= first_sample_) return;
     const Lane middle = response(i, *last_[2]);
     const Mask turns = where & (magnitude(middle) > limit_[i]) & (magnitude(middle) > magnitude(after));
     if (!any(turns)) return;
@@ -359,19 +433,18 @@ class MovingForceBatch : Lanes<W> {
                   last_[2]->place, middle, at, after);
   }
 
-  /// The vertex of the parabola through three points, of which the middle one has the largest magnitude.
+  /// The vertex of the parabola through three points, if it is a peak of the magnitude between the first and the last.
   void record_vertex(int i, Mask where, double s0, Lane y0, double s1, Lane y1, Lane s2, Lane y2) {
     const Lane sign = y1 < Lane{} ? fill(-1.0) : fill(1.0);
     y0 *= sign;
     y1 *= sign;
     y2 *= sign;
     const Lane gap = fill(s1 - s0), next = s2 - s1;
-    where &= (y1 >= y0) & (gap > least_gap * next) & (next > least_gap * gap);
-    if (!any(where)) return;
     const Lane before = (y1 - y0) / gap, after = (y2 - y1) / next;
     const Lane bend = (after - before) / (gap + next);
     const Lane at = 0.5 * (s0 + s1) - 0.5 * before / bend;
-    record_largest(i, where, y1 + (at - s1) * (before + bend * (at - s0)), at);
+    where &= (bend < Lane{}) & (at > fill(s0)) & (at < s2) & (gap > least_gap * next) & (next > least_gap * gap);
+    if (any(where)) record_largest(i, where, y1 + (at - s1) * (before + bend * (at - s0)), at);
   }
 
   const ForceTask& task_;
@@ -382,10 +455,13 @@ class MovingForceBatch : Lanes<W> {
   Mask runs_{};                          // runs that have not ended
   double next_end_ = 0.0;                // distance at which the next of these runs ends, m
   Instant instants_[3], *last_[3] = {};  // the last samples, in cyclic order
-  long samples_ = 0, smooth_from_ = 1;   // number of samples; first one after a kink of all responses
+  long window_ = 0;
+  double window_end_ = 0.0;            // m travelled
+  long samples_ = 0, first_sample_ = 1;  // number of samples; first one of this window
   // For each response: its largest magnitude so far, the distance travelled at that instant in m, the limit for larger
   // values, and the limit in the first lane.
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
+  Lane *bound_ = nullptr, *amplitude_ = nullptr;  // in this window: of each response, and A of each mode
   double* limit_alone_ = nullptr;
   long* kink_sample_ = nullptr;   // for each response: the sample before its last kink
   double* kink_place_ = nullptr;  // m: position of the kink

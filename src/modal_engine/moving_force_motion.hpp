@@ -35,9 +35,10 @@ class ForcedModes : Lanes<W> {
   explicit ForcedModes(const ForceTask& task) : task_(task), modes_(task.modes) {}
 
   void lay_out(double* work, long& used) {
-    Lane** const of_modes[] = {&q, &r, &a, &q_stored_, &r_stored_, &a_stored_};
+    Lane** const of_modes[] = {&q, &r, &a, &q_stored_, &r_stored_, &a_stored_, &q_kept_, &r_kept_};
     for (Lane** own : of_modes) *own = allocate_from<Lane>(work, used, W, modes_);
     regular_ = allocate_from<Advance>(work, used, W, modes_);
+    by_length_ = allocate_from<Advance>(work, used, W, static_cast<long>(modes_) * task_.lengths);
     series_ = allocate_from<Series>(work, used, W, modes_);
     for (double*& power : g_) power = allocate_from<double>(work, used, W, modes_);
   }
@@ -45,13 +46,21 @@ class ForcedModes : Lanes<W> {
   void begin() {
     speed_ = *Own::lanes(task_.speed);
     set_series();
-    const Lane part = fill(task_.ds / parts_) / speed_;
+    for (int k = 0; k < task_.lengths; ++k) {
+      const Lane part = fill(task_.length[k] / long_parts(task_.length[k])) / speed_;
+      for (int i = 0; i < modes_; ++i) by_length_[k * modes_ + i] = advance_by(i, part, series_[i].long_terms);
+    }
     for (int i = 0; i < modes_; ++i) {
-      regular_[i] = advance_by(i, part);
       q[i] = fill(task_.q[i]);
       r[i] = Lane{};
     }
     place(0.0);
+  }
+
+  /// Sets the distance between samples, at most ForceTask::ds.
+  void set_step(double step) {
+    const Lane part = fill(step / parts_) / speed_;
+    for (int i = 0; i < modes_; ++i) regular_[i] = advance_by(i, part, series_[i].terms);
   }
 
   /// The distance travelled at the next event, m; infinite after the last event.
@@ -72,7 +81,7 @@ class ForcedModes : Lanes<W> {
     const double from = s;
     for (double k = 1.0; k <= parts_; k += 1.0) {
       for (int i = 0; i < modes_; ++i) move(i, regular_[i], g_[1][i], g_[2][i], g_[3][i]);
-      place(part_of(from, to, k));
+      place(part_of(from, to, k, parts_));
     }
   }
 
@@ -81,9 +90,50 @@ class ForcedModes : Lanes<W> {
     const double from = s;
     const Lane part = fill((to - from) / parts_) / speed_;
     for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < modes_; ++i) move(i, advance_by(i, part), g_[1][i], g_[2][i], g_[3][i]);
-      place(part_of(from, to, k));
+      for (int i = 0; i < modes_; ++i)
+        move(i, advance_by(i, part, series_[i].terms), g_[1][i], g_[2][i], g_[3][i]);
+      place(part_of(from, to, k, parts_));
     }
+  }
+
+  /// Moves to any distance up to the next event.
+  void move_far(double to) {
+    const double from = s, parts = long_parts(to - from);
+    const bool whole = from == task_.start[interval] && to == next_event();
+    const int length = whole ? task_.length_of[interval] : -1;
+    const Lane part = fill((to - from) / parts) / speed_;
+    for (double k = 1.0; k <= parts; k += 1.0) {
+      for (int i = 0; i < modes_; ++i) {
+        const Advance by = length < 0 ? advance_by(i, part, series_[i].long_terms) : by_length_[length * modes_ + i];
+        move(i, by, g_[1][i], g_[2][i], g_[3][i]);
+      }
+      place(part_of(from, to, k, parts));
+    }
+  }
+
+  /// Keeps the present state, to which go_back() returns.
+  void keep() {
+    for (int i = 0; i < modes_; ++i) {
+      q_kept_[i] = q[i];
+      r_kept_[i] = r[i];
+    }
+    s_kept_ = s;
+    interval_kept_ = interval;
+  }
+  void go_back() {
+    for (int i = 0; i < modes_; ++i) {
+      q[i] = q_kept_[i];
+      r[i] = r_kept_[i];
+    }
+    interval = interval_kept_;
+    place(s_kept_);
+  }
+
+  /// E: the amplitude of a mode's deviation from quasi-static motion (force_bounds.hpp).
+  Lane amplitude(int i) const {
+    const Lane deviation = q[i] - g_[0][i] / task_.omega2[i];
+    const Lane rate = r[i] - g_[1][i] / task_.omega2[i] * speed_;
+    return Own::root(deviation * deviation + rate * rate / task_.omega2[i]);
   }
 
   /// Moves every lane to a separate distance; move_back() reverses this.
@@ -93,7 +143,7 @@ class ForcedModes : Lanes<W> {
       q_stored_[i] = q[i];
       r_stored_[i] = r[i];
       a_stored_[i] = a[i];
-      const Advance by = advance_by(i, part);
+      const Advance by = advance_by(i, part, series_[i].terms);
       const double* c = task_.coefficients + 4 * task_.channels * interval + i;
       const double c0 = c[0], c1 = c[task_.channels], c2 = c[2 * task_.channels], c3 = c[3 * task_.channels];
       Lane d = fill(s - task_.start[interval]);
@@ -119,7 +169,8 @@ class ForcedModes : Lanes<W> {
  private:
   static constexpr double most_phase =
       2.0;  // largest phase of a part of a sampling interval: up to this phase series are short
-  static constexpr int most_terms = 32;       // limit of terms of a series
+  static constexpr double most_long_phase = 8.0;  // of a part of a longer move
+  static constexpr int most_terms = 48;       // limit of terms of a series
   static constexpr double last_term = 1e-19;  // last term of a series over its first term
 
   /// The coefficients of q', q'', j and the second and third powers of the distance in g, with which one step changes a
@@ -128,33 +179,48 @@ class ForcedModes : Lanes<W> {
     Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
   };
   struct Series {
-    int terms;
+    int terms, long_terms;  // in a sampling interval, and in a longer move
     double by_2[most_terms], by_3[most_terms];  // coefficients of Q_2 and Q_3
   };
 
   /// Computes the series' coefficients for the longest part of a sampling interval, and the number of parts.
   void set_series() {
-    for (int i = 0; i < modes_; ++i) {
-      const double least = __builtin_ceil(rate_of(i) * task_.instant / most_phase);
-      if (least > parts_) parts_ = least;
-    }
+    double fastest = 0.0;
+    for (int i = 0; i < modes_; ++i)
+      if (rate_of(i) > fastest) fastest = rate_of(i);
+    parts_ = __builtin_ceil(fastest * task_.instant / most_phase);
+    long_phase_per_metre_ = fastest / task_.least_speed;
     for (int i = 0; i < modes_; ++i) {
       Series& own = series_[i];
-      const double phase = rate_of(i) * task_.instant / parts_;
+      own.terms = terms_for(rate_of(i) * task_.instant / parts_);
+      own.long_terms = terms_for(most_long_phase * rate_of(i) / fastest);
       double before = 0.0, impulse = 1.0;  // derivatives of O at t = 0
-      double by_2 = 1.0 / 24.0, by_3 = 1.0 / 120.0, size = 1.0;
-      for (own.terms = 0; own.terms < most_terms && (own.terms < 2 || size > last_term); ++own.terms) {
-        own.by_2[own.terms] = impulse * by_2;
-        own.by_3[own.terms] = impulse * by_3;
-        const double k = own.terms;
+      double by_2 = 1.0 / 24.0, by_3 = 1.0 / 120.0;
+      for (int k = 0; k < most_terms; ++k) {
+        own.by_2[k] = impulse * by_2;
+        own.by_3[k] = impulse * by_3;
         by_2 /= k + 5.0;
         by_3 /= k + 6.0;
-        size *= phase / (k + 5.0) * (k + 2.0) / (k + 1.0);
         const double next = -task_.damping[i] * impulse - task_.omega2[i] * before;
         before = impulse;
         impulse = next;
       }
     }
+  }
+
+  /// The number of terms of a series up to this phase.
+  static int terms_for(double phase) {
+    double size = 1.0;
+    int terms = 0;
+    for (; terms < most_terms && (terms < 2 || size > last_term); ++terms)
+      size *= phase / (terms + 5.0) * (terms + 2.0) / (terms + 1.0);
+    return terms;
+  }
+
+  /// The number of parts of a longer move.
+  double long_parts(double length) const {
+    const double parts = __builtin_ceil(length * long_phase_per_metre_ / most_long_phase);
+    return parts > 1.0 ? parts : 1.0;
   }
 
   /// The rate of a mode's fastest change, 1/s.
@@ -163,10 +229,10 @@ class ForcedModes : Lanes<W> {
     return square > 0.0 ? sigma + __builtin_sqrt(square) : __builtin_sqrt(task_.omega2[i]);
   }
 
-  Advance advance_by(int i, Lane time) const {
+  Advance advance_by(int i, Lane time, int terms) const {
     const Series& own = series_[i];
     Lane Q2{}, Q3{};
-    for (int k = own.terms - 1; k >= 0; --k) {
+    for (int k = terms - 1; k >= 0; --k) {
       Q2 = Q2 * time + own.by_2[k];
       Q3 = Q3 * time + own.by_3[k];
     }
@@ -191,7 +257,9 @@ class ForcedModes : Lanes<W> {
   }
 
   /// The end of the k-th part of a step.
-  double part_of(double from, double to, double k) const { return k < parts_ ? from + (to - from) * (k / parts_) : to; }
+  static double part_of(double from, double to, double k, double parts) {
+    return k < parts ? from + (to - from) * (k / parts) : to;
+  }
 
   /// Sets the distance, within this interval: modal forces and accelerations.
   void place(double at) {
@@ -201,6 +269,7 @@ class ForcedModes : Lanes<W> {
     for (int i = 0; i < modes_; ++i) {
       const double c1 = c[task_.channels + i], c2 = c[2 * task_.channels + i], c3 = c[3 * task_.channels + i];
       const double force = c[i] + d * (c1 + d * (c2 + d * c3));
+      g_[0][i] = force;
       g_[1][i] = c1 + d * (2.0 * c2 + 3.0 * d * c3);
       g_[2][i] = c2 + 3.0 * d * c3;
       g_[3][i] = c3;
@@ -211,9 +280,14 @@ class ForcedModes : Lanes<W> {
   const ForceTask& task_;
   const int modes_;
   Lane speed_{};
-  double parts_ = 1.0;  // number of parts of a sampling interval
+  double parts_ = 1.0;  // number of parts of the longest sampling interval
+  double long_phase_per_metre_ = 0.0;  // largest phase of the fastest mode in any lane
   Lane *q_stored_ = nullptr, *r_stored_ = nullptr, *a_stored_ = nullptr;
-  Advance* regular_ = nullptr;  // for one sampling interval
+  Lane *q_kept_ = nullptr, *r_kept_ = nullptr;
+  double s_kept_ = 0.0;
+  long interval_kept_ = 0;
+  Advance* regular_ = nullptr;    // for one sampling interval
+  Advance* by_length_ = nullptr;  // for a part of an interval of each length: [length][mode]
   Series* series_ = nullptr;
   double* g_[4] = {};  // coefficients of g of the modes, by powers of the distance from the present position
 };

@@ -18,6 +18,7 @@ struct ForceTask {
   const double *speed = nullptr, *end = nullptr;  // in lanes: speed, m/s; distance travelled at the end of the run, m
   double ds = 0.0;                                // distance between two samples, m
   double instant = 0.0;                           // longest time for this distance in any lane, s
+  double least_speed = 0.0;                       // not above the speed of any lane, m/s
 
   // integrate::ForceHistory: sums of all forces, [interval][power][channel] of the distance since the interval's start.
   // Modal forces first; then each probe's deflection minus the modes' share of it, then each probe's moment.
@@ -25,6 +26,16 @@ struct ForceTask {
   int channels = 0;
   const double *start = nullptr, *coefficients = nullptr;
   const ForceEvent* event = nullptr;  // event at the start of each interval
+  // ForceBounds: lengths that several intervals have, m, and the index of the length of each interval, or -1.
+  int lengths = 0;
+  const double* length = nullptr;
+  const int* length_of = nullptr;
+  long windows = 0;  // ForceWindows
+  const double *window_end = nullptr, *window_numbers = nullptr;
+  const long* window_last = nullptr;
+  double last_window = 0.0;  // length of the last window, m
+  const double* by_amplitude = nullptr;
+  bool only_bounds = false;  // the largest bounds are determined instead of the peaks
   const int* first_kink = nullptr;  // for each interval the first index in `kink`; the last entry is the number of all
   const int* kink = nullptr;        // indices of responses: deflections of all probes, then accelerations, then moments
 
@@ -40,8 +51,9 @@ struct ForceTask {
   bool (*proceed)(void* context) = nullptr;  // called at intervals; if false the run stops, and its results are invalid
   void* context = nullptr;
 
-  // Results, lanes: deflection, acceleration and moment of each probe.
-  double *peak = nullptr, *peak_time = nullptr;  // s
+  // Of each response, lanes: deflection, acceleration and moment of each probe.
+  double* peak = nullptr;       // smaller peaks are of no interest; replaced by the peak or the largest bound
+  double* peak_time = nullptr;  // s; below 0: there was no greater peak
   double* work = nullptr;                        // work_size() numbers, aligned as a lane
 };
 

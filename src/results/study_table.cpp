@@ -33,11 +33,12 @@ StudyTable::StudyTable(const options::Study& study, std::size_t probes, bool whe
   }
 }
 
-void StudyTable::put(std::size_t run, const double* numbers) {
+void StudyTable::put(std::size_t run, const double* numbers, std::size_t runs) {
   if (all_ != nullptr) {
     const std::size_t row = all_->place(run, all_->sensitivity->axis);
     merge(row, numbers);
-    if (--missing_[row] == 0) finished_[row] = 1.0;
+    missing_[row] -= runs;
+    if (missing_[row] == 0) finished_[row] = 1.0;
     return;
   }
   for (Column& column : columns_) {

@@ -16,9 +16,11 @@ namespace {
 
 using Groups = std::vector<std::vector<std::size_t>>;
 
-/// A run's results in the order of the table, preceded by its index.
-std::vector<double> row_of(std::size_t run, const CaseResult& result, const std::vector<double>& probes, bool wheels) {
-  std::vector<double> row = {static_cast<double>(run)};
+/// The results of a run, or the greatest results of several runs with this one, in the order of the table, preceded by
+/// the run's index and the number of runs.
+std::vector<double> row_of(std::size_t run, std::size_t runs, const CaseResult& result,
+                           const std::vector<double>& probes, bool wheels) {
+  std::vector<double> row = {static_cast<double>(run), static_cast<double>(runs)};
   const auto add = [&](auto get) {
     for (std::size_t p = 0; p < probes.size(); ++p) row.push_back(get(p));
   };
@@ -58,9 +60,32 @@ std::string name_of(const Study& study, const std::vector<std::size_t>& group) {
                      results::point_text(study, group.back()));
 }
 
+/// Called with the index of a run, the number of runs that the results are of, and the results.
+using Ended = std::function<void(std::size_t run, std::size_t runs, const CaseResult&, const CaseRunner&)>;
+
+/// Computes the greatest results of a group.
+void run_greatest(StudyScenes& scenes, const std::vector<std::size_t>& group, const Ended& ended) {
+  std::vector<StudyScenes::Runner> runners;  // of different scenes
+  std::vector<std::size_t> first, count;     // runs of each
+  std::vector<CaseRunner::Member> members;
+  for (const std::size_t run : group) {
+    const std::size_t base = scenes.runs()[run].base;
+    auto known = std::find_if(runners.begin(), runners.end(), [&](const auto& one) { return one.base == base; });
+    if (known == runners.end()) {
+      known = runners.insert(known, scenes.runner(base));
+      first.push_back(run);
+      count.push_back(0);
+    }
+    ++count[static_cast<std::size_t>(known - runners.begin())];
+    members.push_back({known->runs.get(), scenes.runs()[run].own});
+  }
+  const std::vector<CaseResult> results = CaseRunner::greatest(scenes.runs()[group.front()].train, members);
+  for (std::size_t i = 0; i < results.size(); ++i) ended(first[i], count[i], results[i], *runners[i].runs);
+}
+
 /// Computes the runs of a group: compatible ones together, the others separately.
 void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const std::function<void(double)>& reached,
-               const std::function<void(std::size_t, const CaseResult&, const CaseRunner&)>& ended) {
+               const Ended& ended) {
   std::vector<StudyScenes::Runner> runners;  // keeps the runners alive
   for (const std::size_t run : group) runners.push_back(scenes.runner(scenes.runs()[run].base));
   std::vector<char> done(group.size(), 0);
@@ -75,8 +100,21 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
       done[j] = 1;
     }
     const std::vector<CaseResult> results = CaseRunner::run_together(scenes.runs()[group[i]].train, members, reached);
-    for (std::size_t j = 0; j < results.size(); ++j) ended(group[places[j]], results[j], *runners[places[j]].runs);
+    for (std::size_t j = 0; j < results.size(); ++j) ended(group[places[j]], 1, results[j], *runners[places[j]].runs);
   }
+}
+
+/// Whether only the greatest results of all runs of a table's row are needed, and are known without all runs.
+bool only_greatest(StudyScenes& scenes) {
+  return scenes.study().sensitivity && scenes.runner(0).runs->has_bounds();
+}
+
+/// The runs of each row of the table.
+Groups rows_of(const Study& study) {
+  const std::size_t axis = study.sensitivity->axis;
+  Groups rows(study.axes[axis].length);
+  for (std::size_t run = 0; run < study.runs(); ++run) rows[study.place(run, axis)].push_back(run);
+  return rows;
 }
 
 /// The groups that contain unknown runs. A continued study computes whole groups again, so that its last digits equal
@@ -84,6 +122,7 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
 /// ranks end at about the same time.
 Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   const bool sweep = scenes.study().sweep;
+  if (only_greatest(scenes)) return rows_of(scenes.study());
   Groups groups = scenes.groups(sweep ? known : std::vector<char>());
   std::erase_if(groups, [&](const std::vector<std::size_t>& group) {
     return std::all_of(group.begin(), group.end(), [&](std::size_t run) { return known[run] != 0; });
@@ -98,19 +137,22 @@ SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTabl
   SharedWork work;
   for (const std::vector<std::size_t>& group : groups) work.pieces.push_back({group.size(), scenes.duration(group)});
   const bool wheels = table.find("least_wheel_force") != nullptr;
-  work.compute = [&, wheels](std::size_t piece, const std::function<void(double)>& reached) {
-    run_group(
-        scenes, groups[piece],
-        [&](double t) {
-          reached(t);
-          gather.collect();
-        },
-        [&](std::size_t run, const CaseResult& result, const CaseRunner& runner) {
-          if (!result.ended) return;
-          for (std::size_t l = 0; l < result.evaluated.size(); ++l)
-            if (std::isnan(result.evaluated[l].value)) table.set_reason(l, result.evaluated[l].why);
-          gather.send(row_of(run, result, runner.probes(), wheels));
-        });
+  const bool greatest = only_greatest(scenes);
+  work.compute = [&, wheels, greatest](std::size_t piece, const std::function<void(double)>& reached) {
+    const auto ended = [&](std::size_t run, std::size_t runs, const CaseResult& result, const CaseRunner& runner) {
+      if (!result.ended) return;
+      for (std::size_t l = 0; l < result.evaluated.size(); ++l)
+        if (std::isnan(result.evaluated[l].value)) table.set_reason(l, result.evaluated[l].why);
+      gather.send(row_of(run, runs, result, runner.probes(), wheels));
+    };
+    const auto progress = [&](double t) {
+      reached(t);
+      gather.collect();
+    };
+    if (greatest)
+      run_greatest(scenes, groups[piece], ended);
+    else
+      run_group(scenes, groups[piece], progress, ended);
     gather.collect();
   };
   work.name = [&](std::size_t piece) { return name_of(scenes.study(), groups[piece]); };
@@ -123,7 +165,7 @@ RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<ch
                         StudyFile& file) {
   const results::Stage stage(scenes.study().sweep ? "runs of the sweep" : "runs of the study");
   ResultGather gather(comm, [&](const std::vector<double>& row) {
-    table.put(static_cast<std::size_t>(row.front()), row.data() + 1);
+    table.put(static_cast<std::size_t>(row[0]), row.data() + 2, static_cast<std::size_t>(row[1]));
     file.update();
   });
   const Groups groups = groups_of(scenes, known);
