@@ -40,9 +40,10 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std:
     beam_ = std::make_shared<SharedBeam>(PETSC_COMM_SELF, scene_, notes);
     beam_->damp(scene_, !scene_.model.step || scene_.model.modes > 0, notes);
     beam_->prepare(scene_, notes);
+    if (scene_.exact_in_time())
+      beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
   }
   set_up_limits(notes);
-  if (scene_.exact_in_time()) beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
   if (scene_.exact_in_time() && scene_.has_run_limits() && !beam_->modal->dampers_couple())
     moving_force_limits_.emplace(scene_, *beam_, cutoff_frequency_);
   std::vector<std::string> ignored;

@@ -164,7 +164,7 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(std::span<co
     for (std::size_t p = 0; p < probes; ++p) {
       const auto of = [&](std::size_t response) {
         const std::size_t at = (response * probes + p) * width + lane;
-        if (time.data()[at] >= 0.0) return base::Extreme{peak.data()[at], time.data()[at]};
+        if (only_bounds || time.data()[at] >= 0.0) return base::Extreme{peak.data()[at], time.data()[at]};
         const double none = least.empty() ? 0.0 : std::numeric_limits<double>::quiet_NaN();
         return base::Extreme{none, none};
       };

@@ -36,7 +36,7 @@ class MovingForceBatch : Lanes<W> {
       if (k % windows_between_checks == 0 && !task_.proceed(task_.context)) return;
       find_bounds();
       if (task_.only_bounds)
-        for (int i = 0; i < 3 * probes_; ++i) record_largest(i, runs_, bound_[i], fill(motion_.s));
+        for (int i = 0; i < 3 * probes_; ++i) peak_[i] = runs_ & (bound_[i] > peak_[i]) ? bound_[i] : peak_[i];
       else if (is_of_interest())
         sample_window();
       leave_window();

@@ -40,6 +40,7 @@ class ForcedModes : Lanes<W> {
     regular_ = allocate_from<Advance>(work, used, W, modes_);
     by_length_ = allocate_from<Advance>(work, used, W, static_cast<long>(modes_) * task_.lengths);
     series_ = allocate_from<Series>(work, used, W, modes_);
+    flexibility_ = allocate_from<double>(work, used, W, modes_);
     for (double*& power : g_) power = allocate_from<double>(work, used, W, modes_);
   }
 
@@ -51,6 +52,7 @@ class ForcedModes : Lanes<W> {
       for (int i = 0; i < modes_; ++i) by_length_[k * modes_ + i] = advance_by(i, part, series_[i].long_terms);
     }
     for (int i = 0; i < modes_; ++i) {
+      flexibility_[i] = 1.0 / task_.omega2[i];
       q[i] = fill(task_.q[i]);
       r[i] = Lane{};
     }
@@ -131,9 +133,9 @@ class ForcedModes : Lanes<W> {
 
   /// E: the amplitude of a mode's deviation from quasi-static motion (force_bounds.hpp).
   Lane amplitude(int i) const {
-    const Lane deviation = q[i] - g_[0][i] / task_.omega2[i];
-    const Lane rate = r[i] - g_[1][i] / task_.omega2[i] * speed_;
-    return Own::root(deviation * deviation + rate * rate / task_.omega2[i]);
+    const double flexibility = flexibility_[i];
+    const Lane deviation = q[i] - g_[0][i] * flexibility, rate = r[i] - g_[1][i] * flexibility * speed_;
+    return Own::root(deviation * deviation + flexibility * rate * rate);
   }
 
   /// Moves every lane to a separate distance; move_back() reverses this.
@@ -289,6 +291,7 @@ class ForcedModes : Lanes<W> {
   Advance* regular_ = nullptr;    // for one sampling interval
   Advance* by_length_ = nullptr;  // for a part of an interval of each length: [length][mode]
   Series* series_ = nullptr;
+  double* flexibility_ = nullptr;  // 1 / omega^2 of each mode
   double* g_[4] = {};  // coefficients of g of the modes, by powers of the distance from the present position
 };
 

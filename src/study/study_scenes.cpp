@@ -25,9 +25,10 @@ bool is_speed(const StudyDimension& d) {
   return names(d, "train_speed") || names(d, "load_speed") || names(d, results::speed_of_sweep);
 }
 bool is_seed(const StudyDimension& d) { return names(d, "track_seed"); }
-bool is_of_vehicles(const StudyDimension& d) {
-  return std::all_of(d.options.begin(), d.options.end(),
-                     [](const std::string& option) { return option.starts_with("vehicle_"); });
+bool is_of_traffic(const StudyDimension& d) {
+  return std::all_of(d.options.begin(), d.options.end(), [](const std::string& option) {
+    return option.starts_with("vehicle_") || option.starts_with("load_");
+  });
 }
 
 bool is_local(const Study& study) {
@@ -88,7 +89,7 @@ void StudyScenes::enumerate(const Study& study) {
       } else if (!study.sweep) {
         of_base.push_back(value);
       }
-      if (!study.sweep && !is_speed(d) && !is_seed(d) && !is_of_vehicles(d)) of_bridge.push_back(value);
+      if (!study.sweep && !is_speed(d) && !is_seed(d) && !is_of_traffic(d)) of_bridge.push_back(value);
     }
     if (!(one.own.speed > 0.0))
       throw InputError(fmt::format("study_vary: run {} has the speed {:g} m/s; allowed: above 0", run, one.own.speed));

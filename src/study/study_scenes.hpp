@@ -16,7 +16,7 @@ namespace traverse::app {
 struct StudyRun {
   std::size_t base = 0;    // index of its scene
   std::size_t train = 0;   // index of the force train in a sweep
-  std::size_t bridge = 0;  // scenes with the same index differ in vehicle parameters only
+  std::size_t bridge = 0;  // scenes with the same index differ in parameters of vehicles and moving forces only
   CaseRun own;             // speed and track seed
 };
 
