@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 namespace traverse::modal_engine {
 namespace {
@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t most_lengths = 64;  // whose steps are computed once for all intervals
 constexpr double same_length = 1e-12;     // relative to the whole distance
 
-using Cubic = std::array<double, 4>;  // coefficients by powers of the distance
+using Cubic = std::array<double, 4>;
 
 double value(const Cubic& c, double s) { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
 
@@ -34,6 +34,22 @@ double slope_bound(const Cubic& c, double length) {
 /// Not below the variation of the slope.
 double bend_bound(const Cubic& c, double length) {
   return length * (std::abs(c[2]) + std::abs(c[2] + 3.0 * length * c[3]));
+}
+
+/// Finds the moves with equal lengths.
+void find_equal_lengths(ForceWindows& windows) {
+  const std::vector<double>& end = windows.move_end;
+  windows.move_length.assign(end.size(), -1);
+  std::vector<std::pair<double, std::size_t>> sorted;  // lengths and moves
+  for (std::size_t i = 0; i < end.size(); ++i) sorted.emplace_back(i > 0 ? end[i] - end[i - 1] : end[i], i);
+  std::sort(sorted.begin(), sorted.end());
+  const double tolerance = same_length * end.back();
+  for (std::size_t first = 0, past = 0; first < sorted.size() && windows.length.size() < most_lengths; first = past) {
+    while (past < sorted.size() && sorted[past].first - sorted[first].first <= tolerance) ++past;
+    if (past - first < 2 && past < sorted.size()) continue;
+    for (std::size_t i = first; i < past; ++i) windows.move_length[sorted[i].second] = static_cast<int>(windows.length.size());
+    windows.length.push_back(sorted[first].first);
+  }
 }
 
 /// The largest magnitude in an interval of this length, or `least` if that is greater.
@@ -84,8 +100,8 @@ ForceBounds::ForceBounds(const structure::ModalBridge& bridge, const integrate::
       numbers_(size_ * history.start.size(), 0.0) {
   set_factors(bridge);
   for (const double weight : bridge.probes().weight_deflection) static_peaks_.push_back(std::abs(weight));
-  for (std::size_t i = 0; i < history.start.size(); ++i) add_interval(bridge, i, jumps);
-  find_equal_lengths();
+  std::vector<Cubic> sums(2 * probes_);
+  for (std::size_t i = 0; i < history.start.size(); ++i) add_interval(bridge, i, jumps, sums);
 }
 
 void ForceBounds::set_factors(const structure::ModalBridge& bridge) {
@@ -109,7 +125,8 @@ void ForceBounds::set_factors(const structure::ModalBridge& bridge) {
   }
 }
 
-void ForceBounds::add_interval(const structure::ModalBridge& bridge, std::size_t interval, const Jumps& jumps) {
+void ForceBounds::add_interval(const structure::ModalBridge& bridge, std::size_t interval, const Jumps& jumps,
+                               std::vector<Cubic>& sums) {
   const std::vector<double>& start = history_.start;
   const bool is_last = interval + 1 == start.size();  // without forces on the bridge
   const double length = is_last ? 0.0 : start[interval + 1] - start[interval];
@@ -117,10 +134,9 @@ void ForceBounds::add_interval(const structure::ModalBridge& bridge, std::size_t
   const bool inside = event_[interval] < ForceEvent::all_kink;
   double *variation = numbers(interval), *static_part = variation + 2 * modes_, *by_speed = static_part + 3 * probes_;
   const structure::ModalProbes& probes = bridge.probes();
-  std::vector<Cubic> sums;  // static deflections of all probes, then moments
   for (std::size_t r = 0; r < 2 * probes_; ++r) {
-    sums.push_back(cubic_of(history_, interval, modes_ + r));
-    sums.back()[0] += r < probes_ ? probes.weight_deflection[r] : probes.weight_moment[r - probes_];
+    sums[r] = cubic_of(history_, interval, modes_ + r);
+    sums[r][0] += r < probes_ ? probes.weight_deflection[r] : probes.weight_moment[r - probes_];
   }
   for (std::size_t k = 0; k < modes_; ++k) {
     const double omega = bridge.omega()[k], omega2 = omega * omega, cube = omega2 * omega;
@@ -147,44 +163,39 @@ void ForceBounds::add_interval(const structure::ModalBridge& bridge, std::size_t
   }
 }
 
-void ForceBounds::find_equal_lengths() {
-  const std::vector<double>& start = history_.start;
-  const std::size_t count = start.size() - 1;
-  length_of_.assign(start.size(), -1);
-  const auto length = [&](std::size_t i) { return start[i + 1] - start[i]; };
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return length(a) < length(b); });
-  const double tolerance = same_length * start.back();
-  for (std::size_t first = 0, past = 0; first < count && lengths_.size() < most_lengths; first = past) {
-    while (past < count && length(order[past]) - length(order[first]) <= tolerance) ++past;
-    if (past - first < 2) continue;
-    for (std::size_t i = first; i < past; ++i) length_of_[order[i]] = static_cast<int>(lengths_.size());
-    lengths_.push_back(length(order[first]));
-  }
-}
-
 ForceWindows ForceBounds::windows(double length) const {
   const std::vector<double>& start = history_.start;
   const std::size_t count = start.size();
   ForceWindows windows;
-  windows.length = length;
-  for (std::size_t first = 0, past = 0; first < count; first = past) {
-    std::vector<double> sums(&numbers_[first * size_], &numbers_[first * size_] + size_);
-    for (past = first + 1; past < count; ++past) {
-      if (event_[past] >= ForceEvent::all_kink || past + 1 == count || start[past + 1] - start[first] > length) break;
-      const double* more = &numbers_[past * size_];
-      for (std::size_t k = 0; k < 2 * modes_; ++k) sums[k] += more[k];
-      for (std::size_t k = 2 * modes_; k < size_; ++k) sums[k] = std::max(sums[k], more[k]);
+  windows.first_move = {0};
+  windows.last = length;
+  const auto add = [&](double end, std::size_t first) {
+    windows.end.push_back(end);
+    windows.first_move.push_back(static_cast<long>(windows.move_end.size()));
+    windows.numbers.insert(windows.numbers.end(), &numbers_[first * size_], &numbers_[first * size_] + size_);
+  };
+  for (std::size_t first = 0, past = 0; first + 1 < count; first = past) {
+    past = first + 1;
+    const double whole = start[past] - start[first], parts = std::max(1.0, std::round(whole / length));
+    for (double part = 1.0; part < parts; part += 1.0) {
+      windows.move_end.push_back(start[first] + whole * (part / parts));
+      add(windows.move_end.back(), first);
     }
-    const double whole = past < count ? start[past] - start[first] : length;
-    const double parts = past == first + 1 ? std::max(1.0, std::round(whole / length)) : 1.0;
-    for (double part = 1.0; part <= parts; part += 1.0) {
-      windows.end.push_back(past < count && part == parts ? start[past] : start[first] + whole * (part / parts));
-      windows.last.push_back(static_cast<long>(past - 1));
-      windows.numbers.insert(windows.numbers.end(), sums.begin(), sums.end());
+    windows.move_end.push_back(start[past]);
+    if (parts == 1.0)
+      while (past + 1 < count && event_[past] < ForceEvent::all_kink && start[past + 1] - start[first] <= length)
+        windows.move_end.push_back(start[++past]);
+    add(start[past], first);
+    double* sums = &windows.numbers[windows.numbers.size() - size_];
+    for (std::size_t more = first + 1; more < past; ++more) {
+      const double* own = &numbers_[more * size_];
+      for (std::size_t k = 0; k < 2 * modes_; ++k) sums[k] += own[k];
+      for (std::size_t k = 2 * modes_; k < size_; ++k) sums[k] = std::max(sums[k], own[k]);
     }
   }
+  windows.move_end.push_back(start.back() + length);
+  add(windows.move_end.back(), count - 1);
+  find_equal_lengths(windows);
   return windows;
 }
 

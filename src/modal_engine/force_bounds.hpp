@@ -13,6 +13,7 @@
 // on the mode and the response only. All these numbers are equal at all speeds.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "integrate/force_history.hpp"
@@ -29,12 +30,16 @@ struct Jumps {
   std::vector<double> value, slope;       // [interval][channel]
 };
 
-/// Groups of intervals that are sampled as a whole.
+/// Parts of the distance that are sampled as a whole. A window is passed in one move, or in several, of which each ends
+/// at the start of the next interval. The last window repeats without an end.
 struct ForceWindows {
-  std::vector<double> end;      // m travelled; the last window repeats, one after another, without an end
-  std::vector<long> last;       // last interval of each window
-  double length = 0.0;          // m: of the last window
-  std::vector<double> numbers;  // for each window: V and W of each mode, then S and D of each response
+  std::vector<double> end;       // m travelled, of each window
+  std::vector<long> first_move;  // of each window; the last entry is the number of all moves
+  std::vector<double> move_end;  // m travelled, of each move
+  std::vector<int> move_length;  // index in `length`, or -1
+  std::vector<double> length;    // m: lengths of several moves
+  double last = 0.0;             // m: length of the last window
+  std::vector<double> numbers;   // for each window: V and W of each mode, then S and D of each response
 };
 
 class ForceBounds {
@@ -47,16 +52,16 @@ class ForceBounds {
   const std::vector<double>& by_amplitude() const { return by_amplitude_; }
   /// The largest static deflection at each probe, m.
   const std::vector<double>& static_peaks() const { return static_peaks_; }
-  /// Lengths that several intervals have, m, and for each interval the index of its length, or -1.
-  const std::vector<double>& lengths() const { return lengths_; }
-  const std::vector<int>& length_of() const { return length_of_; }
   /// Windows of about this length, m. They end wherever the modal forces have a kink or a jump.
   ForceWindows windows(double length) const;
 
  private:
+  using Cubic = std::array<double, 4>;  // coefficients by powers of the distance
+
   void set_factors(const structure::ModalBridge& bridge);
-  void add_interval(const structure::ModalBridge& bridge, std::size_t interval, const Jumps& jumps);
-  void find_equal_lengths();
+  /// sums: for the static deflections of all probes, then the moments.
+  void add_interval(const structure::ModalBridge& bridge, std::size_t interval, const Jumps& jumps,
+                    std::vector<Cubic>& sums);
   double* numbers(std::size_t interval) { return &numbers_[interval * size_]; }
 
   const integrate::ForceHistory& history_;
@@ -64,8 +69,7 @@ class ForceBounds {
   std::size_t modes_, probes_, size_;
   std::vector<double> numbers_;                 // of each interval, as ForceWindows::numbers
   std::vector<double> by_amplitude_, by_rate_;  // [mode][response]; by_rate: D per magnitude of g'
-  std::vector<double> static_peaks_, lengths_;
-  std::vector<int> length_of_;
+  std::vector<double> static_peaks_;
 };
 
 }  // namespace traverse::modal_engine

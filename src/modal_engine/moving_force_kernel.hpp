@@ -32,14 +32,12 @@ class MovingForceBatch : Lanes<W> {
 
   void run() {
     begin();
-    for (long k = 1; begin_window(); ++k) {
-      if (k % windows_between_checks == 0 && !task_.proceed(task_.context)) return;
-      find_bounds();
+    while (begin_windows()) {
       if (task_.only_bounds)
-        for (int i = 0; i < 3 * probes_; ++i) peak_[i] = runs_ & (bound_[i] > peak_[i]) ? bound_[i] : peak_[i];
-      else if (is_of_interest())
-        sample_window();
-      leave_window();
+        record_bounds();
+      else
+        sample_windows();
+      if (!task_.proceed(task_.context)) return;
     }
     for (int i = 0; i < 3 * probes_; ++i) {
       lanes(task_.peak)[i] = peak_[i];
@@ -58,7 +56,8 @@ class MovingForceBatch : Lanes<W> {
   static constexpr double same_end = 1.0 + 1e-12;       // equal distances except for rounding
   static constexpr double same_step = 1.0 - 1e-9;       // equal steps except for rounding
   static constexpr double rounding = 1e-9;              // relative error of bounds, and much more
-  static constexpr long windows_between_checks = 1024;  // between calls of `proceed`
+  // Vectors for windows that are treated together, and number of these windows.
+  static constexpr long most_vectors = 1024, least_windows = 16;
 
   // --- memory ------------------------------------------------------------------------------------------------------
 
@@ -76,7 +75,17 @@ class MovingForceBatch : Lanes<W> {
       own.value = in_lanes(3L * probes_);
     }
     amplitude_ = in_lanes(modes_);
-    Lane** const of_responses[] = {&peak_, &peak_place_, &limit_, &kink_value_, &bound_};
+    const long vectors = 2L * modes_ + 3L * probes_;  // of a window
+    capacity_ = most_vectors / vectors;
+    if (capacity_ < least_windows || task_.only_bounds) capacity_ = least_windows;
+    windows_ = allocate_from<Window>(work, used_, W, capacity_);
+    Lane* const of_windows = in_lanes(capacity_ * vectors);
+    for (long k = 0; work != nullptr && k < capacity_; ++k) {
+      windows_[k].state = of_windows + k * vectors;
+      windows_[k].bound = windows_[k].state + 2L * modes_;
+    }
+    end_state_ = in_lanes(2L * modes_);
+    Lane** const of_responses[] = {&peak_, &peak_place_, &limit_, &kink_value_};
     for (Lane** own : of_responses) *own = in_lanes(3L * probes_);
     kink_sample_ = allocate_from<long>(work, used_, W, 3L * probes_);
     kink_place_ = numbers(3L * probes_);
@@ -100,55 +109,113 @@ class MovingForceBatch : Lanes<W> {
 
   // --- windows -----------------------------------------------------------------------------------------------------
 
-  /// Finds the runs that have not ended and the end of this window; false after the end of all runs.
-  bool begin_window() {
-    runs_ = motion_.s > 0.0 ? end_ > fill(motion_.s * same_end) : end_ >= Lane{};
-    find_next_end();
-    window_end_ = window_ + 1 < task_.windows ? task_.window_end[window_] : motion_.s + task_.last_window;
+  /// A window with the state at its start and the bounds of the responses in it.
+  struct Window {
+    double start, end;  // m travelled
+    long number, interval, last_interval;
+    Lane *state, *bound;
+    bool sampled;
+  };
+
+  /// Finds the runs that have not ended at this distance; false after the end of all runs.
+  bool find_runs(double at) {
+    runs_ = at > 0.0 ? end_ > fill(at * same_end) : end_ >= Lane{};
     return any(runs_);
   }
 
+  /// Moves through as many windows as memory permits; false if there is none before the end of all runs.
+  bool begin_windows() {
+    for (count_ = 0; count_ < capacity_ && find_runs(motion_.s); ++count_) {
+      Window& own = windows_[count_];
+      const bool repeats = next_window_ + 1 == task_.windows;
+      own.number = next_window_;
+      own.start = motion_.s;
+      own.interval = motion_.interval;
+      own.end = repeats ? motion_.s + task_.last_window : task_.window_end[next_window_];
+      own.sampled = false;
+      motion_.copy_state(own.state);
+      find_bounds(own);
+      for (long k = task_.first_move[own.number]; k < task_.first_move[own.number + 1]; ++k) {
+        own.last_interval = motion_.interval;
+        motion_.make_move(k, repeats ? own.end : task_.move_end[k]);
+      }
+      motion_.place_again();
+      if (!repeats) ++next_window_;
+    }
+    return count_ > 0;
+  }
+
   /// Bounds of all responses in this window (force_bounds.hpp).
-  void find_bounds() {
-    const double *mode = task_.window_numbers + window_ * (2L * modes_ + 6L * probes_), *response = mode + 2L * modes_;
-    for (int i = 0; i < modes_; ++i)
-      amplitude_[i] = motion_.amplitude(i) + mode[2 * i] * speed_ + mode[2 * i + 1];
+  void find_bounds(Window& own) const {
+    const double *mode = task_.window_numbers + own.number * (2L * modes_ + 6L * probes_);
+    const double* response = mode + 2L * modes_;
+    for (int i = 0; i < modes_; ++i) amplitude_[i] = motion_.amplitude(i) + mode[2 * i] * speed_ + mode[2 * i + 1];
     const int count = 3 * probes_;
     for (int i = 0; i < count; ++i) {
       Lane sum = response[i] + response[count + i] * speed_;
       for (int k = 0; k < modes_; ++k) sum += task_.by_amplitude[k * count + i] * amplitude_[k];
-      bound_[i] = (1.0 + rounding) * sum;
+      own.bound[i] = (1.0 + rounding) * sum;
     }
   }
-  bool is_of_interest() const {
+  void record_bounds() {
+    for (long k = 0; k < count_; ++k) {
+      find_runs(windows_[k].start);
+      const Lane* bound = windows_[k].bound;
+      for (int i = 0; i < 3 * probes_; ++i) peak_[i] = runs_ & (bound[i] > peak_[i]) ? bound[i] : peak_[i];
+    }
+  }
+
+  /// Samples the windows that may have a peak: those with the largest bounds first, so that the others hardly have one.
+  void sample_windows() {
+    const double end = motion_.s;
+    const long end_interval = motion_.interval;
+    motion_.copy_state(end_state_);
+    for (int i = 0; i < 3 * probes_; ++i) sample_window(windows_[largest_bound(i)]);
+    for (long k = 0; k < count_; ++k) sample_window(windows_[k]);
+    motion_.set_state(end_state_, end_interval, end);
+  }
+  /// The window with the largest bound of a response, in the mean of all runs.
+  long largest_bound(int response) const {
+    long found = 0;
+    double largest = 0.0;
+    for (long k = 0; k < count_; ++k) {
+      double sum = 0.0;
+      for (int lane = 0; lane < W; ++lane) sum += Own::numbers(windows_[k].bound[response])[lane];
+      if (sum > largest) {
+        largest = sum;
+        found = k;
+      }
+    }
+    return found;
+  }
+
+  bool is_of_interest(const Window& own, int first, int past) const {
     Mask greater{};
-    for (int i = 0; i < 3 * probes_; ++i) greater |= bound_[i] > peak_[i];
+    for (int i = first; i < past; ++i) greater |= own.bound[i] > peak_[i];
     return any(greater & runs_);
   }
 
-  void sample_window() {
-    motion_.keep();
-    const double from = motion_.s, wanted = __builtin_ceil((window_end_ - from) / task_.ds * same_step);
-    const double parts = wanted > least_parts ? wanted : least_parts, step = (window_end_ - from) / parts;
+  void sample_window(Window& own) {
+    if (own.sampled || !find_runs(own.start)) return;
+    accelerations_ = is_of_interest(own, probes_, 2 * probes_);
+    others_ = is_of_interest(own, 0, probes_) || is_of_interest(own, 2 * probes_, 3 * probes_);
+    if (!accelerations_ && !others_) return;
+    own.sampled = true;
+    bound_ = own.bound;
+    last_interval_ = own.last_interval;
+    find_next_end();
+    motion_.set_state(own.state, own.interval, own.start);
+    const double wanted = __builtin_ceil((own.end - own.start) / task_.ds * same_step);
+    const double parts = wanted > least_parts ? wanted : least_parts, step = (own.end - own.start) / parts;
     motion_.set_step(step);
     first_sample_ = samples_ + 1;
     sample();
-    for (double k = 1.0; k <= parts && any(runs_); k += 1.0) advance_to(k < parts ? from + k * step : window_end_);
+    for (double k = 1.0; k <= parts && any(runs_); k += 1.0) advance_to(k < parts ? own.start + k * step : own.end);
     for (int k = 0; k < last_[2]->count && any(runs_); ++k) check_last_sample(last_[2]->flagged[k]);
-    motion_.go_back();
-  }
-
-  /// Moves to the start of the next window.
-  void leave_window() {
-    const long last = task_.window_last[window_];
-    for (; motion_.interval < last; motion_.enter_next()) motion_.move_far(motion_.next_event());
-    motion_.move_far(window_end_);
-    if (window_end_ == motion_.next_event()) motion_.enter_next();
-    if (window_ + 1 < task_.windows) ++window_;
   }
 
   bool has_event_until(double to) const {
-    return motion_.interval < task_.window_last[window_] && motion_.next_event() <= to;
+    return motion_.interval < last_interval_ && motion_.next_event() <= to;
   }
 
   void advance_to(double to) {
@@ -171,6 +238,7 @@ class MovingForceBatch : Lanes<W> {
   // --- events ------------------------------------------------------------------------------------------------------
 
   void pass_event() {
+    if (!others_) return motion_.enter_next();  // accelerations have no kinks within a window
     const int first = task_.first_kink[motion_.interval + 1], last = task_.first_kink[motion_.interval + 2];
     for (int k = first; k < last; ++k) sample_before_kink(task_.kink[k]);
     motion_.enter_next();
@@ -286,7 +354,7 @@ class MovingForceBatch : Lanes<W> {
       now.r[i] = motion_.r[i];
       now.a[i] = motion_.a[i];
     }
-    evaluate_static_parts(now.static_part);
+    if (others_) evaluate_static_parts(now.static_part);
     now.count = 0;
     int p = 0;
     if (task_.runs == 1)
@@ -311,14 +379,38 @@ class MovingForceBatch : Lanes<W> {
       static_part[i] = task_.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
   }
 
-  /// Flags the responses of N neighbouring probes that may be the largest.
+  /// Flags the responses of N neighbouring probes that may be the largest, as far as they are of interest.
   template <int N>
   void flag_large(int p, Instant& now) const {
-    Lane v[N], a[N], M[N];
+    if (others_) flag_others<N>(p, now);
+    if (accelerations_) flag_accelerations<N>(p, now);
+  }
+
+  template <int N>
+  void flag_accelerations(int p, Instant& now) const {
+    Lane a[N]{};
+    for (int i = 0; i < modes_; ++i) {
+      const double* form = task_.deflection + i * probes_ + p;
+      const Lane acceleration = now.a[i];
+#pragma GCC unroll 4
+      for (int k = 0; k < N; ++k) a[k] += form[k] * acceleration;
+    }
+    const Lane* limit = limit_ + probes_ + p;
+    int larger = 0;
+#pragma GCC unroll 4
+    for (int k = 0; k < N; ++k) larger |= exceeds(magnitude(a[k]), limit[k]);
+    if (larger == 0) return;
+#pragma GCC unroll 4
+    for (int k = 0; k < N; ++k) flag(probes_ + p + k, a[k], now);
+  }
+
+  /// Deflections and moments.
+  template <int N>
+  void flag_others(int p, Instant& now) const {
+    Lane v[N], M[N];
 #pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
       v[k] = fill(now.static_part[p + k]);
-      a[k] = Lane{};
       M[k] = fill(now.static_part[probes_ + p + k]);
     }
     for (int i = 0; i < modes_; ++i) {
@@ -329,25 +421,20 @@ class MovingForceBatch : Lanes<W> {
 #pragma GCC unroll 4
       for (int k = 0; k < N; ++k) {
         v[k] += form[k] * q;
-        a[k] += form[k] * acceleration;
         M[k] += bend[k] * q;
         M[k] += by_rate[k] * rate;
         M[k] += by_acceleration[k] * acceleration;
       }
     }
-    const Lane *of_v = limit_ + p, *of_a = of_v + probes_, *of_M = of_a + probes_;
+    const Lane *of_v = limit_ + p, *of_M = of_v + 2 * probes_;
     int larger = 0;
 #pragma GCC unroll 4
-    for (int k = 0; k < N; ++k) {
-      larger |= exceeds(magnitude(v[k]), of_v[k]);
-      larger |= exceeds(magnitude(a[k]), of_a[k]);
-      larger |= exceeds(magnitude(M[k]), of_M[k]);
-    }
+    for (int k = 0; k < N; ++k)
+      larger |= exceeds(magnitude(v[k]), of_v[k]) | exceeds(magnitude(M[k]), of_M[k]);
     if (larger == 0) return;
 #pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
       flag(p + k, v[k], now);
-      flag(probes_ + p + k, a[k], now);
       flag(2 * probes_ + p + k, M[k], now);
     }
   }
@@ -455,13 +542,16 @@ class MovingForceBatch : Lanes<W> {
   Mask runs_{};                          // runs that have not ended
   double next_end_ = 0.0;                // distance at which the next of these runs ends, m
   Instant instants_[3], *last_[3] = {};  // the last samples, in cyclic order
-  long window_ = 0;
-  double window_end_ = 0.0;            // m travelled
+  Window* windows_ = nullptr;  // windows that are treated together
+  long capacity_ = 0, count_ = 0, next_window_ = 0;
+  Lane* end_state_ = nullptr;            // after these windows
+  long last_interval_ = 0;               // of the window that is sampled
+  bool accelerations_ = true, others_ = true;  // the responses of interest in it
   long samples_ = 0, first_sample_ = 1;  // number of samples; first one of this window
   // For each response: its largest magnitude so far, the distance travelled at that instant in m, the limit for larger
   // values, and the limit in the first lane.
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
-  Lane *bound_ = nullptr, *amplitude_ = nullptr;  // in this window: of each response, and A of each mode
+  Lane *bound_ = nullptr, *amplitude_ = nullptr;  // in a window: of each response, and A of each mode
   double* limit_alone_ = nullptr;
   long* kink_sample_ = nullptr;   // for each response: the sample before its last kink
   double* kink_place_ = nullptr;  // m: position of the kink

@@ -35,10 +35,11 @@ class ForcedModes : Lanes<W> {
   explicit ForcedModes(const ForceTask& task) : task_(task), modes_(task.modes) {}
 
   void lay_out(double* work, long& used) {
-    Lane** const of_modes[] = {&q, &r, &a, &q_stored_, &r_stored_, &a_stored_, &q_kept_, &r_kept_};
+    Lane** const of_modes[] = {&q, &r, &a, &q_stored_, &r_stored_, &a_stored_};
     for (Lane** own : of_modes) *own = allocate_from<Lane>(work, used, W, modes_);
     regular_ = allocate_from<Advance>(work, used, W, modes_);
     by_length_ = allocate_from<Advance>(work, used, W, static_cast<long>(modes_) * task_.lengths);
+    parts_of_length_ = allocate_from<double>(work, used, W, task_.lengths);
     series_ = allocate_from<Series>(work, used, W, modes_);
     flexibility_ = allocate_from<double>(work, used, W, modes_);
     for (double*& power : g_) power = allocate_from<double>(work, used, W, modes_);
@@ -48,7 +49,8 @@ class ForcedModes : Lanes<W> {
     speed_ = *Own::lanes(task_.speed);
     set_series();
     for (int k = 0; k < task_.lengths; ++k) {
-      const Lane part = fill(task_.length[k] / long_parts(task_.length[k])) / speed_;
+      parts_of_length_[k] = long_parts(task_.length[k]);
+      const Lane part = fill(task_.length[k] / parts_of_length_[k]) / speed_;
       for (int i = 0; i < modes_; ++i) by_length_[k * modes_ + i] = advance_by(i, part, series_[i].long_terms);
     }
     for (int i = 0; i < modes_; ++i) {
@@ -98,37 +100,32 @@ class ForcedModes : Lanes<W> {
     }
   }
 
-  /// Moves to any distance up to the next event.
-  void move_far(double to) {
-    const double from = s, parts = long_parts(to - from);
-    const bool whole = from == task_.start[interval] && to == next_event();
-    const int length = whole ? task_.length_of[interval] : -1;
-    const Lane part = fill((to - from) / parts) / speed_;
-    for (double k = 1.0; k <= parts; k += 1.0) {
-      for (int i = 0; i < modes_; ++i) {
-        const Advance by = length < 0 ? advance_by(i, part, series_[i].long_terms) : by_length_[length * modes_ + i];
-        move(i, by, g_[1][i], g_[2][i], g_[3][i]);
-      }
-      place(part_of(from, to, k, parts));
-    }
+  /// Makes one move of the windows, up to the distance `to` in the same interval; place_again() follows after the last.
+  void make_move(long number, double to) {
+    const int length = task_.move_length[number];
+    if (length >= 0 && parts_of_length_[length] == 1.0 && s == task_.start[interval])
+      move_from_start(by_length_ + length * modes_);
+    else
+      move_in_parts(length, to);
+    s = to;
+    if (to == next_event()) ++interval;
   }
+  void place_again() { place(s); }
 
-  /// Keeps the present state, to which go_back() returns.
-  void keep() {
+  /// Copies the state to memory for 2 W numbers a mode; set_state() returns to it.
+  void copy_state(Lane* state) const {
     for (int i = 0; i < modes_; ++i) {
-      q_kept_[i] = q[i];
-      r_kept_[i] = r[i];
+      state[2 * i] = q[i];
+      state[2 * i + 1] = r[i];
     }
-    s_kept_ = s;
-    interval_kept_ = interval;
   }
-  void go_back() {
+  void set_state(const Lane* state, long in_interval, double at) {
     for (int i = 0; i < modes_; ++i) {
-      q[i] = q_kept_[i];
-      r[i] = r_kept_[i];
+      q[i] = state[2 * i];
+      r[i] = state[2 * i + 1];
     }
-    interval = interval_kept_;
-    place(s_kept_);
+    interval = in_interval;
+    place(at);
   }
 
   /// E: the amplitude of a mode's deviation from quasi-static motion (force_bounds.hpp).
@@ -171,7 +168,7 @@ class ForcedModes : Lanes<W> {
  private:
   static constexpr double most_phase =
       2.0;  // largest phase of a part of a sampling interval: up to this phase series are short
-  static constexpr double most_long_phase = 8.0;  // of a part of a longer move
+  static constexpr double most_long_phase = 8.0;  // of a part of a move of the windows
   static constexpr int most_terms = 48;       // limit of terms of a series
   static constexpr double last_term = 1e-19;  // last term of a series over its first term
 
@@ -181,7 +178,7 @@ class ForcedModes : Lanes<W> {
     Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
   };
   struct Series {
-    int terms, long_terms;  // in a sampling interval, and in a longer move
+    int terms, long_terms;  // in a sampling interval, and in a move of the windows
     double by_2[most_terms], by_3[most_terms];  // coefficients of Q_2 and Q_3
   };
 
@@ -219,7 +216,7 @@ class ForcedModes : Lanes<W> {
     return terms;
   }
 
-  /// The number of parts of a longer move.
+  /// The number of parts of a move of the windows.
   double long_parts(double length) const {
     const double parts = __builtin_ceil(length * long_phase_per_metre_ / most_long_phase);
     return parts > 1.0 ? parts : 1.0;
@@ -258,6 +255,26 @@ class ForcedModes : Lanes<W> {
     r[i] = rate + (by.Q0 * jerk + (by.rate_by_2 * second + by.rate_by_3 * third)) + by.impulse * acceleration;
   }
 
+  /// A move from the start of an interval, where the coefficients of the forces are those of the interval.
+  void move_from_start(const Advance* by) {
+    const double* c = task_.coefficients + 4 * task_.channels * interval;
+    for (int i = 0; i < modes_; ++i, ++c) {
+      a[i] = c[0] - task_.omega2[i] * q[i] - task_.damping[i] * r[i];
+      move(i, by[i], c[task_.channels], c[2 * task_.channels], c[3 * task_.channels]);
+    }
+  }
+  void move_in_parts(int length, double to) {
+    const double from = s, parts = length < 0 ? long_parts(to - from) : parts_of_length_[length];
+    const Lane part = fill((to - from) / parts) / speed_;
+    for (double k = 1.0; k <= parts; k += 1.0) {
+      place(s);
+      for (int i = 0; i < modes_; ++i)
+        move(i, length < 0 ? advance_by(i, part, series_[i].long_terms) : by_length_[length * modes_ + i], g_[1][i],
+             g_[2][i], g_[3][i]);
+      s = part_of(from, to, k, parts);
+    }
+  }
+
   /// The end of the k-th part of a step.
   static double part_of(double from, double to, double k, double parts) {
     return k < parts ? from + (to - from) * (k / parts) : to;
@@ -285,11 +302,9 @@ class ForcedModes : Lanes<W> {
   double parts_ = 1.0;  // number of parts of the longest sampling interval
   double long_phase_per_metre_ = 0.0;  // largest phase of the fastest mode in any lane
   Lane *q_stored_ = nullptr, *r_stored_ = nullptr, *a_stored_ = nullptr;
-  Lane *q_kept_ = nullptr, *r_kept_ = nullptr;
-  double s_kept_ = 0.0;
-  long interval_kept_ = 0;
   Advance* regular_ = nullptr;    // for one sampling interval
-  Advance* by_length_ = nullptr;  // for a part of an interval of each length: [length][mode]
+  Advance* by_length_ = nullptr;  // for a part of a move of each length: [length][mode]
+  double* parts_of_length_ = nullptr;
   Series* series_ = nullptr;
   double* flexibility_ = nullptr;  // 1 / omega^2 of each mode
   double* g_[4] = {};  // coefficients of g of the modes, by powers of the distance from the present position

@@ -26,14 +26,14 @@ struct ForceTask {
   int channels = 0;
   const double *start = nullptr, *coefficients = nullptr;
   const ForceEvent* event = nullptr;  // event at the start of each interval
-  // ForceBounds: lengths that several intervals have, m, and the index of the length of each interval, or -1.
+  // ForceWindows, ForceBounds.
+  long windows = 0;
+  const double *window_end = nullptr, *window_numbers = nullptr, *move_end = nullptr;
+  const long* first_move = nullptr;
+  const int* move_length = nullptr;
   int lengths = 0;
   const double* length = nullptr;
-  const int* length_of = nullptr;
-  long windows = 0;  // ForceWindows
-  const double *window_end = nullptr, *window_numbers = nullptr;
-  const long* window_last = nullptr;
-  double last_window = 0.0;  // length of the last window, m
+  double last_window = 0.0;  // m
   const double* by_amplitude = nullptr;
   bool only_bounds = false;  // the largest bounds are determined instead of the peaks
   const int* first_kink = nullptr;  // for each interval the first index in `kink`; the last entry is the number of all

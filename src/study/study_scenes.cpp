@@ -76,20 +76,25 @@ void StudyScenes::enumerate(const Study& study) {
       bridges;  // indices of bases and bridges by the values that define them
   std::set<double> speeds;
   const bool local = is_local(study);
+  enum class Sets { speed, seed, traffic, bridge };
+  std::vector<Sets> sets;  // of each dimension
+  for (const StudyDimension& d : study.dimensions)
+    sets.push_back(is_speed(d) ? Sets::speed : is_seed(d) ? Sets::seed : is_of_traffic(d) ? Sets::traffic : Sets::bridge);
   for (std::size_t run = 0; run < study.runs(); ++run) {
     StudyRun one{0, study.sweep ? study.place(run, 0) : 0, 0, {speed, {}}};
     std::vector<double> of_base, of_bridge;
-    for (const StudyDimension& d : study.dimensions) {
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      const StudyDimension& d = study.dimensions[i];
       const double value = study.value(run, d);
-      if (is_speed(d)) {
+      if (sets[i] == Sets::speed) {
         one.own.speed = value;
         if (local && d.axis == study.sensitivity->axis) one.own.step_speed = d.values.front();
-      } else if (is_seed(d)) {
+      } else if (sets[i] == Sets::seed) {
         one.own.seed = static_cast<std::uint64_t>(value);
       } else if (!study.sweep) {
         of_base.push_back(value);
+        if (sets[i] == Sets::bridge) of_bridge.push_back(value);
       }
-      if (!study.sweep && !is_speed(d) && !is_seed(d) && !is_of_traffic(d)) of_bridge.push_back(value);
     }
     if (!(one.own.speed > 0.0))
       throw InputError(fmt::format("study_vary: run {} has the speed {:g} m/s; allowed: above 0", run, one.own.speed));
