@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 namespace traverse::modal_engine {
 namespace {
 
-constexpr std::size_t most_lengths = 64;  // whose steps are computed once for all intervals
+constexpr std::size_t most_lengths = 64;  // of moves whose coefficients are computed once
 constexpr double same_length = 1e-12;     // relative to the whole distance
 
 using Cubic = std::array<double, 4>;
@@ -36,19 +35,19 @@ double bend_bound(const Cubic& c, double length) {
   return length * (std::abs(c[2]) + std::abs(c[2] + 3.0 * length * c[3]));
 }
 
-/// Finds the moves with equal lengths.
-void find_equal_lengths(ForceWindows& windows) {
-  const std::vector<double>& end = windows.move_end;
-  windows.move_length.assign(end.size(), -1);
-  std::vector<std::pair<double, std::size_t>> sorted;  // lengths and moves
-  for (std::size_t i = 0; i < end.size(); ++i) sorted.emplace_back(i > 0 ? end[i] - end[i - 1] : end[i], i);
-  std::sort(sorted.begin(), sorted.end());
-  const double tolerance = same_length * end.back();
-  for (std::size_t first = 0, past = 0; first < sorted.size() && windows.length.size() < most_lengths; first = past) {
-    while (past < sorted.size() && sorted[past].first - sorted[first].first <= tolerance) ++past;
-    if (past - first < 2 && past < sorted.size()) continue;
-    for (std::size_t i = first; i < past; ++i) windows.move_length[sorted[i].second] = static_cast<int>(windows.length.size());
-    windows.length.push_back(sorted[first].first);
+/// Lists the different lengths of the moves.
+void list_lengths(ForceWindows& windows) {
+  std::vector<double>& lengths = windows.length;
+  const double tolerance = same_length * windows.move_end.back();
+  double start = 0.0;
+  for (const double end : windows.move_end) {
+    const double length = end - start;
+    const auto known = std::find_if(lengths.begin(), lengths.end(),
+                                    [&](double one) { return std::abs(one - length) <= tolerance; });
+    const bool fits = known != lengths.end() || lengths.size() < most_lengths;
+    windows.move_length.push_back(fits ? static_cast<int>(known - lengths.begin()) : -1);
+    if (fits && known == lengths.end()) lengths.push_back(length);
+    start = end;
   }
 }
 
@@ -195,7 +194,7 @@ ForceWindows ForceBounds::windows(double length) const {
   }
   windows.move_end.push_back(start.back() + length);
   add(windows.move_end.back(), count - 1);
-  find_equal_lengths(windows);
+  list_lengths(windows);
   return windows;
 }
 

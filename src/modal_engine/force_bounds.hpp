@@ -37,7 +37,7 @@ struct ForceWindows {
   std::vector<long> first_move;  // of each window; the last entry is the number of all moves
   std::vector<double> move_end;  // m travelled, of each move
   std::vector<int> move_length;  // index in `length`, or -1
-  std::vector<double> length;    // m: lengths of several moves
+  std::vector<double> length;    // m: different lengths of moves, up to a limit
   double last = 0.0;             // m: length of the last window
   std::vector<double> numbers;   // for each window: V and W of each mode, then S and D of each response
 };
