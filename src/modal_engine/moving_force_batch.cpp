@@ -6,6 +6,7 @@
 #include "modal_engine/moving_force_batch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -142,12 +143,14 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(std::span<co
   task.moment_by_rate = forms.moment_by_rate.data();
   task.moment_by_acceleration = forms.moment_by_acceleration.data();
   task.weight = self_weight_.data();
-  for (std::size_t p = 0; p < least.size(); ++p)
-    for (std::size_t lane = 0; lane < width; ++lane) {
-      peak.data()[p * width + lane] = least[p].deflection.value;
-      peak.data()[(probes + p) * width + lane] = least[p].acceleration.value;
-      peak.data()[(2 * probes + p) * width + lane] = least[p].moment.value;
-    }
+  constexpr std::array quantities = {&base::ProbePeaks::deflection, &base::ProbePeaks::acceleration,
+                                     &base::ProbePeaks::moment};
+  std::vector<double> none(3 * probes, 0.0);  // of each response: the result if no peak is greater
+  for (std::size_t i = 0; i < none.size() && !least.empty(); ++i) {
+    const double limit = (least[i % probes].*quantities[i / probes]).value;
+    std::fill_n(peak.data() + i * width, width, std::max(limit, 0.0));
+    if (limit >= 0.0) none[i] = std::numeric_limits<double>::quiet_NaN();
+  }
   bool stopped = false;
   const auto check = [&] {
     stopped = stopped || !proceed();
@@ -167,8 +170,7 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(std::span<co
       const auto of = [&](std::size_t response) {
         const std::size_t at = (response * probes + p) * width + lane;
         if (only_bounds || time.data()[at] >= 0.0) return base::Extreme{peak.data()[at], time.data()[at]};
-        const double none = least.empty() ? 0.0 : std::numeric_limits<double>::quiet_NaN();
-        return base::Extreme{none, none};
+        return base::Extreme{none[response * probes + p], none[response * probes + p]};
       };
       peaks[lane][p] = {of(0), of(1), of(2)};
     }

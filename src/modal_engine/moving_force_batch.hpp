@@ -30,7 +30,7 @@ class MovingForcePassages {
   /// slightly more in a period of the fastest mode, and at their kinks, wherever their bound exceeds their peak so far;
   /// peaks between samples are interpolated by parabolas. `proceed` is called at intervals; once it returns false the
   /// search stops, and there are no peaks. least: for each probe, peaks that are not greater are not searched for and
-  /// are NaN; empty: all peaks are searched for.
+  /// are NaN, if it is not below 0; empty: all peaks are searched for.
   std::vector<std::vector<base::ProbePeaks>> peaks(std::span<const double> speeds, std::span<const double> end_times,
                                                    double samples_per_period, const std::function<bool()>& proceed,
                                                    std::span<const base::ProbePeaks> least = {}) const;

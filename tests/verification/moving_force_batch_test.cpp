@@ -206,6 +206,51 @@ TEST_P(MovingForcePassages, NeighboursChangeNothing) {
   }
 }
 
+// Bounds are numbers that no peak exceeds, and that are of use: close to the largest peak where damping is usual.
+TEST_P(MovingForcePassages, NoPeakExceedsItsBound) {
+  const Case& c = GetParam();
+  const Bridge bridge(c);
+  const modal_engine::MovingForcePassages passages(bridge.modal(), bridge.load(), c.equilibrium);
+  std::vector<double> ends;
+  for (const double speed : speeds) ends.push_back(end_of(c, speed));
+  const auto bounds = passages.bounds(speeds, ends, 20.0, [] { return true; });
+  const std::vector<ResponseExtremes> fine = side_by_side(bridge, c, speeds, 200.0);
+  const bool usual = *std::max_element(bridge.modal().sigma().begin(), bridge.modal().sigma().end()) <
+                     0.1 * bridge.modal().omega().back();
+  for (std::size_t i = 0; i < speeds.size(); ++i)
+    for (const auto quantity : quantities) {
+      for (std::size_t p = 0; p < c.probes.size(); ++p)
+        EXPECT_GE((bounds[i][p].*quantity).value, (fine[i][p].*quantity).value) << speeds[i] << " " << p;
+      if (usual) {
+        EXPECT_LT(largest(bounds[i], quantity), 2.0 * largest(fine[i], quantity)) << speeds[i];
+      }
+    }
+}
+
+// Peaks above the limit of interest are the same numbers as without one; others are not searched for.
+TEST_P(MovingForcePassages, SmallPeaksAreLeftOut) {
+  const Case& c = GetParam();
+  const Bridge bridge(c);
+  const modal_engine::MovingForcePassages passages(bridge.modal(), bridge.load(), c.equilibrium);
+  std::vector<double> ends;
+  for (const double speed : speeds) ends.push_back(end_of(c, speed));
+  const auto go_on = [] { return true; };
+  const std::vector<ResponseExtremes> all = passages.peaks(speeds, ends, 20.0, go_on);
+  ResponseExtremes least = all[3];
+  const std::vector<ResponseExtremes> large = passages.peaks(speeds, ends, 20.0, go_on, least);
+  for (std::size_t i = 0; i < speeds.size(); ++i)
+    for (std::size_t p = 0; p < least.size(); ++p)
+      for (const auto quantity : quantities) {
+        const Peak expected = all[i][p].*quantity, found = large[i][p].*quantity;
+        if (expected.value > (least[p].*quantity).value) {
+          EXPECT_EQ(found.value, expected.value);
+          EXPECT_EQ(found.time, expected.time);
+        } else {
+          EXPECT_TRUE(std::isnan(found.value)) << found.value << " of " << expected.value;
+        }
+      }
+}
+
 TEST(MovingForcePassages, StopsWhenItIsTold) {
   const Case& c = cases.front();
   const Bridge bridge(c);
