@@ -42,8 +42,8 @@ std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& run
 class CaseRunner {
  public:
   /// Assembles structure and damping on this rank. The description of the model is appended to `notes`. beam: beam of a
-  /// scene that differs in its vehicles and moving forces only; null: a new beam is assembled. checks: the runs of each train at the
-  /// slowest and the fastest speed are checked, as they are by default.
+  /// scene that differs in its vehicles and moving forces only; null: a new beam is assembled. checks: the runs of each
+  /// train at the slowest and the fastest speed are checked, as they are by default.
   CaseRunner(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam = nullptr,
              bool checks = true);
 

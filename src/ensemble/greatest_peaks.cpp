@@ -96,10 +96,10 @@ class GreatestPeaks {
       if (std::find(found.begin(), found.end(), largest) == found.end()) found.push_back(largest);
     };
     for (std::size_t p = 0; p < bounds_.front().size(); ++p) {
-      for (const auto quantity : quantities) add_largest([&](std::size_t run) { return (bounds_[run][p].*quantity).value; });
-      add_largest([&](std::size_t run) {
-        return bounds_[run][p].deflection.value / static_deflection(runs_[run].train, p);
-      });
+      for (const auto quantity : quantities)
+        add_largest([&](std::size_t run) { return (bounds_[run][p].*quantity).value; });
+      add_largest(
+          [&](std::size_t run) { return bounds_[run][p].deflection.value / static_deflection(runs_[run].train, p); });
     }
     return found;
   }

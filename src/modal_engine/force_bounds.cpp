@@ -42,8 +42,8 @@ void list_lengths(ForceWindows& windows) {
   double start = 0.0;
   for (const double end : windows.move_end) {
     const double length = end - start;
-    const auto known = std::find_if(lengths.begin(), lengths.end(),
-                                    [&](double one) { return std::abs(one - length) <= tolerance; });
+    const auto known =
+        std::find_if(lengths.begin(), lengths.end(), [&](double one) { return std::abs(one - length) <= tolerance; });
     const bool fits = known != lengths.end() || lengths.size() < most_lengths;
     windows.move_length.push_back(fits ? static_cast<int>(known - lengths.begin()) : -1);
     if (fits && known == lengths.end()) lengths.push_back(length);

@@ -6,11 +6,12 @@
 // Without forces the amplitude E = sqrt(y^2 + (y' / omega)^2) never increases. In a window of the distance, therefore,
 //
 //   |y| and |y'| / omega <= A = E at its start + v V + W,   V = variation of g' / omega^3
-//                                                            W = 2 sigma variation of g / omega^3 + jumps of g / omega^2
+//                                                            W = 2 sigma variation of g / omega^3 + jumps of g /
+//                                                            omega^2
 //   |response| <= S + v D + sum c A over the modes
 //
-// S is the largest static response, D the largest effect of the quasi-static rates g' / omega^2 per speed, and c depends
-// on the mode and the response only. All these numbers are equal at all speeds.
+// S is the largest static response, D the largest effect of the quasi-static rates g' / omega^2 per speed, and c
+// depends on the mode and the response only. All these numbers are equal at all speeds.
 #pragma once
 
 #include <array>

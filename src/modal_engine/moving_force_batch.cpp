@@ -88,12 +88,9 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::bounds(std::span
   return run(speeds, end_times, samples_per_period, proceed, {}, true);
 }
 
-std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(std::span<const double> speeds,
-                                                                    std::span<const double> end_times,
-                                                                    double samples_per_period,
-                                                                    const std::function<bool()>& proceed,
-                                                                    std::span<const base::ProbePeaks> least,
-                                                                    bool only_bounds) const {
+std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(
+    std::span<const double> speeds, std::span<const double> end_times, double samples_per_period,
+    const std::function<bool()>& proceed, std::span<const base::ProbePeaks> least, bool only_bounds) const {
   const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 2 ? 4 : 2, probes = bridge_.probes().count;
   engine::Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
   for (std::size_t lane = 0; lane < width; ++lane) {

@@ -94,8 +94,7 @@ class ForcedModes : Lanes<W> {
     const double from = s;
     const Lane part = fill((to - from) / parts_) / speed_;
     for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < modes_; ++i)
-        move(i, advance_by(i, part, series_[i].terms), g_[1][i], g_[2][i], g_[3][i]);
+      for (int i = 0; i < modes_; ++i) move(i, advance_by(i, part, series_[i].terms), g_[1][i], g_[2][i], g_[3][i]);
       place(part_of(from, to, k, parts_));
     }
   }
@@ -169,8 +168,8 @@ class ForcedModes : Lanes<W> {
   static constexpr double most_phase =
       2.0;  // largest phase of a part of a sampling interval: up to this phase series are short
   static constexpr double most_long_phase = 8.0;  // of a part of a move of the windows
-  static constexpr int most_terms = 48;       // limit of terms of a series
-  static constexpr double last_term = 1e-19;  // last term of a series over its first term
+  static constexpr int most_terms = 48;           // limit of terms of a series
+  static constexpr double last_term = 1e-19;      // last term of a series over its first term
 
   /// The coefficients of q', q'', j and the second and third powers of the distance in g, with which one step changes a
   /// mode's q and q'.
@@ -178,7 +177,7 @@ class ForcedModes : Lanes<W> {
     Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
   };
   struct Series {
-    int terms, long_terms;  // in a sampling interval, and in a move of the windows
+    int terms, long_terms;                      // in a sampling interval, and in a move of the windows
     double by_2[most_terms], by_3[most_terms];  // coefficients of Q_2 and Q_3
   };
 
@@ -299,7 +298,7 @@ class ForcedModes : Lanes<W> {
   const ForceTask& task_;
   const int modes_;
   Lane speed_{};
-  double parts_ = 1.0;  // number of parts of the longest sampling interval
+  double parts_ = 1.0;                 // number of parts of the longest sampling interval
   double long_phase_per_metre_ = 0.0;  // largest phase of the fastest mode in any lane
   Lane *q_stored_ = nullptr, *r_stored_ = nullptr, *a_stored_ = nullptr;
   Advance* regular_ = nullptr;    // for one sampling interval

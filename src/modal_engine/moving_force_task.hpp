@@ -35,7 +35,7 @@ struct ForceTask {
   const double* length = nullptr;
   double last_window = 0.0;  // m
   const double* by_amplitude = nullptr;
-  bool only_bounds = false;  // the largest bounds are determined instead of the peaks
+  bool only_bounds = false;         // the largest bounds are determined instead of the peaks
   const int* first_kink = nullptr;  // for each interval the first index in `kink`; the last entry is the number of all
   const int* kink = nullptr;        // indices of responses: deflections of all probes, then accelerations, then moments
 
@@ -54,7 +54,7 @@ struct ForceTask {
   // Of each response, lanes: deflection, acceleration and moment of each probe.
   double* peak = nullptr;       // smaller peaks are of no interest; replaced by the peak or the largest bound
   double* peak_time = nullptr;  // s; below 0: there was no greater peak
-  double* work = nullptr;                        // work_size() numbers, aligned as a lane
+  double* work = nullptr;       // work_size() numbers, aligned as a lane
 };
 
 }  // namespace traverse::modal_engine

@@ -55,8 +55,8 @@ class StudyTable {
   /// Numbers in a row, in the order of the columns; a column has one number, or one number for each probe.
   std::size_t width() const { return width_; }
   /// The numbers of a run of the study from which rows_of made that of the table. A row of several runs is finished
-  /// after the last one and has their greatest values, for least forces their least values. runs: number of runs of this
-  /// row of which the numbers are the greatest.
+  /// after the last one and has their greatest values, for least forces their least values. runs: number of runs of
+  /// this row of which the numbers are the greatest.
   void put(std::size_t run, const double* numbers, std::size_t runs = 1);
   /// Sets the reason why runs cannot evaluate the quantity of a limit, in words.
   void set_reason(std::size_t limit, const std::string& why) { reasons_[limit] = why; }

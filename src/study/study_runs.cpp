@@ -105,9 +105,7 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
 }
 
 /// Whether only the greatest results of all runs of a table's row are needed, and are known without all runs.
-bool only_greatest(StudyScenes& scenes) {
-  return scenes.study().sensitivity && scenes.runner(0).runs->has_bounds();
-}
+bool only_greatest(StudyScenes& scenes) { return scenes.study().sensitivity && scenes.runner(0).runs->has_bounds(); }
 
 /// The runs of each row of the table.
 Groups rows_of(const Study& study) {

@@ -79,7 +79,10 @@ void StudyScenes::enumerate(const Study& study) {
   enum class Sets { speed, seed, traffic, bridge };
   std::vector<Sets> sets;  // of each dimension
   for (const StudyDimension& d : study.dimensions)
-    sets.push_back(is_speed(d) ? Sets::speed : is_seed(d) ? Sets::seed : is_of_traffic(d) ? Sets::traffic : Sets::bridge);
+    sets.push_back(is_speed(d)        ? Sets::speed
+                   : is_seed(d)       ? Sets::seed
+                   : is_of_traffic(d) ? Sets::traffic
+                                      : Sets::bridge);
   for (std::size_t run = 0; run < study.runs(); ++run) {
     StudyRun one{0, study.sweep ? study.place(run, 0) : 0, 0, {speed, {}}};
     std::vector<double> of_base, of_bridge;

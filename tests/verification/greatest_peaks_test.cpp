@@ -72,7 +72,8 @@ class GreatestPeaks : public testing::Test {
 TEST_F(GreatestPeaks, AreThoseOfAllRuns) {
   std::vector<Peaks> all;
   for (const app::ForceRun& run : runs_)
-    all.push_back(passages_[run.train]->peaks(std::vector{run.speed}, std::vector{run.end}, 20.0, [] { return true; })[0]);
+    all.push_back(
+        passages_[run.train]->peaks(std::vector{run.speed}, std::vector{run.end}, 20.0, [] { return true; })[0]);
   const std::vector<Peaks> some = found(runs_);
   ASSERT_EQ(some.size(), 3u);
   for (std::size_t p = 0; p < 3; ++p) {
