@@ -51,13 +51,14 @@ class MovingForceBatch : Lanes<W> {
   static constexpr double same_step = 1.0 - 1e-9;  // equal steps except for rounding
   static constexpr double rounding = 1e-9;         // relative error of bounds, and much more
   // Vectors for windows that are treated together, and number of these windows.
-  static constexpr long most_vectors = 1024, least_windows = 16;
+  static constexpr long most_vectors = 1024, least_windows = 48;
 
   /// A window with the state at its start and the bounds of the responses in it.
   struct Window {
     double start, end;  // m travelled
     long number, interval, last_interval;
     Lane *state, *bound;
+    double mean[3];  // of the bounds of deflections, accelerations and moments, times a number
     bool sampled;
   };
 
@@ -112,10 +113,16 @@ class MovingForceBatch : Lanes<W> {
     const double* response = mode + 2L * modes_;
     for (int i = 0; i < modes_; ++i) amplitude_[i] = motion_.amplitude(i) + mode[2 * i] * speed_ + mode[2 * i + 1];
     const int count = 3 * probes_;
-    for (int i = 0; i < count; ++i) {
-      Lane sum = response[i] + response[count + i] * speed_;
-      for (int k = 0; k < modes_; ++k) sum += task_.by_amplitude[k * count + i] * amplitude_[k];
-      own.bound[i] = (1.0 + rounding) * sum;
+    for (int kind = 0, i = 0; kind < 3; ++kind) {
+      Lane mean{};
+      for (int p = 0; p < probes_; ++p, ++i) {
+        Lane sum = response[i] + response[count + i] * speed_;
+        for (int k = 0; k < modes_; ++k) sum += task_.by_amplitude[k * count + i] * amplitude_[k];
+        own.bound[i] = (1.0 + rounding) * sum;
+        mean += own.bound[i];
+      }
+      own.mean[kind] = 0.0;
+      for (int lane = 0; lane < W; ++lane) own.mean[kind] += Own::numbers(mean)[lane];
     }
   }
   void record_bounds() {
@@ -134,22 +141,15 @@ class MovingForceBatch : Lanes<W> {
     const double end = motion_.s;
     const long end_interval = motion_.interval;
     motion_.copy_state(end_state_);
-    for (int i = 0; i < 3 * probes_; ++i) sample_window(windows_[largest_bound(i)]);
+    for (int kind = 0; kind < 3; ++kind) sample_window(windows_[largest_bounds(kind)]);
     for (long k = 0; k < count_; ++k) sample_window(windows_[k]);
     motion_.set_state(end_state_, end_interval, end);
   }
-  /// The window with the largest bound of a response, in the mean of all runs.
-  long largest_bound(int response) const {
+  /// The window with the largest bounds of a kind of response, in the mean of all probes and runs.
+  long largest_bounds(int kind) const {
     long found = 0;
-    double largest = 0.0;
-    for (long k = 0; k < count_; ++k) {
-      double sum = 0.0;
-      for (int lane = 0; lane < W; ++lane) sum += Own::numbers(windows_[k].bound[response])[lane];
-      if (sum > largest) {
-        largest = sum;
-        found = k;
-      }
-    }
+    for (long k = 1; k < count_; ++k)
+      if (windows_[k].mean[kind] > windows_[found].mean[kind]) found = k;
     return found;
   }
 
@@ -188,8 +188,7 @@ class MovingForceBatch : Lanes<W> {
   }
 
   void pass_event() {
-    const long next = motion_.interval + 1;
-    const int first = task_.first_kink[next], past = samples_.has_kinks() ? task_.first_kink[next + 1] : first;
+    const int first = task_.first_kink[motion_.interval + 1], past = task_.first_kink[motion_.interval + 2];
     for (int k = first; k < past; ++k) samples_.sample_before_kink(task_.kink[k]);
     motion_.enter_next();
     for (int k = first; k < past; ++k) samples_.start_after_kink(task_.kink[k]);

@@ -38,6 +38,8 @@ class ForceSamples : Lanes<W> {
     }
     Lane** const of_responses[] = {&peak, &place, &limit_, &kink_value_};
     for (Lane** own : of_responses) *own = in_lanes(3L * probes_);
+    accelerations_.first = allocate_from<int>(work, used, W, probes_);
+    others_.first = allocate_from<int>(work, used, W, probes_);
     kink_sample_ = allocate_from<long>(work, used, W, 3L * probes_);
     kink_place_ = numbers(3L * probes_);
     limit_alone_ = numbers(3L * probes_);
@@ -55,11 +57,18 @@ class ForceSamples : Lanes<W> {
 
   /// Begins with the samples of a window, if one of its bounds exceeds a peak in some run.
   bool begin_window(const Lane* bound) {
-    accelerations_ = may_exceed(bound, probes_, 2 * probes_);
-    others_ = may_exceed(bound, 0, probes_) || may_exceed(bound, 2 * probes_, 3 * probes_);
     bound_ = bound;
     first_sample_ = samples_ + 1;
-    return accelerations_ || others_;
+    accelerations_.count = others_.count = 0;
+    const int size = group_size();
+    for (int p = 0; p < probes_; p += size) {
+      const int past = p + size < probes_ ? p + size : probes_;
+      const bool acceleration = may_exceed(probes_ + p, probes_ + past);
+      const bool other = may_exceed(p, past) || may_exceed(2 * probes_ + p, 2 * probes_ + past);
+      if (acceleration) accelerations_.first[accelerations_.count++] = p;
+      if (other || (in_rows() && acceleration)) others_.first[others_.count++] = p;
+    }
+    return accelerations_.count + others_.count > 0;
   }
   void end_window() {
     for (int k = 0; k < last_[2]->count && any(runs); ++k) check_last_sample(last_[2]->flagged[k]);
@@ -79,14 +88,11 @@ class ForceSamples : Lanes<W> {
       now.r[i] = motion_.r[i];
       now.a[i] = motion_.a[i];
     }
-    if (others_) evaluate_static_parts(now.static_part);
+    if (others_.count > 0) evaluate_static_parts(now.static_part);
     now.count = 0;
-    int p = 0;
-    if (task_.runs == 1)
-      for (; p + in_a_row <= probes_; p += in_a_row) flag_row(p, now);
-    else
-      for (; p + 4 <= probes_; p += 4) flag_large<4>(p, now);
-    for (; p < probes_; ++p) flag_large<1>(p, now);
+    for (int g = 0; g < others_.count; ++g) flag_others(others_.first[g], now);
+    if (!in_rows())
+      for (int g = 0; g < accelerations_.count; ++g) flag_accelerations(accelerations_.first[g], now);
     for (int k = 0; k < now.count; ++k) record_largest(now.flagged[k], runs, magnitude(now.value[k]), fill(motion_.s));
     if (samples_ < first_sample_ + 2) return;
     const Instant& last = *last_[1];
@@ -108,10 +114,9 @@ class ForceSamples : Lanes<W> {
     }
   }
 
-  /// Deflections and moments can have kinks within a window; accelerations cannot.
-  bool has_kinks() const { return others_; }
   /// Samples a response before its kink, at the end of a smooth curve.
   void sample_before_kink(int i) {
+    if (!exceeds(bound_[i], peak[i])) return;
     const Lane value = response(i, fill(static_value(i)), motion_.q, motion_.r, motion_.a);
     record_largest(i, runs, magnitude(value), fill(motion_.s));
     check_last_vertex(i, runs, fill(motion_.s), value);
@@ -119,6 +124,7 @@ class ForceSamples : Lanes<W> {
 
   /// Starts a new curve after the kink; earlier samples do not belong to it.
   void start_after_kink(int i) {
+    if (!exceeds(bound_[i], peak[i])) return;
     kink_value_[i] = response(i, fill(static_value(i)), motion_.q, motion_.r, motion_.a);
     record_largest(i, runs, magnitude(kink_value_[i]), fill(motion_.s));
     kink_sample_[i] = samples_;
@@ -137,11 +143,20 @@ class ForceSamples : Lanes<W> {
   static constexpr double least_gap =
       1e-6;  // relative to the next distance: points closer than this define no parabola
 
-  bool may_exceed(const Lane* bound, int first, int past) const {
+  bool may_exceed(int first, int past) const {
     Mask greater{};
-    for (int i = first; i < past; ++i) greater |= bound[i] > peak[i];
+    for (int i = first; i < past; ++i) greater |= bound_[i] > peak[i];
     return any(greater & runs);
   }
+
+  /// Groups of neighbouring probes with responses of interest in this window.
+  struct Groups {
+    int* first = nullptr;  // first probe of each
+    int count = 0;
+  };
+  /// A single run has neighbouring probes in the lanes of a vector.
+  bool in_rows() const { return task_.runs == 1; }
+  int group_size() const { return in_rows() ? in_a_row : 4; }
 
   /// The part of a response without the modes: the static correction and the self-weight.
   const double* static_of(int i) const {
@@ -200,15 +215,23 @@ class ForceSamples : Lanes<W> {
       static_part[i] = task_.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
   }
 
-  /// Flags the responses of N neighbouring probes that may be the largest, as far as they are of interest.
-  template <int N>
-  void flag_large(int p, Instant& now) const {
-    if (others_) flag_others<N>(p, now);
-    if (accelerations_) flag_accelerations<N>(p, now);
+  /// Flags the accelerations of a group of probes that may be the largest.
+  void flag_accelerations(int p, Instant& now) const {
+    if (p + 4 <= probes_) return flag_accelerations_of<4>(p, now);
+    for (; p < probes_; ++p) flag_accelerations_of<1>(p, now);
+  }
+  /// The same for deflections and moments; for single runs all responses.
+  void flag_others(int p, Instant& now) const {
+    if (in_rows() && p + in_a_row <= probes_) return flag_row(p, now);
+    if (!in_rows() && p + 4 <= probes_) return flag_others_of<4>(p, now);
+    for (; p < probes_; ++p) {
+      flag_others_of<1>(p, now);
+      if (in_rows()) flag_accelerations_of<1>(p, now);
+    }
   }
 
   template <int N>
-  void flag_accelerations(int p, Instant& now) const {
+  void flag_accelerations_of(int p, Instant& now) const {
     Lane a[N]{};
     for (int i = 0; i < modes_; ++i) {
       const double* form = task_.deflection + i * probes_ + p;
@@ -225,9 +248,8 @@ class ForceSamples : Lanes<W> {
     for (int k = 0; k < N; ++k) flag(probes_ + p + k, a[k], now);
   }
 
-  /// Deflections and moments.
   template <int N>
-  void flag_others(int p, Instant& now) const {
+  void flag_others_of(int p, Instant& now) const {
     Lane v[N], M[N];
 #pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
@@ -357,10 +379,10 @@ class ForceSamples : Lanes<W> {
   const ForceTask& task_;
   const int modes_, probes_;
   const ForcedModes<W>& motion_;
-  Instant instants_[3], *last_[3] = {};        // the last samples, in cyclic order
-  long samples_ = 0, first_sample_ = 1;        // number of samples; first one of this window
-  bool accelerations_ = true, others_ = true;  // the responses of interest in this window
-  const Lane* bound_ = nullptr;                // of each response in this window
+  Instant instants_[3], *last_[3] = {};  // the last samples, in cyclic order
+  long samples_ = 0, first_sample_ = 1;  // number of samples; first one of this window
+  Groups accelerations_, others_;        // with accelerations, and with deflections or moments of interest
+  const Lane* bound_ = nullptr;          // of each response in this window
   // For each response: the limit for larger values, and the limit in the first lane.
   Lane* limit_ = nullptr;
   double* limit_alone_ = nullptr;

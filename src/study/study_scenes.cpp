@@ -76,11 +76,11 @@ void StudyScenes::enumerate(const Study& study) {
       bridges;  // indices of bases and bridges by the values that define them
   std::set<double> speeds;
   const bool local = is_local(study);
-  enum class Sets { speed, seed, traffic, bridge };
+  enum class Sets { own_speed, own_seed, traffic, bridge };
   std::vector<Sets> sets;  // of each dimension
   for (const StudyDimension& d : study.dimensions)
-    sets.push_back(is_speed(d)        ? Sets::speed
-                   : is_seed(d)       ? Sets::seed
+    sets.push_back(is_speed(d)        ? Sets::own_speed
+                   : is_seed(d)       ? Sets::own_seed
                    : is_of_traffic(d) ? Sets::traffic
                                       : Sets::bridge);
   for (std::size_t run = 0; run < study.runs(); ++run) {
@@ -89,10 +89,10 @@ void StudyScenes::enumerate(const Study& study) {
     for (std::size_t i = 0; i < sets.size(); ++i) {
       const StudyDimension& d = study.dimensions[i];
       const double value = study.value(run, d);
-      if (sets[i] == Sets::speed) {
+      if (sets[i] == Sets::own_speed) {
         one.own.speed = value;
         if (local && d.axis == study.sensitivity->axis) one.own.step_speed = d.values.front();
-      } else if (sets[i] == Sets::seed) {
+      } else if (sets[i] == Sets::own_seed) {
         one.own.seed = static_cast<std::uint64_t>(value);
       } else if (!study.sweep) {
         of_base.push_back(value);
