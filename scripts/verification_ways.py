@@ -74,6 +74,11 @@ WAYS = [
             "MovingForcePassages.AgainstTheExactMotion", [
                 Check("EXPECT_LT(difference(usual[i], exact), {}) << speeds[i];", None, "20 instants"),
                 Check("EXPECT_LT(difference(fine[i], exact), {}) << speeds[i];", None, "200 instants")]),
+        Row("bounds of the peaks of forces over nine bridges, over the largest peak", "peaks of 200 instants per period",
+            "MovingForcePassages.NoPeakExceedsItsBound", [
+                Check("EXPECT_LT(largest(bounds[i], quantity), {} * largest(fine[i], quantity)) << speeds[i];")]),
+        Row("greatest peaks of 222 runs of three trains, by bounds", "each run by itself", "GreatestPeaks.AreThoseOfAllRuns",
+            [Check("EXPECT_NEAR(peak.value, expected.value, {} * expected.value) << p;")]),
     ]),
     ("Separate spans", [
         Row("samples a second apart: peak deflection and moment", "samples 20 ms apart",

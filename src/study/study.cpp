@@ -114,8 +114,13 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
   const double part = (rows - static_cast<double>(known)) / rows;
   const double seconds = part * first.cost() * motion / ranks;
   const bool has_cost = model.modes > 0 || model.time_step > 0.0;
-  notes.push_back(fmt::format("the {} is computed {}{}", study.sweep ? "sweep" : "study", results::method_of(model),
-                              has_cost ? "; estimated time " + results::duration_text(seconds) : ""));
+  const bool by_bounds = scenes.only_greatest();
+  notes.push_back(fmt::format("the {} is computed {}{}{}{}", study.sweep ? "sweep" : "study", results::method_of(model),
+                              has_cost ? "; estimated time " : "", has_cost && by_bounds ? "at most " : "",
+                              has_cost ? results::duration_text(seconds) : ""));
+  if (by_bounds)
+    notes.emplace_back(
+        "only the greatest peaks over all options that are no factors are needed; bounds exclude the runs without one");
   if (ranks > 1) notes.push_back(base::detail(fmt::format("{} ranks share the runs by a common queue", ranks)));
   if (study.sweep && has_cost && seconds >= long_duration)
     suggest_modes(scene, seconds, ranks, model.accuracy > 0.0, notes);

@@ -104,9 +104,6 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
   }
 }
 
-/// Whether only the greatest results of all runs of a table's row are needed, and are known without all runs.
-bool only_greatest(StudyScenes& scenes) { return scenes.study().sensitivity && scenes.runner(0).runs->has_bounds(); }
-
 /// The runs of each row of the table.
 Groups rows_of(const Study& study) {
   const std::size_t axis = study.sensitivity->axis;
@@ -120,7 +117,7 @@ Groups rows_of(const Study& study) {
 /// ranks end at about the same time.
 Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   const bool sweep = scenes.study().sweep;
-  if (only_greatest(scenes)) return rows_of(scenes.study());
+  if (scenes.only_greatest()) return rows_of(scenes.study());
   Groups groups = scenes.groups(sweep ? known : std::vector<char>());
   std::erase_if(groups, [&](const std::vector<std::size_t>& group) {
     return std::all_of(group.begin(), group.end(), [&](std::size_t run) { return known[run] != 0; });
@@ -135,7 +132,7 @@ SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTabl
   SharedWork work;
   for (const std::vector<std::size_t>& group : groups) work.pieces.push_back({group.size(), scenes.duration(group)});
   const bool wheels = table.find("least_wheel_force") != nullptr;
-  const bool greatest = only_greatest(scenes);
+  const bool greatest = scenes.only_greatest();
   work.compute = [&, wheels, greatest](std::size_t piece, const std::function<void(double)>& reached) {
     const auto ended = [&](std::size_t run, std::size_t runs, const CaseResult& result, const CaseRunner& runner) {
       if (!result.ended) return;

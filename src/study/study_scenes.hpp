@@ -54,6 +54,10 @@ class StudyScenes {
   /// Whether runs of two bases can be computed in one batch.
   static bool compatible(const Runner& a, const Runner& b) { return a.batch == b.batch; }
 
+  /// Whether only the greatest results of all runs of a sensitivity analysis' point are needed, and are found without
+  /// all of these runs.
+  bool only_greatest() { return study_.sensitivity && runner(0).runs->has_bounds(); }
+
   /// What the runs of a batch may differ in, besides speed and track.
   enum class Mixing { nothing, vehicles, vehicles_and_bridges };
   /// Runs are mixed only if there are too few of one bridge, or of one base, to fill batches.
