@@ -105,7 +105,7 @@ ForceBounds::ForceBounds(const structure::ModalBridge& bridge, const integrate::
 
 void ForceBounds::set_factors(const structure::ModalBridge& bridge) {
   const structure::ModalProbes& probes = bridge.probes();
-  by_amplitude_.resize(3 * modes_ * probes_);
+  by_amplitude_.resize(2 * modes_ * probes_);
   by_rate_.resize(3 * modes_ * probes_);
   for (std::size_t k = 0; k < modes_; ++k) {
     const double omega = bridge.omega()[k], omega2 = omega * omega, damping = 2.0 * bridge.sigma()[k];
@@ -114,10 +114,9 @@ void ForceBounds::set_factors(const structure::ModalBridge& bridge) {
       const double form = std::abs(probes.deflection[at]), bend_inertia = probes.moment_by_acceleration[at];
       const double bend = probes.moment[at] - omega2 * bend_inertia;
       const double bend_rate = probes.moment_by_rate[at] - damping * bend_inertia;
-      double *c = &by_amplitude_[3 * k * probes_ + p], *d = &by_rate_[3 * k * probes_ + p];
+      double *c = &by_amplitude_[2 * k * probes_ + p], *d = &by_rate_[3 * k * probes_ + p];
       c[0] = form;
-      c[probes_] = form * omega2 * std::hypot(1.0, damping / omega);
-      c[2 * probes_] = std::hypot(bend, omega * bend_rate);
+      c[probes_] = std::hypot(bend, omega * bend_rate);
       d[probes_] = form * damping / omega2;
       d[2 * probes_] = std::abs(bend_rate) / omega2;
     }

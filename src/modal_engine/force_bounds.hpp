@@ -49,7 +49,7 @@ class ForceBounds {
   ForceBounds(const structure::ModalBridge& bridge, const integrate::ForceHistory& history, const Jumps& jumps,
               const std::vector<ForceEvent>& event);
 
-  /// c: [mode][response], responses: deflections of all probes, then accelerations, then moments.
+  /// c: for each mode those of the deflections of all probes, then of the moments. WindowBounds has the accelerations.
   const std::vector<double>& by_amplitude() const { return by_amplitude_; }
   /// The largest static deflection at each probe, m.
   const std::vector<double>& static_peaks() const { return static_peaks_; }
@@ -69,7 +69,7 @@ class ForceBounds {
   const std::vector<ForceEvent>& event_;
   std::size_t modes_, probes_, size_;
   std::vector<double> numbers_;                 // of each interval, as ForceWindows::numbers
-  std::vector<double> by_amplitude_, by_rate_;  // [mode][response]; by_rate: D per magnitude of g'
+  std::vector<double> by_amplitude_, by_rate_;  // by_rate: D per magnitude of g', [mode][response]
   std::vector<double> static_peaks_;
 };
 

@@ -6,6 +6,7 @@
 // influence lines in a window, only the responses with a kink there are sampled.
 #pragma once
 
+#include "modal_engine/moving_force_bounds.hpp"
 #include "modal_engine/moving_force_samples.hpp"
 
 namespace traverse::modal_engine {
@@ -22,7 +23,12 @@ class MovingForceBatch : Lanes<W> {
 
  public:
   MovingForceBatch(const ForceTask& task, double* work)
-      : task_(task), modes_(task.modes), probes_(task.probes), motion_(task), samples_(task, motion_) {
+      : task_(task),
+        modes_(task.modes),
+        probes_(task.probes),
+        motion_(task),
+        bounds_(task, motion_),
+        samples_(task, motion_) {
     lay_out(work);
   }
   long size() const { return used_ * W; }
@@ -31,6 +37,7 @@ class MovingForceBatch : Lanes<W> {
     speed_ = *lanes(task_.speed);
     end_ = *lanes(task_.end);
     motion_.begin();
+    bounds_.begin();
     samples_.begin();
     while (begin_windows()) {
       if (task_.only_bounds)
@@ -49,7 +56,6 @@ class MovingForceBatch : Lanes<W> {
   static constexpr double least_parts = 2.0;       // of a window: three samples define a parabola
   static constexpr double same_end = 1.0 + 1e-12;  // equal distances except for rounding
   static constexpr double same_step = 1.0 - 1e-9;  // equal steps except for rounding
-  static constexpr double rounding = 1e-9;         // relative error of bounds, and much more
   // Vectors for windows that are treated together, and number of these windows.
   static constexpr long most_vectors = 1024, least_windows = 48;
 
@@ -58,7 +64,7 @@ class MovingForceBatch : Lanes<W> {
     double start, end;  // m travelled
     long number, interval, last_interval;
     Lane *state, *bound;
-    double mean[3];  // of the bounds of deflections, accelerations and moments, times a number
+    double bounds[3];  // sums of the bounds of deflections, accelerations and moments
     bool sampled;
   };
 
@@ -66,7 +72,7 @@ class MovingForceBatch : Lanes<W> {
     const auto in_lanes = [&](long count) { return allocate_from<Lane>(work, used_, W, count); };
     motion_.lay_out(work, used_);
     samples_.lay_out(work, used_);
-    amplitude_ = in_lanes(modes_);
+    bounds_.lay_out(work, used_);
     end_state_ = in_lanes(2L * modes_);
     const long vectors = 2L * modes_ + 3L * probes_;  // of a window
     capacity_ = most_vectors / vectors;
@@ -96,7 +102,7 @@ class MovingForceBatch : Lanes<W> {
       own.end = repeats ? motion_.s + task_.last_window : task_.window_end[next_window_];
       own.sampled = false;
       motion_.copy_state(own.state);
-      find_bounds(own);
+      bounds_.find(own.number, own.end, own.bound, own.bounds);
       for (long k = task_.first_move[own.number]; k < task_.first_move[own.number + 1]; ++k) {
         own.last_interval = motion_.interval;
         motion_.make_move(k, repeats ? own.end : task_.move_end[k]);
@@ -107,24 +113,6 @@ class MovingForceBatch : Lanes<W> {
     return count_ > 0;
   }
 
-  /// Bounds of all responses in this window (force_bounds.hpp).
-  void find_bounds(Window& own) const {
-    const double* mode = task_.window_numbers + own.number * (2L * modes_ + 6L * probes_);
-    const double* response = mode + 2L * modes_;
-    for (int i = 0; i < modes_; ++i) amplitude_[i] = motion_.amplitude(i) + mode[2 * i] * speed_ + mode[2 * i + 1];
-    const int count = 3 * probes_;
-    for (int kind = 0, i = 0; kind < 3; ++kind) {
-      Lane mean{};
-      for (int p = 0; p < probes_; ++p, ++i) {
-        Lane sum = response[i] + response[count + i] * speed_;
-        for (int k = 0; k < modes_; ++k) sum += task_.by_amplitude[k * count + i] * amplitude_[k];
-        own.bound[i] = (1.0 + rounding) * sum;
-        mean += own.bound[i];
-      }
-      own.mean[kind] = 0.0;
-      for (int lane = 0; lane < W; ++lane) own.mean[kind] += Own::numbers(mean)[lane];
-    }
-  }
   void record_bounds() {
     for (long k = 0; k < count_; ++k) {
       find_runs(windows_[k].start);
@@ -149,7 +137,7 @@ class MovingForceBatch : Lanes<W> {
   long largest_bounds(int kind) const {
     long found = 0;
     for (long k = 1; k < count_; ++k)
-      if (windows_[k].mean[kind] > windows_[found].mean[kind]) found = k;
+      if (windows_[k].bounds[kind] > windows_[found].bounds[kind]) found = k;
     return found;
   }
 
@@ -215,6 +203,7 @@ class MovingForceBatch : Lanes<W> {
   const ForceTask& task_;
   const int modes_, probes_;
   ForcedModes<W> motion_;
+  WindowBounds<W> bounds_;
   ForceSamples<W> samples_;
   long used_ = 0;
   Lane speed_{}, end_{};
@@ -223,7 +212,6 @@ class MovingForceBatch : Lanes<W> {
   long capacity_ = 0, count_ = 0, next_window_ = 0;
   long last_interval_ = 0;     // of the window that is sampled
   Lane* end_state_ = nullptr;  // after these windows
-  Lane* amplitude_ = nullptr;  // A of each mode in a window
 };
 
 }  // namespace

@@ -41,7 +41,6 @@ class ForcedModes : Lanes<W> {
     by_length_ = allocate_from<Advance>(work, used, W, static_cast<long>(modes_) * task_.lengths);
     parts_of_length_ = allocate_from<double>(work, used, W, task_.lengths);
     series_ = allocate_from<Series>(work, used, W, modes_);
-    flexibility_ = allocate_from<double>(work, used, W, modes_);
     for (double*& power : g_) power = allocate_from<double>(work, used, W, modes_);
   }
 
@@ -54,7 +53,6 @@ class ForcedModes : Lanes<W> {
       for (int i = 0; i < modes_; ++i) by_length_[k * modes_ + i] = advance_by(i, part, series_[i].long_terms);
     }
     for (int i = 0; i < modes_; ++i) {
-      flexibility_[i] = 1.0 / task_.omega2[i];
       q[i] = fill(task_.q[i]);
       r[i] = Lane{};
     }
@@ -63,6 +61,8 @@ class ForcedModes : Lanes<W> {
 
   /// Sets the distance between samples, at most ForceTask::ds.
   void set_step(double step) {
+    if (step == step_) return;
+    step_ = step;
     const Lane part = fill(step / parts_) / speed_;
     for (int i = 0; i < modes_; ++i) regular_[i] = advance_by(i, part, series_[i].terms);
   }
@@ -127,12 +127,9 @@ class ForcedModes : Lanes<W> {
     place(at);
   }
 
-  /// E: the amplitude of a mode's deviation from quasi-static motion (force_bounds.hpp).
-  Lane amplitude(int i) const {
-    const double flexibility = flexibility_[i];
-    const Lane deviation = q[i] - g_[0][i] * flexibility, rate = r[i] - g_[1][i] * flexibility * speed_;
-    return Own::root(deviation * deviation + flexibility * rate * rate);
-  }
+  /// The deviation of a mode from quasi-static motion (force_bounds.hpp) and its rate. flexibility: 1 / omega^2.
+  Lane deviation(int i, double flexibility) const { return q[i] - flexibility * g_[0][i]; }
+  Lane deviation_rate(int i, double flexibility) const { return r[i] - flexibility * g_[1][i] * speed_; }
 
   /// Moves every lane to a separate distance; move_back() reverses this.
   void move_lanes(Lane to) {
@@ -301,11 +298,11 @@ class ForcedModes : Lanes<W> {
   double parts_ = 1.0;                 // number of parts of the longest sampling interval
   double long_phase_per_metre_ = 0.0;  // largest phase of the fastest mode in any lane
   Lane *q_stored_ = nullptr, *r_stored_ = nullptr, *a_stored_ = nullptr;
+  double step_ = 0.0;             // m: sampling interval
   Advance* regular_ = nullptr;    // for one sampling interval
   Advance* by_length_ = nullptr;  // for a part of a move of each length: [length][mode]
   double* parts_of_length_ = nullptr;
   Series* series_ = nullptr;
-  double* flexibility_ = nullptr;  // 1 / omega^2 of each mode
   double* g_[4] = {};  // coefficients of g of the modes, by powers of the distance from the present position
 };
 
