@@ -22,7 +22,7 @@ TRAVERSE_LANES_DECLARE(long work_size(const ForceTask& task); void run_passages(
 namespace {
 
 constexpr double negligible_kink = 1e-6;  // fraction of the largest slope, or of the largest value for a jump
-constexpr double window_samples = 16.0;   // of a window at the lowest speed of its octave, about
+constexpr double window_samples = 40.0;   // of a window at the lowest speed of its octave, about
 
 }  // namespace
 
