@@ -76,7 +76,7 @@ WAYS = [
                 Check("EXPECT_LT(difference(fine[i], exact), {}) << speeds[i];", None, "200 instants")]),
         Row("bounds of the peaks of forces over nine bridges, over the largest peak", "peaks of 200 instants per period",
             "MovingForcePassages.NoPeakExceedsItsBound", [
-                Check("EXPECT_LT(largest(bounds[i], quantity), {} * largest(fine[i], quantity)) << speeds[i];")]),
+                Check("EXPECT_LT(largest(bounds[i], quantity) / largest(fine[i], quantity), {}) << speeds[i];")]),
         Row("greatest peaks of 222 runs of three trains, by bounds", "each run by itself", "GreatestPeaks.AreThoseOfAllRuns",
             [Check("EXPECT_NEAR(peak.value, expected.value, {} * expected.value) << p;")]),
     ]),
