@@ -63,26 +63,6 @@ std::string name_of(const Study& study, const std::vector<std::size_t>& group) {
 /// Called with the index of a run, the number of runs that the results are of, and the results.
 using Ended = std::function<void(std::size_t run, std::size_t runs, const CaseResult&, const CaseRunner&)>;
 
-/// Computes the greatest results of a group.
-void run_greatest(StudyScenes& scenes, const std::vector<std::size_t>& group, const Ended& ended) {
-  std::vector<StudyScenes::Runner> runners;  // of different scenes
-  std::vector<std::size_t> first, count;     // runs of each
-  std::vector<CaseRunner::Member> members;
-  for (const std::size_t run : group) {
-    const std::size_t base = scenes.runs()[run].base;
-    auto known = std::find_if(runners.begin(), runners.end(), [&](const auto& one) { return one.base == base; });
-    if (known == runners.end()) {
-      known = runners.insert(known, scenes.runner(base));
-      first.push_back(run);
-      count.push_back(0);
-    }
-    ++count[static_cast<std::size_t>(known - runners.begin())];
-    members.push_back({known->runs.get(), scenes.runs()[run].own});
-  }
-  const std::vector<CaseResult> results = CaseRunner::greatest(scenes.runs()[group.front()].train, members);
-  for (std::size_t i = 0; i < results.size(); ++i) ended(first[i], count[i], results[i], *runners[i].runs);
-}
-
 /// Computes the runs of a group: compatible ones together, the others separately.
 void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const std::function<void(double)>& reached,
                const Ended& ended) {
@@ -102,6 +82,32 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
     const std::vector<CaseResult> results = CaseRunner::run_together(scenes.runs()[group[i]].train, members, reached);
     for (std::size_t j = 0; j < results.size(); ++j) ended(group[places[j]], 1, results[j], *runners[places[j]].runs);
   }
+}
+
+/// Computes the greatest results of a group. Without bounds in some scene, for which dampers couple modes, all runs are
+/// computed.
+void run_greatest(StudyScenes& scenes, const std::vector<std::size_t>& group,
+                  const std::function<void(double)>& reached, const Ended& ended) {
+  std::vector<StudyScenes::Runner> runners;  // of different scenes
+  std::vector<std::size_t> first, count;     // runs of each
+  std::vector<CaseRunner::Member> members;
+  for (const std::size_t run : group) {
+    const std::size_t base = scenes.runs()[run].base;
+    auto known = std::find_if(runners.begin(), runners.end(), [&](const auto& one) { return one.base == base; });
+    if (known == runners.end()) {
+      known = runners.insert(known, scenes.runner(base));
+      first.push_back(run);
+      count.push_back(0);
+    }
+    ++count[static_cast<std::size_t>(known - runners.begin())];
+    members.push_back({known->runs.get(), scenes.runs()[run].own});
+  }
+  if (!std::all_of(runners.begin(), runners.end(), [](const auto& one) { return one.runs->has_bounds(); })) {
+    for (const std::size_t run : group) run_group(scenes, {run}, reached, ended);
+    return;
+  }
+  const std::vector<CaseResult> results = CaseRunner::greatest(scenes.runs()[group.front()].train, members);
+  for (std::size_t i = 0; i < results.size(); ++i) ended(first[i], count[i], results[i], *runners[i].runs);
 }
 
 /// The runs of each row of the table.
@@ -145,7 +151,7 @@ SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTabl
       gather.collect();
     };
     if (greatest)
-      run_greatest(scenes, groups[piece], ended);
+      run_greatest(scenes, groups[piece], progress, ended);
     else
       run_group(scenes, groups[piece], progress, ended);
     gather.collect();
