@@ -19,11 +19,23 @@ class HeatMap {
     this.canvas.setAttribute("aria-label", spec.title);
     this.said = element("p", "note", said("point"));
     const card = element("div", "card");
-    card.append(this.canvas, this.said);
+    card.append(this.canvas, this.colourScale(), this.said);
     place.append(element("h2", "", spec.title), element("p", "note", spec.note), card);
     this.canvas.addEventListener("pointermove", (event) => this.point(event.offsetX, event.offsetY));
     new ResizeObserver(() => this.paint()).observe(card);
     this.paint();
+  }
+
+  // The colours from 0 to 2 with their values.
+  colourScale() {
+    const scale = element("div", "colour-scale");
+    const stops = SHADES.map((_, i) => shade(i / 2));
+    scale.style.backgroundImage = `linear-gradient(to right, ${stops.join(", ")})`;
+    const values = element("div", "colour-scale-values");
+    stops.forEach((_, i) => values.append(element("span", "", (i + 1 < stops.length ? "" : "≥ ") + digits(i / 2))));
+    const both = element("div");
+    both.append(element("p", "note", this.spec.label), scale, values);
+    return both;
   }
 
   // Left and top edge of the cells, their width and height.

@@ -64,14 +64,14 @@ class PageTest(Computed):
         for name, scene, *words in (
                 ("cars", "three_span_half_car", "-ts_dt", "2e-3", "-output_interval", "0.02",
                  "-beam_elements_per_span", "4"),
-                ("mechanism", "r9_andrews", "-ts_max_time", "0.01"),
+                ("mechanism", "r9_andrews", "-ts_max_time", "0.01"), ("screen", "screen_line"),
                 ("crane", "overhead_crane", "-ts_dt", "5e-3", "-beam_elements_per_span", "4", "-ts_max_time", "4")):
             command = [BINARY, "-options_file", SCENES / f"{scene}.yml", "-output_file", f"{name}.h5", *words]
             run = subprocess.run(command, cwd=cls.folder, capture_output=True, text=True)
             if run.returncode != 0:
                 raise AssertionError(run.stdout + run.stderr)
         with_language(cls.folder / "sweep.h5", cls.folder / "german.h5", "de")
-        for name in (*OVER_TIME, "study", "sweep", "rail", "german"):
+        for name in (*OVER_TIME, "study", "sweep", "rail", "screen", "german"):
             page.write(cls.folder / f"{name}.h5", cls.folder / f"{name}.html")
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.close)
@@ -310,6 +310,24 @@ class PageTest(Computed):
         said = self.js("byId('verdicts').innerText")
         for value in file["verdicts/value"][:2]:
             self.assertIn(f"{shown(1e-6 * value):g}", said)
+
+    def test_a_heat_map_has_the_ratios_of_the_file_in_the_colours_of_its_scale(self):
+        self.open("screen")
+        self.browser.frames()
+        ratio = self.results("screen")["screen/ratio"][:]
+        colours = self.js("getComputedStyle(document.querySelector('.colour-scale')).backgroundImage.match(/rgb[^)]*\\)/g)")
+        self.assertEqual(colours, self.js("[0, 0.5, 1, 1.5, 2].map((ratio) => shade(ratio).replaceAll(',', ', '))"))
+        self.assertEqual(self.js("document.querySelector('.colour-scale-values').textContent"), "00.511.5≥ 2")
+        left, top, _, _ = self.box("page.heat.canvas")
+        cell = self.js("[page.heat.left + 1.5 * page.heat.width, page.heat.top + 0.5 * page.heat.height]")
+        self.browser.mouse("mouseMoved", left + cell[0], top + cell[1])
+        self.browser.frames()
+        value = float(self.js("page.heat.said.textContent").rsplit(" ", 1)[1])
+        self.assertLess(np.abs(ratio - value).min(), 1e-4 * value)
+        drawn = self.js(f"[...page.heat.canvas.getContext('2d').getImageData(devicePixelRatio * {cell[0]}, "
+                        f"devicePixelRatio * {cell[1]}, 1, 1).data].slice(0, 3).join(',')")
+        self.assertEqual(self.js(f"shade({value})"), f"rgb({drawn})")
+        self.assertEqual(self.browser.complaints(), [])
 
     def test_hostile_texts_are_texts(self):
         path = self.folder / "hostile.h5"
