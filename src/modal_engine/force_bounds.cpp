@@ -90,9 +90,9 @@ Jumps::Jumps(const integrate::ForceHistory& history)
 }
 
 ForceBounds::ForceBounds(const structure::ModalBridge& bridge, const integrate::ForceHistory& history,
-                         const Jumps& jumps, const std::vector<ForceEvent>& event)
+                         const Jumps& jumps, const std::vector<char>& all_kink)
     : history_(history),
-      event_(event),
+      all_kink_(all_kink),
       modes_(bridge.modes()),
       probes_(bridge.probes().count),
       size_(2 * modes_ + 6 * probes_),
@@ -128,8 +128,8 @@ void ForceBounds::add_interval(const structure::ModalBridge& bridge, std::size_t
   const std::vector<double>& start = history_.start;
   const bool is_last = interval + 1 == start.size();  // without forces on the bridge
   const double length = is_last ? 0.0 : start[interval + 1] - start[interval];
-  // Windows contain jumps only that are too small for an event.
-  const bool inside = event_[interval] < ForceEvent::all_kink;
+  // Windows contain jumps only that are too small to count.
+  const bool inside = all_kink_[interval] == 0;
   double *variation = numbers(interval), *static_part = variation + 2 * modes_, *by_speed = static_part + 3 * probes_;
   const structure::ModalProbes& probes = bridge.probes();
   for (std::size_t r = 0; r < 2 * probes_; ++r) {
@@ -181,7 +181,7 @@ ForceWindows ForceBounds::windows(double length) const {
     }
     windows.move_end.push_back(start[past]);
     if (parts == 1.0)
-      while (past + 1 < count && event_[past] < ForceEvent::all_kink && start[past + 1] - start[first] <= length)
+      while (past + 1 < count && all_kink_[past] == 0 && start[past + 1] - start[first] <= length)
         windows.move_end.push_back(start[++past]);
     add(start[past], first);
     double* sums = &windows.numbers[windows.numbers.size() - size_];

@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "integrate/force_history.hpp"
-#include "modal_engine/moving_force_task.hpp"
 #include "structure/modal_bridge.hpp"
 
 namespace traverse::modal_engine {
@@ -45,9 +44,9 @@ struct ForceWindows {
 
 class ForceBounds {
  public:
-  /// event: at the start of each interval.
+  /// all_kink: 1 for each interval at whose start a modal force has a kink or a jump.
   ForceBounds(const structure::ModalBridge& bridge, const integrate::ForceHistory& history, const Jumps& jumps,
-              const std::vector<ForceEvent>& event);
+              const std::vector<char>& all_kink);
 
   /// c: for each mode those of the deflections of all probes, then of the moments. WindowBounds has the accelerations.
   const std::vector<double>& by_amplitude() const { return by_amplitude_; }
@@ -66,7 +65,7 @@ class ForceBounds {
   double* numbers(std::size_t interval) { return &numbers_[interval * size_]; }
 
   const integrate::ForceHistory& history_;
-  const std::vector<ForceEvent>& event_;
+  const std::vector<char>& all_kink_;
   std::size_t modes_, probes_, size_;
   std::vector<double> numbers_;                 // of each interval, as ForceWindows::numbers
   std::vector<double> by_amplitude_, by_rate_;  // by_rate: D per magnitude of g', [mode][response]

@@ -38,7 +38,7 @@ MovingForcePassages::MovingForcePassages(const structure::ModalBridge& bridge, c
   self_weight_.insert(self_weight_.end(), moments.begin(), moments.end());
   const Jumps jumps(history_);
   find_kinks(jumps);
-  bounds_ = std::make_unique<ForceBounds>(bridge, history_, jumps, event_);
+  bounds_ = std::make_unique<ForceBounds>(bridge, history_, jumps, all_kink_);
 }
 
 /// If a modal force has a kink, all responses have one; otherwise the responses whose static correction has a kink.
@@ -58,17 +58,12 @@ void MovingForcePassages::find_kinks(const Jumps& jumps) {
   for (std::size_t i = 0; i < history_.start.size(); ++i) {
     const auto jumps_in = [&](std::size_t k) { return jumps.value[i * n + k] > negligible_kink * largest[k]; };
     const auto kink_in = [&](std::size_t k) { return jumps.slope[i * n + k] > negligible_kink * steepest[k]; };
-    ForceEvent event = ForceEvent::smooth;
-    for (std::size_t k = 0; k < modes; ++k) {
-      if (jumps_in(k)) event = ForceEvent::all_jump;
-      if (kink_in(k) && event != ForceEvent::all_jump) event = ForceEvent::all_kink;
-    }
-    for (std::size_t k = modes; k < n && event <= ForceEvent::kinks; ++k) {
-      if (!jumps_in(k) && !kink_in(k)) continue;
-      event = ForceEvent::kinks;
-      kink_.push_back(static_cast<int>(k < modes + probes ? k - modes : k - modes + probes));
-    }
-    event_.push_back(event);
+    const auto is_rough = [&](std::size_t k) { return jumps_in(k) || kink_in(k); };
+    bool all = false;
+    for (std::size_t k = 0; k < modes; ++k) all = all || is_rough(k);
+    for (std::size_t k = modes; k < n && !all; ++k)
+      if (is_rough(k)) kink_.push_back(static_cast<int>(k < modes + probes ? k - modes : k - modes + probes));
+    all_kink_.push_back(all ? 1 : 0);
     first_kink_.push_back(static_cast<int>(kink_.size()));
   }
 }
@@ -110,7 +105,6 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(
   task.channels = static_cast<int>(history_.channels);
   task.start = history_.start.data();
   task.coefficients = history_.coefficients.data();
-  task.event = event_.data();
   task.first_kink = first_kink_.data();
   task.kink = kink_.data();
   task.least_speed = std::exp2(engine::speed_octave(speeds.front()));

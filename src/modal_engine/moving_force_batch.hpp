@@ -53,7 +53,7 @@ class MovingForcePassages {
   const structure::ModalBridge& bridge_;
   integrate::ForceHistory history_;
   std::vector<double> q_, omega2_, damping_, self_weight_;
-  std::vector<ForceEvent> event_;
+  std::vector<char> all_kink_;  // 1 for each interval at whose start a modal force has a kink or a jump
   std::vector<int> first_kink_, kink_;
   std::unique_ptr<ForceBounds> bounds_;
   mutable std::map<double, ForceWindows> windows_;  // by their length, m; added when they are first needed

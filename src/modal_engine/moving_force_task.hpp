@@ -4,19 +4,11 @@
 
 namespace traverse::modal_engine {
 
-/// The effect on the responses when a force passes a break of the influence lines.
-enum class ForceEvent : char {
-  smooth,    // no kink that could be a peak
-  kinks,     // some responses have a kink or a jump
-  all_kink,  // the modes' forces have a kink
-  all_jump   // the modes' forces jump
-};
-
 struct ForceTask {
   int width = 0;                                  // 2, 4 or 8
   int runs = 0;                                   // number of runs; other lanes repeat the last one
   const double *speed = nullptr, *end = nullptr;  // in lanes: speed, m/s; distance travelled at the end of the run, m
-  double ds = 0.0;                                // distance between two samples, m
+  double ds = 0.0;                                // largest distance between two samples, m
   double instant = 0.0;                           // longest time for this distance in any lane, s
   double least_speed = 0.0;                       // not above the speed of any lane, m/s
 
@@ -25,7 +17,6 @@ struct ForceTask {
   long intervals = 0;
   int channels = 0;
   const double *start = nullptr, *coefficients = nullptr;
-  const ForceEvent* event = nullptr;  // event at the start of each interval
   // ForceWindows, ForceBounds.
   long windows = 0;
   const double *window_end = nullptr, *window_numbers = nullptr, *move_end = nullptr;
