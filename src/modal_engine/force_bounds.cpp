@@ -35,20 +35,15 @@ double bend_bound(const Cubic& c, double length) {
   return length * (std::abs(c[2]) + std::abs(c[2] + 3.0 * length * c[3]));
 }
 
-/// Lists the different lengths of the moves.
-void list_lengths(ForceWindows& windows) {
-  std::vector<double>& lengths = windows.length;
-  const double tolerance = same_length * windows.move_end.back();
-  double start = 0.0;
-  for (const double end : windows.move_end) {
-    const double length = end - start;
-    const auto known =
-        std::find_if(lengths.begin(), lengths.end(), [&](double one) { return std::abs(one - length) <= tolerance; });
-    const bool fits = known != lengths.end() || lengths.size() < most_lengths;
-    windows.move_length.push_back(fits ? static_cast<int>(known - lengths.begin()) : -1);
-    if (fits && known == lengths.end()) lengths.push_back(length);
-    start = end;
-  }
+/// The index of a length in a list, to which it is added if it is new; -1: the list is full.
+int index_of(double length, double tolerance, std::vector<double>& lengths) {
+  const auto known =
+      std::find_if(lengths.begin(), lengths.end(), [&](double one) { return std::abs(one - length) <= tolerance; });
+  const auto index = static_cast<int>(known - lengths.begin());
+  if (known != lengths.end()) return index;
+  if (lengths.size() == most_lengths) return -1;
+  lengths.push_back(length);
+  return index;
 }
 
 /// The largest magnitude in an interval of this length, or `least` if that is greater.
@@ -164,26 +159,27 @@ void ForceBounds::add_interval(const structure::ModalBridge& bridge, std::size_t
 ForceWindows ForceBounds::windows(double length) const {
   const std::vector<double>& start = history_.start;
   const std::size_t count = start.size();
+  const double tolerance = same_length * start.back();
   ForceWindows windows;
   windows.first_move = {0};
   windows.last = length;
-  const auto add = [&](double end, std::size_t first) {
-    windows.end.push_back(end);
+  const auto add_move = [&](double move, double end) {
+    windows.move_end.push_back(end);
+    windows.move_length.push_back(index_of(move, tolerance, windows.length));
+  };
+  const auto add_stretch = [&](std::size_t first, double parts) {
+    windows.end.push_back(windows.move_end.back());
+    windows.parts.push_back(parts);
     windows.first_move.push_back(static_cast<long>(windows.move_end.size()));
     windows.numbers.insert(windows.numbers.end(), &numbers_[first * size_], &numbers_[first * size_] + size_);
   };
   for (std::size_t first = 0, past = 0; first + 1 < count; first = past) {
     past = first + 1;
     const double whole = start[past] - start[first], parts = std::max(1.0, std::round(whole / length));
-    for (double part = 1.0; part < parts; part += 1.0) {
-      windows.move_end.push_back(start[first] + whole * (part / parts));
-      add(windows.move_end.back(), first);
-    }
-    windows.move_end.push_back(start[past]);
-    if (parts == 1.0)
-      while (past + 1 < count && all_kink_[past] == 0 && start[past + 1] - start[first] <= length)
-        windows.move_end.push_back(start[++past]);
-    add(start[past], first);
+    add_move(whole / parts, start[past]);
+    for (; parts == 1.0 && past + 1 < count && all_kink_[past] == 0 && start[past + 1] - start[first] <= length; ++past)
+      add_move(start[past + 1] - start[past], start[past + 1]);
+    add_stretch(first, parts);
     double* sums = &windows.numbers[windows.numbers.size() - size_];
     for (std::size_t more = first + 1; more < past; ++more) {
       const double* own = &numbers_[more * size_];
@@ -191,9 +187,8 @@ ForceWindows ForceBounds::windows(double length) const {
       for (std::size_t k = 2 * modes_; k < size_; ++k) sums[k] = std::max(sums[k], own[k]);
     }
   }
-  windows.move_end.push_back(start.back() + length);
-  add(windows.move_end.back(), count - 1);
-  list_lengths(windows);
+  add_move(length, start.back() + length);
+  add_stretch(count - 1, 1.0);
   return windows;
 }
 

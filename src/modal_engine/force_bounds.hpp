@@ -30,16 +30,18 @@ struct Jumps {
   std::vector<double> value, slope;       // [interval][channel]
 };
 
-/// Parts of the distance that are sampled as a whole. A window is passed in one move, or in several, of which each ends
-/// at the start of the next interval. The last window repeats without an end.
+/// Parts of the distance that are sampled as a whole, in stretches. A stretch is one window of one or several
+/// intervals, with a move over each interval, or one interval that is divided into equal windows, with one move each.
+/// The last stretch is a window that repeats without an end.
 struct ForceWindows {
-  std::vector<double> end;       // m travelled, of each window
-  std::vector<long> first_move;  // of each window; the last entry is the number of all moves
-  std::vector<double> move_end;  // m travelled, of each move
+  std::vector<double> end;       // m travelled, of each stretch
+  std::vector<double> parts;     // windows of each stretch
+  std::vector<long> first_move;  // of each stretch; the last entry is the number of all moves
+  std::vector<double> move_end;  // m travelled, of each move; of a divided interval the end of the interval
   std::vector<int> move_length;  // index in `length`, or -1
   std::vector<double> length;    // m: different lengths of moves, up to a limit
   double last = 0.0;             // m: length of the last window
-  std::vector<double> numbers;   // for each window: V and W of each mode, then S and D of each response
+  std::vector<double> numbers;   // for each stretch: V and W of each mode, then S and D of each response
 };
 
 class ForceBounds {

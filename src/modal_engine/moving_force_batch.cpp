@@ -112,9 +112,10 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(
   auto windows = windows_.find(window);
   if (windows == windows_.end()) windows = windows_.emplace(window, bounds_->windows(window)).first;
   const ForceWindows& own = windows->second;
-  task.windows = static_cast<long>(own.end.size());
-  task.window_end = own.end.data();
-  task.window_numbers = own.numbers.data();
+  task.stretches = static_cast<long>(own.end.size());
+  task.stretch_end = own.end.data();
+  task.stretch_parts = own.parts.data();
+  task.stretch_numbers = own.numbers.data();
   task.first_move = own.first_move.data();
   task.move_end = own.move_end.data();
   task.move_length = own.move_length.data();

@@ -38,10 +38,10 @@ class WindowBounds : Lanes<W> {
     }
   }
 
-  /// Bounds of the responses from the present distance to the end of a window, and for each kind of response the sum of
-  /// all probes and runs.
-  void find(long window, double end, Lane* bound, double* sums) {
-    const double *mode = task_.window_numbers + window * (2L * modes_ + 6L * probes_), *response = mode + 2L * modes_;
+  /// Bounds of the responses from the present distance to the end of a window in a stretch, and for each kind of
+  /// response the sum of all probes and runs.
+  void find(long stretch, double end, Lane* bound, double* sums) {
+    const double *mode = task_.stretch_numbers + stretch * (2L * modes_ + 6L * probes_), *response = mode + 2L * modes_;
     find_amplitudes(mode, end - motion_.s);
     for (int kind = 0, i = 0; kind < 3; ++kind) {
       Lane sum{};

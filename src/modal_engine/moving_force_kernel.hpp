@@ -61,8 +61,8 @@ class MovingForceBatch : Lanes<W> {
 
   /// A window with the state at its start and the bounds of the responses in it.
   struct Window {
-    double start, end;  // m travelled
-    long number, interval, last_interval;
+    double start, end;             // m travelled
+    long interval, last_interval;  // at its start and before its end
     Lane *state, *bound;
     double bounds[3];  // sums of the bounds of deflections, accelerations and moments
     bool sampled;
@@ -95,22 +95,36 @@ class MovingForceBatch : Lanes<W> {
   bool begin_windows() {
     for (count_ = 0; count_ < capacity_ && find_runs(motion_.s); ++count_) {
       Window& own = windows_[count_];
-      const bool repeats = next_window_ + 1 == task_.windows;
-      own.number = next_window_;
       own.start = motion_.s;
       own.interval = motion_.interval;
-      own.end = repeats ? motion_.s + task_.last_window : task_.window_end[next_window_];
+      own.end = end_of_window();
       own.sampled = false;
       motion_.copy_state(own.state);
-      bounds_.find(own.number, own.end, own.bound, own.bounds);
-      for (long k = task_.first_move[own.number]; k < task_.first_move[own.number + 1]; ++k) {
+      bounds_.find(stretch_, own.end, own.bound, own.bounds);
+      const long first = task_.first_move[stretch_], past = task_.first_move[stretch_ + 1];
+      for (long k = first; k < past; ++k) {
         own.last_interval = motion_.interval;
-        motion_.make_move(k, repeats ? own.end : task_.move_end[k]);
+        motion_.make_move(k, past == first + 1 ? own.end : task_.move_end[k]);
       }
       motion_.place_again();
-      if (!repeats) ++next_window_;
+      next_window();
     }
     return count_ > 0;
+  }
+  bool in_last_stretch() const { return stretch_ + 1 == task_.stretches; }
+  double end_of_window() const {
+    if (in_last_stretch()) return motion_.s + task_.last_window;
+    const double end = task_.stretch_end[stretch_], parts = task_.stretch_parts[stretch_];
+    if (part_ + 1.0 == parts) return end;
+    const double start = stretch_ > 0 ? task_.stretch_end[stretch_ - 1] : 0.0;
+    return start + (end - start) * ((part_ + 1.0) / parts);
+  }
+  void next_window() {
+    if (in_last_stretch()) return;
+    part_ += 1.0;
+    if (part_ < task_.stretch_parts[stretch_]) return;
+    part_ = 0.0;
+    ++stretch_;
   }
 
   void record_bounds() {
@@ -209,7 +223,9 @@ class MovingForceBatch : Lanes<W> {
   Lane speed_{}, end_{};
   double next_end_ = 0.0;      // distance at which the next of the runs ends, m
   Window* windows_ = nullptr;  // windows that are treated together
-  long capacity_ = 0, count_ = 0, next_window_ = 0;
+  long capacity_ = 0, count_ = 0;
+  long stretch_ = 0;           // of the next window
+  double part_ = 0.0;          // windows before it in this stretch
   long last_interval_ = 0;     // of the window that is sampled
   Lane* end_state_ = nullptr;  // after these windows
 };

@@ -18,8 +18,8 @@ struct ForceTask {
   int channels = 0;
   const double *start = nullptr, *coefficients = nullptr;
   // ForceWindows, ForceBounds.
-  long windows = 0;
-  const double *window_end = nullptr, *window_numbers = nullptr, *move_end = nullptr;
+  long stretches = 0;
+  const double *stretch_end = nullptr, *stretch_parts = nullptr, *stretch_numbers = nullptr, *move_end = nullptr;
   const long* first_move = nullptr;
   const int* move_length = nullptr;
   int lengths = 0;
