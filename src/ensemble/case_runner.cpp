@@ -291,8 +291,9 @@ std::vector<CaseResult> CaseRunner::greatest(std::size_t train, std::span<const 
     }
     runs.push_back({place, one.speed, runner->duration(train, one.speed)});
   }
+  const CaseRunner& any = *runners.front();
   const auto peaks =
-      greatest_peaks(passages, runs, runners.front()->scene_.sweep->instants, [] { return caught_signal() == 0; });
+      greatest_peaks(passages, runs, any.scene_.sweep->instants, any.width(), [] { return caught_signal() == 0; });
   std::vector<CaseResult> results(runners.size());
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     results[i].peaks = peaks[i];

@@ -3,12 +3,10 @@
 #include "ensemble/greatest_peaks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 
-#include "engine/processor.hpp"
 #include "engine/speed_class.hpp"
 
 namespace traverse::app {
@@ -18,8 +16,7 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 // Peaks that equal the greatest one are found, so that the earliest of them is the same in any order of the runs.
 constexpr double not_quite = 1.0 - 1e-12;
 
-constexpr std::array quantities = {&base::ProbePeaks::deflection, &base::ProbePeaks::acceleration,
-                                   &base::ProbePeaks::moment};
+using modal_engine::responses;
 
 /// Replaces a peak by a greater one, or by the earlier one of two that are equal.
 void take_greater(base::Extreme& peak, const base::Extreme& other) {
@@ -30,8 +27,14 @@ void take_greater(base::Extreme& peak, const base::Extreme& other) {
 class GreatestPeaks {
  public:
   GreatestPeaks(const std::vector<const modal_engine::MovingForcePassages*>& trains, std::span<const ForceRun> runs,
-                double samples, const std::function<bool()>& proceed)
-      : trains_(trains), runs_(runs), samples_(samples), proceed_(proceed), bounds_(runs.size()), done_(runs.size()) {}
+                double samples, std::size_t width, const std::function<bool()>& proceed)
+      : trains_(trains),
+        runs_(runs),
+        samples_(samples),
+        width_(width),
+        proceed_(proceed),
+        bounds_(runs.size()),
+        done_(runs.size()) {}
 
   std::vector<std::vector<base::ProbePeaks>> find() {
     find_bounds();
@@ -56,7 +59,7 @@ class GreatestPeaks {
     std::map<std::pair<std::size_t, int>, std::vector<Batch>> found;
     for (const std::size_t run : runs) {
       std::vector<Batch>& own = found[{runs_[run].train, class_of(runs_[run].speed)}];
-      if (own.empty() || own.back().size() == engine::best_width()) own.emplace_back();
+      if (own.empty() || own.back().size() == width_) own.emplace_back();
       own.back().push_back(run);
     }
     std::vector<Batch> all;
@@ -96,8 +99,8 @@ class GreatestPeaks {
       if (std::find(found.begin(), found.end(), largest) == found.end()) found.push_back(largest);
     };
     for (std::size_t p = 0; p < bounds_.front().size(); ++p) {
-      for (const auto quantity : quantities)
-        add_largest([&](std::size_t run) { return (bounds_[run][p].*quantity).value; });
+      for (const auto response : responses)
+        add_largest([&](std::size_t run) { return (bounds_[run][p].*response).value; });
       add_largest(
           [&](std::size_t run) { return bounds_[run][p].deflection.value / static_deflection(runs_[run].train, p); });
     }
@@ -110,7 +113,7 @@ class GreatestPeaks {
     for (std::size_t p = 0; p < least.size(); ++p) {
       double& deflection = least[p].deflection.value;
       deflection = std::min(deflection, amplification_[p] * static_deflection(train, p));
-      for (const auto quantity : quantities) (least[p].*quantity).value *= not_quite;
+      for (const auto response : responses) (least[p].*response).value *= not_quite;
     }
     return least;
   }
@@ -125,8 +128,8 @@ class GreatestPeaks {
   }
   static bool exceeds(const std::vector<base::ProbePeaks>& bounds, const std::vector<base::ProbePeaks>& least) {
     for (std::size_t p = 0; p < least.size(); ++p)
-      for (const auto quantity : quantities)
-        if ((bounds[p].*quantity).value > (least[p].*quantity).value) return true;
+      for (const auto response : responses)
+        if ((bounds[p].*response).value > (least[p].*response).value) return true;
     return false;
   }
 
@@ -143,9 +146,9 @@ class GreatestPeaks {
   }
   void add(std::size_t train, const std::vector<base::ProbePeaks>& run) {
     for (std::size_t p = 0; p < run.size(); ++p) {
-      for (const auto quantity : quantities) {
-        take_greater(greatest_[train][p].*quantity, run[p].*quantity);
-        if ((run[p].*quantity).value > (least_[p].*quantity).value) least_[p].*quantity = run[p].*quantity;
+      for (const auto response : responses) {
+        take_greater(greatest_[train][p].*response, run[p].*response);
+        if ((run[p].*response).value > (least_[p].*response).value) least_[p].*response = run[p].*response;
       }
       const double at_rest = static_deflection(train, p);
       if (at_rest > 0.0 && run[p].deflection.value / at_rest > amplification_[p])
@@ -156,6 +159,7 @@ class GreatestPeaks {
   const std::vector<const modal_engine::MovingForcePassages*>& trains_;
   std::span<const ForceRun> runs_;
   double samples_;
+  std::size_t width_;
   const std::function<bool()>& proceed_;
   std::vector<std::vector<base::ProbePeaks>> bounds_, greatest_;  // of each run, of each train
   std::vector<char> done_;
@@ -169,8 +173,8 @@ class GreatestPeaks {
 
 std::vector<std::vector<base::ProbePeaks>> greatest_peaks(
     const std::vector<const modal_engine::MovingForcePassages*>& trains, std::span<const ForceRun> runs, double samples,
-    const std::function<bool()>& proceed) {
-  return GreatestPeaks(trains, runs, samples, proceed).find();
+    std::size_t width, const std::function<bool()>& proceed) {
+  return GreatestPeaks(trains, runs, samples, width, proceed).find();
 }
 
 }  // namespace traverse::app

@@ -18,9 +18,10 @@ struct ForceRun {
 
 /// The greatest peaks of the runs of each train at each probe. Peaks are NaN if they are not the greatest of all runs;
 /// the greatest of all trains, and the greatest ratios of deflections to the static ones, are those of all runs. They
-/// do not depend on the order of the runs. samples: in a period of the fastest mode. Empty if `proceed` returned false.
+/// do not depend on the order of the runs. samples: in a period of the fastest mode; width: runs in a batch, at most
+/// `engine::widest`. Empty if `proceed` returned false.
 std::vector<std::vector<base::ProbePeaks>> greatest_peaks(
     const std::vector<const modal_engine::MovingForcePassages*>& trains, std::span<const ForceRun> runs, double samples,
-    const std::function<bool()>& proceed);
+    std::size_t width, const std::function<bool()>& proceed);
 
 }  // namespace traverse::app

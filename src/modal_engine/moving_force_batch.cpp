@@ -6,7 +6,6 @@
 #include "modal_engine/moving_force_batch.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -58,11 +57,11 @@ void MovingForcePassages::find_kinks(const Jumps& jumps) {
   for (std::size_t i = 0; i < history_.start.size(); ++i) {
     const auto jumps_in = [&](std::size_t k) { return jumps.value[i * n + k] > negligible_kink * largest[k]; };
     const auto kink_in = [&](std::size_t k) { return jumps.slope[i * n + k] > negligible_kink * steepest[k]; };
-    const auto is_rough = [&](std::size_t k) { return jumps_in(k) || kink_in(k); };
+    const auto is_broken = [&](std::size_t k) { return jumps_in(k) || kink_in(k); };
     bool all = false;
-    for (std::size_t k = 0; k < modes; ++k) all = all || is_rough(k);
+    for (std::size_t k = 0; k < modes; ++k) all = all || is_broken(k);
     for (std::size_t k = modes; k < n && !all; ++k)
-      if (is_rough(k)) kink_.push_back(static_cast<int>(k < modes + probes ? k - modes : k - modes + probes));
+      if (is_broken(k)) kink_.push_back(static_cast<int>(k < modes + probes ? k - modes : k - modes + probes));
     all_kink_.push_back(all ? 1 : 0);
     first_kink_.push_back(static_cast<int>(kink_.size()));
   }
@@ -135,11 +134,9 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(
   task.moment_by_rate = forms.moment_by_rate.data();
   task.moment_by_acceleration = forms.moment_by_acceleration.data();
   task.weight = self_weight_.data();
-  constexpr std::array quantities = {&base::ProbePeaks::deflection, &base::ProbePeaks::acceleration,
-                                     &base::ProbePeaks::moment};
   std::vector<double> none(3 * probes, 0.0);  // of each response: the result if no peak is greater
   for (std::size_t i = 0; i < none.size() && !least.empty(); ++i) {
-    const double limit = (least[i % probes].*quantities[i / probes]).value;
+    const double limit = (least[i % probes].*responses[i / probes]).value;
     std::fill_n(peak.data() + i * width, width, std::max(limit, 0.0));
     if (limit >= 0.0) none[i] = std::numeric_limits<double>::quiet_NaN();
   }

@@ -2,6 +2,7 @@
 // train at several speeds are computed together, one in each SIMD lane.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -15,6 +16,10 @@
 #include "structure/modal_bridge.hpp"
 
 namespace traverse::modal_engine {
+
+/// The responses at a probe, in the order of ForceTask.
+inline constexpr std::array responses = {&base::ProbePeaks::deflection, &base::ProbePeaks::acceleration,
+                                         &base::ProbePeaks::moment};
 
 /// One train of forces on one bridge.
 class MovingForcePassages {

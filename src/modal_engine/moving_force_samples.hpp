@@ -55,7 +55,8 @@ class ForceSamples : Lanes<W> {
     }
   }
 
-  /// Begins with the samples of a window, if one of its bounds exceeds a peak in some run.
+  /// Finds the responses of interest in a window: those with a bound above the peak of some run. Returns false if there
+  /// are none.
   bool begin_window(const Lane* bound) {
     bound_ = bound;
     first_sample_ = samples_ + 1;
@@ -74,7 +75,7 @@ class ForceSamples : Lanes<W> {
     for (int k = 0; k < last_[2]->count && any(runs); ++k) check_last_sample(last_[2]->flagged[k]);
   }
 
-  /// Samples all responses at this distance.
+  /// Samples the responses of interest at this distance.
   void sample() {
     Instant* const oldest = last_[0];
     last_[0] = last_[1];
@@ -106,6 +107,7 @@ class ForceSamples : Lanes<W> {
   void sample_ends(Mask ending, Lane at) {
     const Lane since = at - task_.start[motion_.interval];
     for (int i = 0; i < 3 * probes_; ++i) {
+      if (!exceeds(bound_[i], peak[i])) continue;
       Lane static_part{};
       if (i < probes_ || i >= 2 * probes_) static_part = static_in_lanes(i, since);
       const Lane value = response(i, static_part, motion_.q, motion_.r, motion_.a);
@@ -287,7 +289,7 @@ class ForceSamples : Lanes<W> {
     now.count += exceeds(magnitude(value), limit_[i]) != 0 ? 1 : 0;
   }
 
-  /// Like flag(), for a single run: here the lanes are neighbouring probes.
+  /// Flags all responses of a group of probes that may be the largest, for a single run: the lanes are the probes.
   void flag_row(int p, Instant& now) const {
     using Row = Lanes<in_a_row>;
     const auto at = [](const double* numbers) { return *reinterpret_cast<const typename Row::Unaligned*>(numbers); };

@@ -111,7 +111,7 @@ void run_greatest(StudyScenes& scenes, const std::vector<std::size_t>& group,
 }
 
 /// The runs of each row of the table.
-Groups rows_of(const Study& study) {
+Groups runs_of_rows(const Study& study) {
   const std::size_t axis = study.sensitivity->axis;
   Groups rows(study.axes[axis].length);
   for (std::size_t run = 0; run < study.runs(); ++run) rows[study.place(run, axis)].push_back(run);
@@ -123,7 +123,7 @@ Groups rows_of(const Study& study) {
 /// ranks end at about the same time.
 Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   const bool sweep = scenes.study().sweep;
-  if (scenes.only_greatest()) return rows_of(scenes.study());
+  if (scenes.only_greatest()) return runs_of_rows(scenes.study());
   Groups groups = scenes.groups(sweep ? known : std::vector<char>());
   std::erase_if(groups, [&](const std::vector<std::size_t>& group) {
     return std::all_of(group.begin(), group.end(), [&](std::size_t run) { return known[run] != 0; });

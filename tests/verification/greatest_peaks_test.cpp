@@ -57,7 +57,7 @@ class GreatestPeaks : public testing::Test {
     return found;
   }
   std::vector<Peaks> found(const std::vector<app::ForceRun>& runs) const {
-    return app::greatest_peaks(passages_, runs, 20.0, [] { return true; });
+    return app::greatest_peaks(passages_, runs, 20.0, 8, [] { return true; });
   }
 
   std::unique_ptr<beam::Beam> beam_;

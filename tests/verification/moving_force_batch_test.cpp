@@ -136,12 +136,16 @@ ResponseExtremes seen_closely(const Bridge& bridge, const Case& c, double speed,
   return peaks;
 }
 
-std::vector<ResponseExtremes> side_by_side(const Bridge& bridge, const Case& c, const std::vector<double>& of,
-                                           double instants) {
+std::vector<double> ends_of(const Case& c, const std::vector<double>& of) {
   std::vector<double> ends;
   for (const double speed : of) ends.push_back(end_of(c, speed));
+  return ends;
+}
+
+std::vector<ResponseExtremes> side_by_side(const Bridge& bridge, const Case& c, const std::vector<double>& of,
+                                           double instants) {
   const modal_engine::MovingForcePassages passages(bridge.modal(), bridge.load(), c.equilibrium);
-  return passages.peaks(of, ends, instants, [] { return true; });
+  return passages.peaks(of, ends_of(c, of), instants, [] { return true; });
 }
 
 constexpr auto quantities = {&ProbePeaks::deflection, &ProbePeaks::acceleration, &ProbePeaks::moment};
@@ -211,9 +215,7 @@ TEST_P(MovingForcePassages, NoPeakExceedsItsBound) {
   const Case& c = GetParam();
   const Bridge bridge(c);
   const modal_engine::MovingForcePassages passages(bridge.modal(), bridge.load(), c.equilibrium);
-  std::vector<double> ends;
-  for (const double speed : speeds) ends.push_back(end_of(c, speed));
-  const auto bounds = passages.bounds(speeds, ends, 20.0, [] { return true; });
+  const auto bounds = passages.bounds(speeds, ends_of(c, speeds), 20.0, [] { return true; });
   const std::vector<ResponseExtremes> fine = side_by_side(bridge, c, speeds, 200.0);
   const bool usual = *std::max_element(bridge.modal().sigma().begin(), bridge.modal().sigma().end()) <
                      0.1 * bridge.modal().omega().back();
@@ -231,12 +233,10 @@ TEST_P(MovingForcePassages, SmallPeaksAreLeftOut) {
   const Case& c = GetParam();
   const Bridge bridge(c);
   const modal_engine::MovingForcePassages passages(bridge.modal(), bridge.load(), c.equilibrium);
-  std::vector<double> ends;
-  for (const double speed : speeds) ends.push_back(end_of(c, speed));
   const auto go_on = [] { return true; };
-  const std::vector<ResponseExtremes> all = passages.peaks(speeds, ends, 20.0, go_on);
+  const std::vector<ResponseExtremes> all = passages.peaks(speeds, ends_of(c, speeds), 20.0, go_on);
   ResponseExtremes least = all[3];
-  const std::vector<ResponseExtremes> large = passages.peaks(speeds, ends, 20.0, go_on, least);
+  const std::vector<ResponseExtremes> large = passages.peaks(speeds, ends_of(c, speeds), 20.0, go_on, least);
   for (std::size_t i = 0; i < speeds.size(); ++i)
     for (std::size_t p = 0; p < least.size(); ++p)
       for (const auto quantity : quantities) {
