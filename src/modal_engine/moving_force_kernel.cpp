@@ -4,7 +4,7 @@
 namespace traverse::modal_engine::TRAVERSE_LANES_TARGET {
 
 /// The number of doubles in ForceTask::work.
-long work_size(const ForceTask& task) { return size_of_work<MovingForceBatch>(task); }
-void run_passages(const ForceTask& task) { run_with_width<MovingForceBatch>(task); }
+long work_size(const ForceTask& task) { return engine::size_of_work<MovingForceBatch>(task); }
+void run_passages(const ForceTask& task) { engine::run_with_width<MovingForceBatch>(task); }
 
 }  // namespace traverse::modal_engine::TRAVERSE_LANES_TARGET

@@ -21,8 +21,6 @@ namespace {
 
 using engine::allocate_from;
 using engine::Lanes;
-using engine::run_with_width;
-using engine::size_of_work;
 
 template <int W>
 class ForcedModes : Lanes<W> {
