@@ -127,8 +127,8 @@ void Batch::start_structure() {
     beam_.modal_stage = arrays_.add(unknowns_);
     beam_.pivot = arrays_.add(unknowns_);
   } else {
-    beam_.pivot = arrays_.add(columns * bb);
-    beam_.factor = arrays_.add(columns * bb);
+    beam_.pivot = arrays_.add(unknowns_);
+    beam_.factor = arrays_.add(structure_lanes_.factor_size());
     beam_.inverse = arrays_.add(2 * columns * bb);
     beam_.middle = beam_.columns / 2;
   }

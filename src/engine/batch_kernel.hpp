@@ -31,7 +31,7 @@ inline void place_wheel(const BatchTask& task, int at, int lane) {
   }
 }
 
-/// Calls function(structure) with the BeamRows of the task's block size or with its ModalRows.
+/// Calls function(structure) with the task's BeamRows or ModalRows.
 template <class Use>
 void with_structure(BeamTask& task, Use use) {
   if (task.shape != nullptr)
@@ -40,8 +40,6 @@ void with_structure(BeamTask& task, Use use) {
     use(BeamRows<2>{task});
   else if (task.block == 3)
     use(BeamRows<3>{task});
-  else if (task.block == 5)
-    use(BeamRows<5>{task});
   else
     use(BeamRows<0>{task});
 }
@@ -120,15 +118,13 @@ void solve_batch_stage(const BatchTask& task, int stage, double distance, bool n
   BeamTask& beam = *task.beam;
   const Row rate = row(train.stage[stage].rate), displacement = row(train.stage[stage].displacement);
   for (int k = 0; k < train.blocks; ++k) *rows(task.distance[k]) = Rows::fill(distance);
-  combine(stage + 1, train.stage[stage], 0, beam.unknowns, beam.v, beam.w, beam.a, rows(beam.v_predicted),
-          rows(beam.w_predicted));
   predict(train, stage, task.work);
   const bool moved = place_wheels(task, new_step);
   interpolate_heights(task, 0.0);
   Row& failed = *rows(task.failed);
   with_structure(beam, [&](const auto& structure) {
     if (moved) structure.set_window(train, rate, displacement);
-    structure.find_residual(rate, displacement);
+    structure.find_residual(train, stage);
     structure.begin_passes();
     RowMask iterating = failed == Row{};
     for (int k = 0; k < train.blocks; ++k) rows(train.converged)[k] = Row{};
@@ -144,8 +140,7 @@ void solve_batch_stage(const BatchTask& task, int stage, double distance, bool n
       failed = iterating ? Rows::fill(not_converged) : failed;
       break;
     }
-    structure.end_passes();
-    structure.accelerations(rate, rows(beam.a[stage + 1]));
+    structure.end_passes(train, stage);
   });
   end_stage_of_train<kind>(train, stage, false);
 }

@@ -112,18 +112,12 @@ bool BatchStructure::same_layout(const BatchStructure& other) const {
 void BatchStructure::read_matrices(const std::vector<double>& rest) {
   const auto read = [&](Mat matrix) { return solve::BlockTridiagonal::from(matrix, task_.block); };
   const solve::BlockTridiagonal mass = read(beam_.mass()), stiffness = read(beam_.stiffness());
-  solve::BlockTridiagonal damping = mass;
   task_.proportional = beam_.springs() == nullptr && beam_.dampers() == nullptr && beam_.rail() == nullptr;
-  if (task_.proportional)
-    damping.combine(by_mass_, mass, 0.0, mass, by_stiffness_, stiffness);
-  else
-    damping = read(beam_.damping());
   mass_ = by_columns(mass);
-  damping_ = by_columns(damping);
+  if (!task_.proportional) damping_ = by_columns(read(beam_.damping()));
   stiffness_ = by_columns(stiffness);
   dead_load_ = product(stiffness, rest);  // load of these displacements; settlements are not in the matrices' columns
   task_.unknowns = task_.block * task_.columns;
-  task_.held = held_.data();
 }
 
 void BatchStructure::read_modes(const std::vector<double>& rest) {

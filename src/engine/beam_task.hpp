@@ -7,24 +7,39 @@
 namespace traverse::engine {
 
 inline constexpr int most_unknowns_of_a_column = 8;
+inline constexpr int most_dense = 3;  // up to so many unknowns of a column are all linked with one another
+inline constexpr int most_links = most_unknowns_of_a_column * (most_unknowns_of_a_column - 1) / 2;
 
-/// The matrices' blocks of a column: of its unknowns, and of these with the next column's, each by columns. They are
-/// numbers if all runs have the same, otherwise rows.
-struct ColumnMatrices {
+/// Entries of M, C and K by unknowns: those of unknown i are begin[i] to begin[i + 1] - 1. Entry e couples it with
+/// unknown[e]; its values are at value[e], which it shares with the entry on the other side of the diagonal. Without C
+/// if it is proportional.
+struct MatrixEntries {
+  const int *begin = nullptr, *unknown = nullptr, *value = nullptr;
   const double *mass = nullptr, *damping = nullptr, *stiffness = nullptr;
-  bool rows = false;
 };
 
-/// M a + C w + K v = P + forces of wheels, with block tridiagonal matrices. An *entry* of a constant vector is a number
-/// if all runs share the structure, otherwise a row.
+/// How a column is eliminated: its unknowns, those that no other column is coupled to first, and the links between them
+/// in the factor. Unknowns count from the column's first.
+struct ColumnOrder {
+  int count = 0, unknown[most_unknowns_of_a_column] = {};
+  int links = 0, earlier[most_links] = {}, later[most_links] = {};  // in the order of `later`
+};
+
+/// The unknowns of two neighbouring columns that are linked if the further one is eliminated before the nearer one.
+struct PairOrder {
+  int further_count = 0, further[most_unknowns_of_a_column] = {};
+  int nearer_count = 0, nearer[most_unknowns_of_a_column] = {};
+};
+
+/// M a + C w + K v = P + forces of wheels; a column is coupled with its neighbours only. An *entry* of a constant
+/// vector is a number if all runs share the structure, otherwise a row.
 struct BeamTask {
   bool shared = true;                                        // all runs share the structure
   int block = 2, columns = 0;                                // unknowns of a column
   int unknowns = 0;                                          // block*columns, or number of modes
-  const ColumnMatrices* column = nullptr;                    // one for each column
+  MatrixEntries equal, different;                            // numbers, equal in all runs; rows
   bool proportional = false;                                 // C = by_mass M + by_stiffness K
   const double *by_mass = nullptr, *by_stiffness = nullptr;  // rows: 1/s, s
-  const char* held = nullptr;                                // for each unknown: whether a support holds it
   // An entry for each unknown: P, N and N m; by modes the displacements under P, m and rad.
   const double* dead = nullptr;
 
@@ -33,11 +48,15 @@ struct BeamTask {
   char* under_wheels = nullptr;   // for each column: ModalRows::set_window
   double* modal_stage = nullptr;  // a row for each mode: its coordinate under the forces of the last pass
 
-  // J = M + rate C + displacement K as J_i = F_i J_(i -+ 1) + ..., eliminated from both ends to the middle column:
-  // inverse pivots, and the factor of every pair of neighbours, blocks of rows by columns. The window of columns from
-  // first to last includes the middle.
+  // J = M + rate C + displacement K = L D L^T, eliminated from both ends to the middle column. The window of columns
+  // from first to last includes the middle.
   int first = 0, middle = 0, last = 0;
-  double *pivot = nullptr, *factor = nullptr;
+  const ColumnOrder* const* order = nullptr;                              // of each column
+  const PairOrder *const *to_right = nullptr, *const *to_left = nullptr;  // of each pair, if the nearer column is there
+  double* pivot = nullptr;                                                // rows: 1/D for each unknown, 0 if it is held
+  double* factor = nullptr;  // rows of L: those of column c from link_begin[c], of pair c and c + 1 from pair_begin[c],
+                             // [nearer][further]
+  const int *link_begin = nullptr, *pair_begin = nullptr;
   double* inverse = nullptr;  // inverse of J within the band: a block for each column, then one for each pair
 
   // A row for each unknown: m, rad and their rates. v_stage and work always have nodal unknowns.
@@ -45,7 +64,7 @@ struct BeamTask {
   double *v_predicted = nullptr, *w_predicted = nullptr;
   double* v_stage = nullptr;   // displacements under the forces of the last pass: TrainTask::nodal
   double* residual = nullptr;  // P - C w - K v of the predicted state
-  double* solution = nullptr;  // accelerations of the stage, without the part in BeamRows::find_residual
+  double* solution = nullptr;  // x of BeamRows::find_residual; the stage's accelerations if that is what x is
   double* work = nullptr;      // loads, then solutions
   // The upper half of the compliance matrix of every element at its transverse unknowns, row by row; off-diagonal
   // entries twice: 10 rows for each element.

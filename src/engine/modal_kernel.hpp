@@ -37,8 +37,10 @@ struct ModalRows {
   }
 
   /// The modal forces without the forces of wheels.
-  void find_residual(Row /*rate*/, Row /*displacement*/) const {
-    const Row *v = rows(t.v_predicted), *w = rows(t.w_predicted);
+  void find_residual(const TrainTask& train, int stage) const {
+    Row *v = rows(t.v_predicted), *w = rows(t.w_predicted);
+    combine(stage + 1, train.stage[stage], 0, t.unknowns, t.v, t.w, t.a, v, w);
+    t.solution = t.a[stage + 1];
     const Entry *damping = entries<Entry>(t.modal_damping), *stiffness = entries<Entry>(t.modal_stiffness);
     for (int i = 0; i < t.unknowns; ++i) rows(t.residual)[i] = -(damping[i] * w[i] + stiffness[i] * v[i]);
   }
@@ -55,7 +57,6 @@ struct ModalRows {
   }
 
   void begin_passes() const {}
-  void end_passes() const {}
   void clear_loads() const {
     for (int i = 0; i < t.columns * t.block; ++i) rows(t.work)[i] = Row{};
   }
@@ -79,9 +80,7 @@ struct ModalRows {
     });
   }
 
-  void accelerations(Row /*rate*/, Row* a) const {
-    for (int i = 0; i < t.unknowns; ++i) a[i] = rows(t.solution)[i];
-  }
+  void end_passes(const TrainTask& /*train*/, int /*stage*/) const {}
 
  private:
   const Entry* shapes(int unknown) const { return entries<Entry>(t.shape) + static_cast<long>(unknown) * t.unknowns; }

@@ -14,8 +14,12 @@ StructureLanes::StructureLanes(std::span<const BatchStructure* const> of_lanes)
     return entries((first.*numbers).size(), [&](const BatchStructure& one) { return (one.*numbers).data(); });
   };
   if (first.modal_ == nullptr) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(task_.columns); ++c) add_column(c);
-    task_.column = columns_.data();
+    std::vector<ColumnBlocks> blocks;
+    for (const BatchStructure* one : task_.shared ? of_lanes.first(1) : of_lanes)
+      blocks.push_back(
+          {one->mass_.data(), task_.proportional ? nullptr : one->damping_.data(), one->stiffness_.data()});
+    matrices_.emplace(task_.block, first.held_, blocks);
+    matrices_->set(task_);
   } else {
     task_.shape = of(&BatchStructure::shape_);
     task_.modal_damping = of(&BatchStructure::damping_);
@@ -60,26 +64,6 @@ const double* StructureLanes::in_rows(std::size_t count, Numbers numbers) {
     for (std::size_t i = 0; i < count; ++i) rows[i * lanes + lane] = own[i];
   }
   return rows;
-}
-
-/// The matrices of a column that is equal in all structures are the numbers of the first structure.
-void StructureLanes::add_column(std::size_t column) {
-  const auto block = static_cast<std::size_t>(task_.block), size = 2 * block * block;
-  const auto of = [&](const BatchStructure& one, std::vector<double> BatchStructure::*matrix) {
-    return (one.*matrix).data() + column * size;
-  };
-  const BatchStructure& first = *of_lanes_.front();
-  const auto matrices = {&BatchStructure::mass_, &BatchStructure::damping_, &BatchStructure::stiffness_};
-  const bool equal = std::all_of(of_lanes_.begin(), of_lanes_.end(), [&](const BatchStructure* one) {
-    return one == &first || std::all_of(matrices.begin(), matrices.end(), [&](auto matrix) {
-             return std::equal(of(first, matrix), of(first, matrix) + size, of(*one, matrix));
-           });
-  });
-  const auto blocks = [&](std::vector<double> BatchStructure::*matrix) {
-    return equal ? of(first, matrix) : in_rows(size, [&](const BatchStructure& one) { return of(one, matrix); });
-  };
-  columns_.push_back(
-      {blocks(&BatchStructure::mass_), blocks(&BatchStructure::damping_), blocks(&BatchStructure::stiffness_), !equal});
 }
 
 void StructureLanes::add_probe(std::size_t index) {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/batch.hpp"
+#include "engine/matrix_lanes.hpp"
 #include "engine/processor.hpp"
 
 namespace traverse::engine {
@@ -17,6 +19,8 @@ class StructureLanes {
 
   /// Without the arrays of the runs' motion.
   const BeamTask& task() const { return task_; }
+  /// The number of rows of BeamTask::factor.
+  std::size_t factor_size() const { return matrices_ ? matrices_->factor_size() : 0; }
   const std::vector<ProbeForms>& probes() const { return probes_; }
   const std::vector<SurfaceTable>& surfaces() const { return surfaces_; }
   /// The index of the surface of a lane's wheels with this radius, m.
@@ -32,12 +36,11 @@ class StructureLanes {
   const double* entries(std::size_t count, Numbers numbers);
   template <class Numbers>
   const double* in_rows(std::size_t count, Numbers numbers);
-  void add_column(std::size_t column);
   void add_probe(std::size_t index);
 
   std::span<const BatchStructure* const> of_lanes_;
   BeamTask task_;
-  std::vector<ColumnMatrices> columns_;
+  std::optional<MatrixLanes> matrices_;  // by elements
   std::vector<ProbeForms> probes_;
   std::vector<SurfaceTable> surfaces_;
   std::vector<std::size_t> first_surface_;  // of each lane

@@ -52,7 +52,7 @@ Eigen::VectorXd copy_of(Vec vector) {
 
 /// The unknowns of TAO are the changes of the unknowns u from their start times their sensitivity there: numbers of
 /// standard errors. So is the gradient. The regularisation of TAO's method begins at 0.
-struct Scaled {
+struct ScaledProblem {
   Problem& problem;
   Eigen::VectorXd start, scale;
 
@@ -61,14 +61,14 @@ struct Scaled {
 
 PetscErrorCode find_residuals(Tao, Vec x, Vec r, void* context) {
   return base::guard([&] {
-    const auto& scaled = *static_cast<const Scaled*>(context);
+    const auto& scaled = *static_cast<const ScaledProblem*>(context);
     Entries(r).get() = scaled.problem.evaluate(scaled.u(x));
   });
 }
 
 PetscErrorCode find_jacobian(Tao, Vec x, Mat J, Mat, void* context) {
   return base::guard([&] {
-    const auto& scaled = *static_cast<const Scaled*>(context);
+    const auto& scaled = *static_cast<const ScaledProblem*>(context);
     const Eigen::MatrixXd found = scaled.problem.jacobian(scaled.u(x)) * scaled.scale.cwiseInverse().asDiagonal();
     double* array = nullptr;
     base::check(MatDenseGetArray(J, &array));
@@ -122,7 +122,7 @@ std::vector<char> at_bounds(const Minimum& minimum) {
 Minimum minimise(Problem& problem, const Eigen::VectorXd& start) {
   problem.set_steps(start);
   const Eigen::Index size = start.size(), count = static_cast<Eigen::Index>(problem.residuals().size());
-  Scaled scaled{problem, start, Eigen::VectorXd::Ones(size)};
+  ScaledProblem scaled{problem, start, Eigen::VectorXd::Ones(size)};
   const base::Handle<Vec> x = vector_of(size), low = vector_of(size), high = vector_of(size), r = vector_of(count);
   base::Handle<Mat> J;
   base::check(

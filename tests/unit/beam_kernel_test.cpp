@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "engine/batch_kernel.hpp"
+#include "engine/matrix_lanes.hpp"
 #include "engine/processor.hpp"
 
 namespace traverse::engine {
@@ -17,22 +19,34 @@ namespace {
 using Eigen::Index;
 
 /// A chain of columns with three symmetric positive matrices and some held unknowns. own: the lanes have different
-/// chains, whose first columns differ and whose last ones are equal.
+/// chains, whose first columns differ and whose last ones are equal. sparse: some unknowns are coupled within their
+/// column only, and some not at all.
 struct Chain {
   struct Lane {
     Eigen::MatrixXd M, C, K;
     double by_mass = 0.0, by_stiffness = 0.0;
   };
-  Chain(int block, int columns, bool proportional, bool own)
+  Chain(int block, int columns, bool proportional, bool own, bool sparse)
       : size(block * columns), held(static_cast<std::size_t>(size), 0), of_lane(lanes) {
+    const auto coupled = [&](int i, int j) {
+      const auto reach = [&](int k) { return sparse ? (k / block + (k % block) * (k % block)) % 3 : 2; };
+      return std::min(reach(i), reach(j)) > (i / block == j / block ? 0 : 1);
+    };
     for (Eigen::MatrixXd Lane::*A : {&Lane::M, &Lane::C, &Lane::K}) {
       for (Lane& lane : of_lane) (lane.*A).setZero(size, size);
       for (int c = 0; c + 1 < columns; ++c) {
-        const Eigen::MatrixXd R = Eigen::MatrixXd::NullaryExpr(2 * block, 2 * block, [&] { return random(); });
+        Eigen::MatrixXd sum = 0.1 * Eigen::MatrixXd::Identity(2 * block, 2 * block);
+        for (int i = 0; i < 2 * block; ++i)
+          for (int j = 0; j < i; ++j) {
+            if (!coupled(c * block + i, c * block + j)) continue;
+            Eigen::VectorXd direction = Eigen::VectorXd::Zero(2 * block);
+            direction[i] = random();
+            direction[j] = random();
+            sum += direction * direction.transpose();
+          }
         for (int l = 0; l < lanes; ++l)
           (of_lane[static_cast<std::size_t>(l)].*A).block(c * block, c * block, 2 * block, 2 * block) +=
-              (own && c < columns / 2 ? 1.0 + 0.1 * l : 1.0) *
-              (R * R.transpose() + 0.1 * Eigen::MatrixXd::Identity(2 * block, 2 * block));
+              (own && c < columns / 2 ? 1.0 + 0.1 * l : 1.0) * sum;
       }
     }
     task.shared = !own;
@@ -51,32 +65,30 @@ struct Chain {
     for (int e = 0; e + 1 < columns; ++e) first_column.push_back(e);
     task.block = block;
     task.columns = columns;
-    for (int c = 0; c < columns; ++c) {
-      const bool in_rows = own && c <= columns / 2;  // with proportional damping C differs everywhere
-      const bool rows = in_rows || (own && proportional);
-      column.push_back({blocks(&Lane::M, c, rows), blocks(&Lane::C, c, rows), blocks(&Lane::K, c, rows), rows});
-    }
-    task.column = column.data();
+    std::vector<ColumnBlocks> blocks;
+    for (const Lane& lane : of_lane)
+      blocks.push_back({blocks_of(lane.M), proportional ? nullptr : blocks_of(lane.C), blocks_of(lane.K)});
+    matrices.emplace(block, held, blocks);
+    matrices->set(task);
     task.proportional = proportional;
     task.by_mass = by_mass;
     task.by_stiffness = by_stiffness;
-    task.held = held.data();
     task.dead = own ? own_dead : dead.data();
     const int bb = block * block;
-    task.pivot = rows_of(columns * bb);
-    task.factor = rows_of(columns * bb);
+    task.pivot = rows_of(size);
+    task.factor = rows_of(static_cast<int>(matrices->factor_size()));
     task.inverse = rows_of(2 * columns * bb);
     task.compliance = rows_of(10 * columns);
     task.unknowns = size;
     task.middle = columns / 2;
-    for (double** of :
-         {&task.v_predicted, &task.w_predicted, &task.residual, &task.solution, &task.work, &task.v_stage})
+    for (double** of : {&task.v, &task.w, &task.a[0], &task.a[1], &task.v_predicted, &task.w_predicted, &task.residual,
+                        &task.solution, &task.work, &task.v_stage})
       *of = rows_of(size);
     task.elements = columns - 1;
     task.first_column = first_column.data();
     for (int i = 0; i < size * lanes; ++i) {
-      task.v_predicted[i] = random();
-      task.w_predicted[i] = held[static_cast<std::size_t>(i / lanes)] != 0 ? 0.0 : random();
+      task.v[i] = random();
+      task.w[i] = held[static_cast<std::size_t>(i / lanes)] != 0 ? 0.0 : random();
     }
   }
 
@@ -85,17 +97,14 @@ struct Chain {
     memory.push_back(std::make_unique<Aligned>(static_cast<std::size_t>(count * lanes)));
     return memory.back()->data();
   }
-  /// The blocks of a column (ColumnMatrices).
-  const double* blocks(Eigen::MatrixXd Lane::*A, int column, bool in_rows) {
-    const int b = task.block, width = in_rows ? lanes : 1;
-    double* to = rows_of(2 * b * b);
-    for (int l = 0; l < width; ++l)
-      for (int k = 0, next = 0; next < 2; ++next)
-        for (int j = 0; j < b; ++j)
-          for (int i = 0; i < b; ++i, ++k)
-            if (column + next < task.columns)
-              to[k * width + l] = (of_lane[static_cast<std::size_t>(l)].*A)(column * b + i, (column + next) * b + j);
-    return to;
+  const double* blocks_of(const Eigen::MatrixXd& A) {
+    const int b = task.block;
+    double* const first = rows_of(2 * task.columns * b * b);
+    double* to = first;
+    for (int c = 0; c < task.columns; ++c)
+      for (int next = c; next < c + 2; ++next, to += b * b)
+        if (next < task.columns) Eigen::Map<Eigen::MatrixXd>(to, b, b) = A.block(c * b, next * b, b, b);
+    return first;
   }
   /// (M + rate C + displacement K)^-1 of the unknowns that are not held, 0 of others.
   Eigen::MatrixXd inverse(const Lane& lane, double rate, double displacement) const {
@@ -116,7 +125,7 @@ struct Chain {
   int size;
   std::vector<char> held;
   std::vector<Lane> of_lane;
-  std::vector<ColumnMatrices> column;
+  std::optional<MatrixLanes> matrices;
   std::vector<double> dead;
   std::vector<int> first_column;
   BeamTask task;
@@ -136,11 +145,11 @@ struct Wheels {
   TrainTask task;
 };
 
-class BeamKernel : public testing::TestWithParam<std::tuple<int, int, bool, bool>> {};
+class BeamKernel : public testing::TestWithParam<std::tuple<int, int, bool, bool, bool>> {};
 
 TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
-  const auto [block, columns, proportional, own] = GetParam();
-  Chain chain(block, columns, proportional, own);
+  const auto [block, columns, proportional, own, sparse] = GetParam();
+  Chain chain(block, columns, proportional, own, sparse);
   BeamTask& t = chain.task;
   Row rate{}, displacement{};
   for (int l = 0; l < lanes; ++l) {
@@ -154,27 +163,25 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
   };
   std::vector<Eigen::VectorXd> v, w;
   for (int l = 0; l < lanes; ++l) {
-    v.push_back(column(t.v_predicted, l));
-    w.push_back(column(t.w_predicted, l));
+    v.push_back(column(t.v, l));
+    w.push_back(column(t.w, l));
   }
-  double* a = chain.rows_of(chain.size);
   // In a window about the middle, and in one that is far from it, so that it moves there.
   for (const int element : {columns / 2 - 1, 0, columns - 2}) {
-    const Wheels wheels(t, element);
-    for (int l = 0; l < lanes; ++l)
-      for (int i = 0; i < chain.size; ++i) {
-        t.v_predicted[i * lanes + l] = v[static_cast<std::size_t>(l)][i];
-        t.w_predicted[i * lanes + l] = w[static_cast<std::size_t>(l)][i];
-      }
+    Wheels wheels(t, element);
+    StageRows& stage = wheels.task.stage[0];  // from v and w at its start
+    for (int l = 0; l < lanes; ++l) {
+      stage.rate[l] = Rows::numbers(rate)[l];
+      stage.displacement[l] = Rows::numbers(displacement)[l];
+    }
     with_structure(t, [&](const auto& structure) {
       structure.factorise(rate, displacement);
       structure.set_window(wheels.task, rate, displacement);
-      structure.find_residual(rate, displacement);
+      structure.find_residual(wheels.task, 0);
       structure.begin_passes();
       structure.clear_loads();
       structure.solve(displacement, ~RowMask{});
-      structure.end_passes();
-      structure.accelerations(rate, rows(a));
+      structure.end_passes(wheels.task, 0);
     });
     EXPECT_TRUE(t.first <= element && element + 1 <= t.last && t.first <= t.middle && t.middle <= t.last);
     if (columns > 50) {
@@ -187,7 +194,7 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
       const Eigen::VectorXd P = Eigen::Map<const Eigen::VectorXd>(chain.dead.data(), chain.size);
       const Eigen::VectorXd exact =
           inverse * (P - lane.C * w[static_cast<std::size_t>(l)] - lane.K * v[static_cast<std::size_t>(l)]);
-      EXPECT_LT((column(a, l) - exact).cwiseAbs().maxCoeff(), 1e-13);
+      EXPECT_LT((column(t.a[1], l) - exact).cwiseAbs().maxCoeff(), 1e-13);
       // v~ and what the accelerations add is where the structure is.
       const Eigen::VectorXd there = column(t.v_predicted, l) + d * column(t.solution, l);
       EXPECT_LT((there - v[static_cast<std::size_t>(l)] - d * exact).cwiseAbs().maxCoeff(), 1e-13);
@@ -205,7 +212,7 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
 
 INSTANTIATE_TEST_SUITE_P(Chains, BeamKernel,
                          testing::Combine(testing::Values(2, 3, 5), testing::Values(2, 3, 6, 27, 80), testing::Bool(),
-                                          testing::Bool()));
+                                          testing::Bool(), testing::Bool()));
 
 }  // namespace
 }  // namespace traverse::engine
