@@ -3,10 +3,11 @@
 /usr/bin/python3 benchmarks/lanes.py [BUILD_FOLDER] [OUT_FOLDER] [--smallest] [--beside OTHER_BUILD_FOLDER]
 
 Runs sweeps of moving forces (options/scenes/hslm_sweep.yml with one station, hslm_two_spans.yml with 41) and of eight
-coaches (fifty_metre_train.yml by 20 elements), in turn with one, four and eight runs side by side on one rank, with eight on
-two, and the coaches' one by one too, which PETSc's TS then drives; takes the quickest of several rounds. Peaks are held
-against those of a finer sweep: forces looked at 400 times a period (sweep_instants), coaches with a quarter of the step
-and twice the elements. The error is the largest difference of any run and station, over the largest of the run's stations.
+coaches (fifty_metre_train.yml by 20 elements) and of a coach on ballasted track (r8_ballasted_bridge.yml), in turn with
+one, four and eight runs side by side on one rank, with eight on two, and the coaches' one by one too, which PETSc's TS then
+drives; takes the quickest of several rounds. Peaks are held against those of a finer sweep: forces looked at 400 times a
+period (sweep_instants), coaches with a quarter of the step and twice the elements. The error is the largest difference of
+any run and station, over the largest of the run's stations.
 --beside adds another build of the program, an older one say. Prints a table; writes lanes.csv.
 """
 
@@ -24,7 +25,12 @@ COACHES = {"lanes": [0, 1, 4, 8], "rounds": 3,
                        "beam_elements_per_span": "20", "step_probes": "true"},
            "fine": {"ts_dt": "1.5e-4", "beam_elements_per_span": "40"},
            "smallest": {"train_vehicles": "coach", "sweep_speed": "77,84,7", "beam_elements_per_span": "6", "ts_dt": "2e-3"}}
-SCENES = {"hslm_sweep": FORCES, "hslm_two_spans": FORCES, "fifty_metre_train": COACHES}
+BALLAST = {"lanes": [0, 1, 4, 8], "rounds": 3,
+           "options": {"sweep_speed": "77,84,1", "model_vehicles": "linear", "ts_dt": "1e-3",
+                       "track_elements_per_bay": "2", "step_probes": "true"},
+           "fine": {"ts_dt": "2.5e-4", "track_elements_per_bay": "4"},
+           "smallest": {"sweep_speed": "77,84,7", "track_elements_per_bay": "1", "ts_dt": "4e-3"}}
+SCENES = {"hslm_sweep": FORCES, "hslm_two_spans": FORCES, "fifty_metre_train": COACHES, "r8_ballasted_bridge": BALLAST}
 QUANTITIES = {"deflection": "peak_deflection", "acceleration": "peak_acceleration", "moment": "peak_moment",
               "wheel force": "greatest_wheel_force"}
 

@@ -7,8 +7,10 @@ import numpy as np
 from engineering_units import shown
 from picture_data import Results, opened, place_in_words
 from picture_model import Model
-from picture_runs import QUANTITIES, Runs, engineering, sign_of, worst_over
+from picture_runs import SAME, Runs, engineering, sign_of, worst_over
 from picture_track import wheel_paths
+from traverse_report.language import capital
+from traverse_report.quantities import QUANTITIES, words_of
 
 # Options about the file and the terminal, in which runs may differ without different results.
 UNRELATED = ("output_file", "output_quiet", "options_file", "scene_name", "report_")
@@ -145,11 +147,11 @@ def runs_over_x(cases):
     if not common:
         return []
     label = next((one for one in sorted(common) if one.startswith("speed")), sorted(common)[0])
-    for name in QUANTITIES:
+    for name in [name for name in QUANTITIES if name not in SAME]:
         lines = [None if one is None else worst_over(one, name, label) for one in runs]
         if sum(line is not None for line in lines) > 1:
             others = any(len(one.axes) > 1 for one in known)
             worst = "least" if sign_of(name) < 0.0 else "greatest"
             words = f", the {worst} over all other varied options" if others else ""
-            found.append((QUANTITIES[name][0] + words, next(one.unit(name) for one in known), label, lines))
+            found.append((capital(words_of(name)) + words, next(one.unit(name) for one in known), label, lines))
     return found

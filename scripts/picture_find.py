@@ -6,10 +6,11 @@ from matplotlib.ticker import LogLocator
 from option_words import option_in_words
 from picture_axes import GREY, PALE, Panel
 from picture_rows import draw_beside, height_of, wrapped_rows
-from picture_runs import QUANTITIES, Axis, Limit, Runs, digits, engineering, engineering_of_si, in_words
+from picture_runs import Axis, Limit, Runs, digits, engineering, engineering_of_si, in_words
 from picture_speeds import draw_lines, is_logarithmic, looks_of
 from picture_table import keep
 from search_answers import Search
+from traverse_report.quantities import QUANTITIES, words_of
 
 GREEN = "#007A59"
 MOST_ROWS = 16  # answers with a row of their own
@@ -20,11 +21,9 @@ def unit_of(option, unit):
     return engineering("speed") if option.endswith("speed") else engineering_of_si(unit)
 
 
-def quantity_in_words(name):
-    """A quantity within a sentence: 'acceleration of the bridge, low-passed'."""
-    words = QUANTITIES[name][0] if name in QUANTITIES else name.replace("_", " ")
-    words = words.removeprefix("Greatest ").removeprefix("Longest ")
-    return f"{words[0].lower()}{words[1:]}"
+def within_sentence(name):
+    """A quantity within a sentence: 'deck acceleration, low-pass filtered'."""
+    return words_of(name).removeprefix("greatest ").removeprefix("longest ")
 
 
 class Words:
@@ -58,7 +57,7 @@ class Words:
             return "not every run determines the quantities"
         shared = {"train" if option.endswith("hslm_a") else option for option, _ in answer.parts}
         run = self.runs.run_in_words(governing.run, {self.search.option, *shared})
-        return quantity_in_words(governing.quantity) + (f" ({run})" if run else "")
+        return within_sentence(governing.quantity) + (f" ({run})" if run else "")
 
     def interval(self, interval):
         """'100 to 237.4', 'up to 237.4', 'from 100'; without unit"""
@@ -100,10 +99,10 @@ class Words:
         """What the search asks: 'bending stiffness EI that keeps all limits'."""
         search = self.search
         if not search.asked:
-            of_one = "" if search.kept == "limits" else f" ({quantity_in_words(search.kept)})"
+            of_one = "" if search.kept == "limits" else f" ({within_sentence(search.kept)})"
             return f"{self.option} that keeps {'the limit' if of_one else 'all limits'}{of_one}"
-        unit, factor = engineering(QUANTITIES[search.asked][1]) if search.asked in QUANTITIES else ("", 1.0)
-        return f"{self.option} with {quantity_in_words(search.asked)} up to {in_words(factor * search.equals, unit)}"
+        unit, factor = engineering(QUANTITIES[search.asked].kind) if search.asked in QUANTITIES else ("", 1.0)
+        return f"{self.option} with {within_sentence(search.asked)} up to {in_words(factor * search.equals, unit)}"
 
 
 def panels_of(results):

@@ -5,27 +5,11 @@ from typing import NamedTuple
 import engineering_units
 import numpy as np
 from option_words import option_in_words
+from traverse_report.language import capital
+from traverse_report.quantities import QUANTITIES, words_of
 
-# Quantities with one value for each run: words for a title, and the row of engineering_units.csv ('' for a ratio). The
-# quantities of limits have the names of doc/guide/limits.md.
-QUANTITIES = {
-    "peak_deflection": ("Greatest deflection of the bridge", "deflection"),
-    "deck_acceleration": ("Greatest acceleration of the bridge, low-passed", "acceleration"),
-    "peak_acceleration": ("Greatest acceleration of the bridge, unfiltered", "acceleration"),
-    "peak_moment": ("Greatest bending moment of the bridge", "moment"),
-    "deflection_over_span": ("Greatest deflection over the span", ""),
-    "end_rotation": ("Greatest rotation at the ends of the bridge", "rotation"),
-    "joint_rotation": ("Greatest difference of the rotations of two decks at a joint", "rotation"),
-    "car_acceleration": ("Greatest vertical acceleration of the car bodies", "acceleration"),
-    "greatest_wheel_force": ("Greatest wheel force", "force"),
-    "least_wheel_force": ("Least wheel force", "force"),
-    "wheel_unloading": ("Greatest wheel unloading, unfiltered", ""),
-    "filtered_wheel_unloading": ("Greatest wheel unloading, low-passed", ""),
-    "unloading_time": ("Longest time of wheel unloading, low-passed", "loss_time"),
-    "contact_loss": ("Longest loss of contact of a wheel", "loss_time"),
-    "amplification": ("Greatest deflection over the greatest static one", ""),
-}
-SAME = {"unfiltered_deck_acceleration": "peak_acceleration"}  # limits of quantities with another name in the results
+# Limits of quantities with another name in the results.
+SAME = {"unfiltered_deck_acceleration": "peak_acceleration", "contact_loss": "longest_loss"}
 SPAN = "of the span"  # the unit of a deflection over the span
 ROWS = {"m": "length", "N/m": "spring_stiffness"}  # of options, where several rows have the same SI unit
 
@@ -175,7 +159,7 @@ class Runs:
         if name == "deflection_over_span":
             return SPAN, 1.0
         if name in QUANTITIES:
-            return engineering(QUANTITIES[name][1])
+            return engineering(QUANTITIES[name].kind)
         units = dict(self.file["verdicts/quantity"].asstr()[:]) if "verdicts/quantity" in self.file else {}
         return engineering_of_si(str(units.get(name, "1")))
 
@@ -187,8 +171,7 @@ class Runs:
 
     def title(self, name):
         """The quantity in words, with the factor of its limit that its values contain."""
-        words = QUANTITIES[name][0] if name in QUANTITIES else name.replace("_", " ").capitalize()
-        return words + ("" if self.contained(name) == 1.0 else f" × {self.contained(name):.5g}")
+        return capital(words_of(name)) + ("" if self.contained(name) == 1.0 else f" × {self.contained(name):.5g}")
 
     def factors(self):
         """The factor of neglected effects of each limit; the judged values contain it."""

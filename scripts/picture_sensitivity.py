@@ -4,9 +4,11 @@ import numpy as np
 from option_words import option_in_words
 from picture_axes import COLOURS, GREY, Panel
 from picture_rows import draw_beside, height_of, wrapped_rows
-from picture_runs import QUANTITIES, engineering, engineering_of_si, in_words
+from picture_runs import engineering, engineering_of_si, in_words
 from picture_table import keep
 from sensitivity_measures import Analysis
+from traverse_report.language import capital
+from traverse_report.quantities import QUANTITIES, words_of
 
 MOST_QUANTITIES, MOST_FACTORS = 4, 12
 MAIN = {"sobol": "with all interactions (total index)", "morris": "size of the effect over the range of the option",
@@ -37,7 +39,7 @@ def unit_of(analysis, quantity):
     if analysis.has_ratios:
         return "", 1.0
     if quantity in QUANTITIES:
-        return engineering(QUANTITIES[quantity][1])
+        return engineering(QUANTITIES[quantity].kind)
     return engineering_of_si(analysis.units[quantity])
 
 
@@ -84,9 +86,9 @@ def draw(ax, analysis, quantity, order, rows):
         draw_bars(ax, second, order, middles + 0.55, factor, COLOURS[1], SECOND[analysis.method], analysis, 0.5)
         ax.legend(loc="lower right", frameon=False, fontsize=8.5)
     ax.axvline(0.0, color=GREY, lw=0.8)
-    words = QUANTITIES[quantity][0] if quantity in QUANTITIES else quantity.replace("_", " ").capitalize()
     left_out = len(analysis.factors) - len(order)
-    ax.set(title=words + (f" ({left_out} options with smaller effects are not drawn)" if left_out else ""))
+    ax.set(title=capital(words_of(quantity)) +
+           (f" ({left_out} options with smaller effects are not drawn)" if left_out else ""))
     ax.set_xlabel("part of the variance" if analysis.has_ratios else f"{MAIN[analysis.method]} ({unit or 'ratio'})")
     ax.grid(False, axis="y")
     ax.margins(x=0.03)

@@ -1,5 +1,4 @@
-"""The quantities of results and limits: the words for them and their row of engineering_units.csv. The only Python
-table."""
+"""The quantities of results and limits: the words for them and their row of engineering_units.csv, also for pictures."""
 
 from typing import NamedTuple
 

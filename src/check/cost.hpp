@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "look.hpp"
+#include "first_run.hpp"
 
 namespace traverse::app {
 

@@ -1,12 +1,12 @@
 // Finds input that is valid but probably not intended: values that are usual in another unit, trains that do not reach
-// the bridge. The scene's reader finds further cases (scene/scene_sense.cpp).
+// the bridge. The scene's reader finds further cases (scene/scene_plausibility.cpp).
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "look.hpp"
-#include "rest.hpp"
+#include "first_run.hpp"
+#include "static_response.hpp"
 
 namespace traverse::app {
 

@@ -15,14 +15,14 @@ struct BeamFactor {
   BeamTask& t;
   const int b = Size > 0 ? Size : t.block;
 
-  /// Calls use(pair, further, nearer) for the pairs from column `left` on to `to_left`, and from `right` back to
-  /// `to_right`, alternately: two independent chains of products use the processor better.
+  /// Calls use(further, nearer) for the pairs from column `left` on to `to_left`, and from `right` back to `to_right`,
+  /// alternately: two independent chains of products use the processor better.
   template <class Use>
   void inwards(int left, int right, int to_left, int to_right, Use use) const {
     const int before = to_left - left, behind = right - to_right;
     for (int k = 0; k < (before > behind ? before : behind); ++k) {
-      if (k < before) use(left + k, left + k, left + k + 1);
-      if (k < behind) use(right - k - 1, right - k, right - k - 1);
+      if (k < before) use(left + k, left + k + 1);
+      if (k < behind) use(right - k, right - k - 1);
     }
   }
   /// The same pairs as inwards(), in the opposite order.
@@ -30,14 +30,14 @@ struct BeamFactor {
   void outwards(int left, int right, int to_left, int to_right, Use use) const {
     const int before = to_left - left, behind = right - to_right;
     for (int k = (before > behind ? before : behind) - 1; k >= 0; --k) {
-      if (k < before) use(left + k, left + k, left + k + 1);
-      if (k < behind) use(right - k - 1, right - k, right - k - 1);
+      if (k < before) use(left + k, left + k + 1);
+      if (k < behind) use(right - k, right - k - 1);
     }
   }
 
   void factorise(Row rate, Row displacement) const {
     inwards(0, t.columns - 1, t.middle, t.middle,
-            [&](int /*pair*/, int further, int nearer) { eliminate(further, nearer, rate, displacement); });
+            [&](int further, int nearer) { eliminate(further, nearer, rate, displacement); });
     eliminate(t.middle, none, rate, displacement);
     find_compliance(displacement);
   }
@@ -52,24 +52,17 @@ struct BeamFactor {
 
   /// A column's step of x = L^-1 x, x being the first column's unknowns; nearer: the column eliminated next, or none.
   void forward(int column, int nearer, Row* x) const {
-    const Row* L = links(column);
     Row* const own = x + column * b;
-    if constexpr (Size > 0) {
-      for (int i = 0; i < Size; ++i)
-        for (int k = 0; k < i; ++k) own[i] -= *L++ * own[k];
-    } else {
-      const ColumnOrder& o = *t.order[column];
-      for (int e = 0, count = o.links; e < count; ++e) own[o.later[e]] -= L[e] * own[o.earlier[e]];
-    }
+    subtract_earlier(column, own);
     if (nearer == none) return;
     const Row* F = pair_factor(column, nearer);
     Row* const to = x + nearer * b;
     if constexpr (Size > 0) {
-      Row y[Size];
-      for (int i = 0; i < Size; ++i) y[i] = to[i];
+      Row sum[Size];
+      for (int i = 0; i < Size; ++i) sum[i] = to[i];
       for (int i = 0; i < Size; ++i)
-        for (int k = 0; k < Size; ++k) y[i] -= F[i * Size + k] * own[k];
-      for (int i = 0; i < Size; ++i) to[i] = y[i];
+        for (int k = 0; k < Size; ++k) sum[i] -= F[i * Size + k] * own[k];
+      for (int i = 0; i < Size; ++i) to[i] = sum[i];
     } else {
       const PairOrder& p = pair_order(column, nearer);
       for (int i = 0, count = p.nearer_count; i < count; ++i) {
@@ -81,47 +74,64 @@ struct BeamFactor {
   }
   /// A column's step of x = L^-T D^-1 y, after the step of the nearer one.
   void backward(int column, int nearer, const Row* y, Row* x) const {
-    const Row *L = links(column), *D = rows(t.pivot) + column * b;
-    y += column * b;
-    Row* const to = x + column * b;
-    const Row *const F = nearer == none ? nullptr : pair_factor(column, nearer), *const from = x + nearer * b;
-    if constexpr (Size > 0) {
-      Row own[Size];
-      for (int i = 0; i < Size; ++i) own[i] = D[i] * y[i];
-      if (nearer != none)
-        for (int i = 0; i < Size; ++i)
-          for (int k = 0; k < Size; ++k) own[k] -= F[i * Size + k] * from[i];
-      for (int i = Size - 1; i >= 0; --i)
-        for (int k = 0; k < i; ++k) own[k] -= L[i * (i - 1) / 2 + k] * own[i];
-      for (int i = 0; i < Size; ++i) to[i] = own[i];
-    } else {
-      for (int i = 0; i < b; ++i) to[i] = D[i] * y[i];
-      if (nearer != none) {
-        const PairOrder& p = pair_order(column, nearer);
-        for (int k = 0, count = p.further_count; k < count; ++k) {
-          Row sum = to[p.further[k]];
-          for (int i = 0, terms = p.nearer_count; i < terms; ++i) sum -= F[i * count + k] * from[p.nearer[i]];
-          to[p.further[k]] = sum;
-        }
-      }
-      const ColumnOrder& o = *t.order[column];
-      for (int e = o.links - 1; e >= 0; --e) to[o.earlier[e]] -= L[e] * to[o.later[e]];
-    }
+    const Row* const D = rows(t.pivot) + column * b;
+    Row of_size[Size > 0 ? Size : 1], *const to = x + column * b, *const own = Size > 0 ? of_size : to;
+    for (int i = 0; i < b; ++i) own[i] = D[i] * y[column * b + i];
+    if (nearer != none) subtract_nearer(column, nearer, x + nearer * b, own);
+    subtract_later(column, own);
+    for (int i = 0; i < Size; ++i) to[i] = own[i];
   }
 
  private:
   static constexpr int most = most_unknowns_of_a_column;
+  static constexpr int dense_links = Size * (Size - 1) / 2, of_column = dense_links + Size * Size;
 
   const PairOrder& pair_order(int further, int nearer) const {
     return nearer > further ? *t.to_right[further] : *t.to_left[nearer];
   }
-  static constexpr int dense_links = Size * (Size - 1) / 2, of_column = dense_links + Size * Size;
   Row* links(int column) const {
     return rows(t.factor) + (Size > 0 ? static_cast<long>(column) * of_column : t.link_begin[column]);
   }
+  static int pair_of(int further, int nearer) { return nearer > further ? further : nearer; }
   Row* pair_factor(int further, int nearer) const {
-    const int pair = nearer > further ? further : nearer;
+    const int pair = pair_of(further, nearer);
     return rows(t.factor) + (Size > 0 ? static_cast<long>(pair) * of_column + dense_links : t.pair_begin[pair]);
+  }
+
+  /// The parts of both steps within a column; x: its unknowns.
+  void subtract_earlier(int column, Row* x) const {
+    const Row* L = links(column);
+    if constexpr (Size > 0) {
+      for (int i = 0; i < Size; ++i)
+        for (int k = 0; k < i; ++k) x[i] -= *L++ * x[k];
+    } else {
+      const ColumnOrder& o = *t.order[column];
+      for (int e = 0, count = o.links; e < count; ++e) x[o.later[e]] -= L[e] * x[o.earlier[e]];
+    }
+  }
+  void subtract_later(int column, Row* x) const {
+    const Row* L = links(column);
+    if constexpr (Size > 0) {
+      for (int i = Size - 1; i >= 0; --i)
+        for (int k = 0; k < i; ++k) x[k] -= L[i * (i - 1) / 2 + k] * x[i];
+    } else {
+      const ColumnOrder& o = *t.order[column];
+      for (int e = o.links - 1; e >= 0; --e) x[o.earlier[e]] -= L[e] * x[o.later[e]];
+    }
+  }
+  void subtract_nearer(int further, int nearer, const Row* from, Row* x) const {
+    const Row* F = pair_factor(further, nearer);
+    if constexpr (Size > 0) {
+      for (int i = 0; i < Size; ++i)
+        for (int k = 0; k < Size; ++k) x[k] -= F[i * Size + k] * from[i];
+    } else {
+      const PairOrder& p = pair_order(further, nearer);
+      for (int k = 0, count = p.further_count; k < count; ++k) {
+        Row sum = x[p.further[k]];
+        for (int i = 0, terms = p.nearer_count; i < terms; ++i) sum -= F[i * count + k] * from[p.nearer[i]];
+        x[p.further[k]] = sum;
+      }
+    }
   }
 
   /// Adds the coefficients of J in the row of an unknown: to[j] for the unknowns of a column.
@@ -181,28 +191,25 @@ struct BeamFactor {
       for (int k = 0; k < p.further_count; ++k) *F++ = of_factor(with_nearer, p.nearer[i], p.further[k]);
   }
 
-  /// Adds (L D L^T)^-1 of a column alone.
-  void add_own_inverse(int column, Row* to) const {
-    const ColumnOrder& o = *t.order[column];
-    for (int s = 0; s < o.count; ++s) {
+  /// (L D L^T)^-1 of a column alone, by rows.
+  void find_own_inverse(int column, Row* to) const {
+    for (int k = 0; k < b; ++k) {
       Row x[most] = {};
-      x[o.unknown[s]] = Rows::fill(1.0);
-      for (int e = 0; e < o.links; ++e) x[o.later[e]] -= links(column)[e] * x[o.earlier[e]];
+      x[k] = Rows::fill(1.0);
+      subtract_earlier(column, x);
       for (int i = 0; i < b; ++i) x[i] *= rows(t.pivot)[column * b + i];
-      for (int e = o.links - 1; e >= 0; --e) x[o.earlier[e]] -= links(column)[e] * x[o.later[e]];
-      for (int i = 0; i < b; ++i) to[i * b + o.unknown[s]] += x[i];
+      subtract_later(column, x);
+      for (int i = 0; i < b; ++i) to[i * b + k] = x[i];
     }
   }
-  /// The columns between which J couples by G = J_nf J_ff^-1, nearer rows by further columns, with J as it is when the
-  /// further column is eliminated.
+  /// G = J_nf J_ff^-1, nearer rows by further columns, with J as it is when the further column is eliminated.
   void find_coupling(int further, int nearer, Row* G) const {
     const PairOrder& p = pair_order(further, nearer);
-    const ColumnOrder& o = *t.order[further];
     const Row* F = pair_factor(further, nearer);
     for (int i = 0; i < p.nearer_count; ++i) {
-      Row* g = G + p.nearer[i] * most;
-      for (int k = 0; k < p.further_count; ++k) g[p.further[k]] = F[i * p.further_count + k];
-      for (int e = o.links - 1; e >= 0; --e) g[o.earlier[e]] -= links(further)[e] * g[o.later[e]];
+      Row* const g = G + p.nearer[i] * most;
+      for (int k = 0; k < p.further_count; ++k) g[p.further[k]] = *F++;
+      subtract_later(further, g);
     }
   }
   /// Computes the inverse of J within the band, column by column from the middle, at the elements' transverse unknowns.
@@ -211,11 +218,11 @@ struct BeamFactor {
     Row* inverse =
         rows(t.inverse);  // blocks of all columns, then blocks of all pairs with the rows of the nearer column
     Row* const pairs = inverse + static_cast<long>(t.columns) * bb;
-    for (long i = 0; i < static_cast<long>(t.columns) * bb; ++i) inverse[i] = Row{};
-    add_own_inverse(t.middle, inverse + static_cast<long>(t.middle) * bb);
-    outwards(0, t.columns - 1, t.middle, t.middle, [&](int pair, int further, int nearer) {
+    find_own_inverse(t.middle, inverse + static_cast<long>(t.middle) * bb);
+    outwards(0, t.columns - 1, t.middle, t.middle, [&](int further, int nearer) {
       const Row* Z = inverse + static_cast<long>(nearer) * bb;
-      Row *own = inverse + static_cast<long>(further) * bb, *with = pairs + static_cast<long>(pair) * bb;
+      Row *own = inverse + static_cast<long>(further) * bb,
+          *with = pairs + static_cast<long>(pair_of(further, nearer)) * bb;
       Row G[most * most] = {};
       find_coupling(further, nearer, G);
       for (int i = 0; i < b; ++i)
@@ -224,7 +231,7 @@ struct BeamFactor {
           for (int k = 0; k < b; ++k) sum -= Z[i * b + k] * G[k * most + j];
           with[i * b + j] = sum;
         }
-      add_own_inverse(further, own);
+      find_own_inverse(further, own);
       for (int i = 0; i < b; ++i)
         for (int j = 0; j < b; ++j)
           for (int k = 0; k < b; ++k) own[i * b + j] -= G[k * most + i] * with[k * b + j];

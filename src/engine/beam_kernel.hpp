@@ -42,7 +42,7 @@ struct BeamRows : BeamFactor<Size> {
   void begin_passes() const {
     Row* const r = rows(t.residual);
     Factor::inwards(0, t.columns - 1, t.first, t.last,
-                    [&](int /*pair*/, int further, int nearer) { Factor::forward(further, nearer, r); });
+                    [&](int further, int nearer) { Factor::forward(further, nearer, r); });
   }
   void clear_loads() const {
     for (int i = t.first * b; i < (t.last + 1) * b; ++i) rows(t.work)[i] = rows(t.residual)[i];
@@ -51,11 +51,11 @@ struct BeamRows : BeamFactor<Size> {
   void solve(Row displacement, RowMask open) const {
     Row *x = rows(t.work), *solution = rows(t.solution), *v = rows(t.v_stage);
     Factor::inwards(t.first, t.last, t.middle, t.middle,
-                    [&](int /*pair*/, int further, int nearer) { Factor::forward(further, nearer, x); });
+                    [&](int further, int nearer) { Factor::forward(further, nearer, x); });
     Factor::forward(t.middle, Factor::none, x);
     Factor::backward(t.middle, Factor::none, x, x);
     Factor::outwards(t.first, t.last, t.middle, t.middle,
-                     [&](int /*pair*/, int further, int nearer) { Factor::backward(further, nearer, x, x); });
+                     [&](int further, int nearer) { Factor::backward(further, nearer, x, x); });
     for (int i = t.first * b; i < (t.last + 1) * b; ++i) {
       solution[i] = open ? x[i] : solution[i];
       v[i] = rows(t.v_predicted)[i] + displacement * solution[i];
@@ -70,7 +70,7 @@ struct BeamRows : BeamFactor<Size> {
       for (int i = first * b; i < (last + 1) * b; ++i) a[i] = x[i] - alpha * w[i];
     };
     accelerate(t.first, t.last);
-    Factor::outwards(0, t.columns - 1, t.first, t.last, [&](int /*pair*/, int further, int nearer) {
+    Factor::outwards(0, t.columns - 1, t.first, t.last, [&](int further, int nearer) {
       Factor::backward(further, nearer, r, x);
       accelerate(further, further);
     });

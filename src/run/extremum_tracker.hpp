@@ -1,5 +1,5 @@
 // Trackers of the extremes of sampled curves. Between samples a curve is interpolated by a polynomial of degree four
-// (turn.hpp).
+// (interpolated_extremum.hpp).
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "run/turn.hpp"
+#include "run/interpolated_extremum.hpp"
 
 namespace traverse::app {
 

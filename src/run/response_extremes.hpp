@@ -1,7 +1,8 @@
-// Extremes (peaks) of a run. Between samples a curve is interpolated by a polynomial of degree four (turn.hpp). The
-// least and the greatest value at every probe form the envelopes along the bridge. When a wheel passes a probe, the
-// moment there has a kink over time, which gets its own sample (option step_probes), and the shear jumps
-// (probe_forces.hpp). With damping b K both relax after that within a time of b, which may be much shorter than a step.
+// Extremes (peaks) of a run. Between samples a curve is interpolated by a polynomial of degree four
+// (interpolated_extremum.hpp). The least and the greatest value at every probe form the envelopes along the bridge.
+// When a wheel passes a probe, the moment there has a kink over time, which gets its own sample (option step_probes),
+// and the shear jumps (probe_forces.hpp). With damping b K both relax after that within a time of b, which may be much
+// shorter than a step.
 #pragma once
 
 #include <array>

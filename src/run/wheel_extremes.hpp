@@ -1,5 +1,5 @@
 // The least and the greatest normal force of all wheels, and the largest unloading of a wheel, evaluated at every step
-// and interpolated between steps (turn.hpp).
+// and interpolated between steps (interpolated_extremum.hpp).
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "run/turn.hpp"
+#include "run/interpolated_extremum.hpp"
 
 namespace traverse::app {
 

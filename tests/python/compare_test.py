@@ -162,7 +162,7 @@ study: {vary: {load_speed: {from: 20.0, to: 80.0, step: 10.0}, beam_mass: [1.6e4
     def test_studies_are_compared_over_the_common_option(self):
         cases = self.cases("study")
         kept = self.kept(cases)
-        title = "Greatest deflection of the bridge, the greatest over all other varied options"
+        title = "Greatest deflection, the greatest over all other varied options"
         for case in cases:
             study = case.results.file["study"]
             peaks = np.abs(study["peak_deflection"][:]).max(axis=1).reshape(study["shape"][:].astype(int))

@@ -83,14 +83,14 @@ class SearchTest(Drawn):
         self.write_search("beam_EI", "N m2", values, [ratio], [(0, values[2], values[-1], (0, 1))],
                           options=[["-find_keep", "end_rotation"]])
         figure = self.assert_readable(
-            self.figure(), "bending stiffness EI that keeps the limit (rotation at the ends of",
-            "all runs: from 31,623 MN m²", "below 31,623: rotation at the ends of the bridge")
+            self.figure(), "bending stiffness EI that keeps the limit (rotation of the deck",
+            "all runs: from 31,623 MN m²", "below 31,623: rotation of the deck ends")
         self.assertEqual([ax.get_xscale() for ax in figure.axes], ["log", "log"])
 
     def test_no_value_within_the_bound(self):
         self.write_search("load_speed", "m/s", self.SPEEDS, [np.linspace(3.0, 1.5, 9)], [], options=[
             ["-find_quantity", "peak_deflection"], ["-find_equals", "0.02"]])
-        self.assert_drawn("speed with deflection of the bridge up to 20 mm", "all runs: none",
+        self.assert_drawn("speed with deflection up to 20 mm", "all runs: none",
                           "closest at 288 km/h, 1.5 times the bound")
 
     def test_unknown_ratios_are_said(self):

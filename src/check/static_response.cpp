@@ -1,6 +1,6 @@
 // Support reactions under the bridge's own weight and under the most unfavourable positions of the trains, and the
 // largest static deflection at mid-span, from influence lines.
-#include "rest.hpp"
+#include "static_response.hpp"
 
 #include <fmt/format.h>
 

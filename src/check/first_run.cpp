@@ -1,6 +1,6 @@
 // Assembles beam, modes and coupled system (Passage) of the first run of a scene or study, with the first mesh and step
 // of the trial runs, and computes the first natural frequencies.
-#include "look.hpp"
+#include "first_run.hpp"
 
 #include <fmt/format.h>
 
