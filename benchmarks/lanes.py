@@ -74,12 +74,12 @@ def main():
     arguments = runs.parser(__doc__)
     arguments.add_argument("--beside", metavar="OTHER_BUILD_FOLDER", help="another build, run in turn with this one")
     given = runs.given(arguments)
-    print(f"{'':18}{'':18}{'passages':>10}{'ms each':>10}" + "".join(f"{name:>14}" for name in QUANTITIES))
+    print(f"{'':20}{'':18}{'passages':>10}{'ms each':>10}" + "".join(f"{name:>14}" for name in QUANTITIES))
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         for scene, how in SCENES.items():
             for row in measured(given, scene, how, folder):
-                print("{:18}{:18}{:10}{:10.3g}".format(*row[:4]) + "".join(f"{e:14.1e}" for e in row[4:]), flush=True)
+                print("{:20}{:18}{:10}{:10.3g}".format(*row[:4]) + "".join(f"{e:14.1e}" for e in row[4:]), flush=True)
                 rows.append(row)
     runs.write_table(os.path.join(given.out, "lanes.csv"),
                      ["scene", "runs", "passages", "ms each", *(f"error of {name}" for name in QUANTITIES)], rows)
