@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace traverse::engine {
 namespace {
@@ -11,9 +12,9 @@ constexpr std::array matrices = {&ColumnBlocks::mass, &ColumnBlocks::damping, &C
 double value(const double* blocks, std::size_t place) { return blocks == nullptr ? 0.0 : blocks[place]; }
 }  // namespace
 
-MatrixLanes::MatrixLanes(int block, const std::vector<char>& held, const std::vector<ColumnBlocks>& of_lanes)
+MatrixLanes::MatrixLanes(int block, const std::vector<char>& held, std::vector<ColumnBlocks> of_lanes)
     : block_(block),
-      of_lanes_(of_lanes),
+      of_lanes_(std::move(of_lanes)),
       order_(block, static_cast<int>(held.size()) / block, [this](int i, int j) { return !is_zero(place(i, j)); }) {
   const int unknowns = static_cast<int>(held.size());
   std::vector<int> value_at(static_cast<std::size_t>(2 * unknowns * block), -1);

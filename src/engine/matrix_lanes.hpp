@@ -19,7 +19,7 @@ struct ColumnBlocks {
 class MatrixLanes {
  public:
   /// One set of matrices for each lane; held: for each unknown whether a support holds it.
-  MatrixLanes(int block, const std::vector<char>& held, const std::vector<ColumnBlocks>& of_lanes);
+  MatrixLanes(int block, const std::vector<char>& held, std::vector<ColumnBlocks> of_lanes);
 
   /// Sets the matrices and the order of elimination in a task, which points to this object's memory.
   void set(BeamTask& task) const;

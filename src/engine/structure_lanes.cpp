@@ -2,6 +2,7 @@
 #include "engine/structure_lanes.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace traverse::engine {
 
@@ -18,7 +19,7 @@ StructureLanes::StructureLanes(std::span<const BatchStructure* const> of_lanes)
     for (const BatchStructure* one : task_.shared ? of_lanes.first(1) : of_lanes)
       blocks.push_back(
           {one->mass_.data(), task_.proportional ? nullptr : one->damping_.data(), one->stiffness_.data()});
-    matrices_.emplace(task_.block, first.held_, blocks);
+    matrices_.emplace(task_.block, first.held_, std::move(blocks));
     matrices_->set(task_);
   } else {
     task_.shape = of(&BatchStructure::shape_);

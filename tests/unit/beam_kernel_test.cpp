@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "engine/batch_kernel.hpp"
@@ -68,7 +69,7 @@ struct Chain {
     std::vector<ColumnBlocks> blocks;
     for (const Lane& lane : of_lane)
       blocks.push_back({blocks_of(lane.M), proportional ? nullptr : blocks_of(lane.C), blocks_of(lane.K)});
-    matrices.emplace(block, held, blocks);
+    matrices.emplace(block, held, std::move(blocks));
     matrices->set(task);
     task.proportional = proportional;
     task.by_mass = by_mass;
