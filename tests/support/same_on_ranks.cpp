@@ -26,7 +26,7 @@ std::vector<std::string> datasets(const std::string& path) {
     H5Dclose(set);
     return 0;
   };
-  H5Ovisit1(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &names);
+  H5Ovisit1(file, H5_INDEX_NAME, H5_ITER_INC, visit, &names);
   H5Fclose(file);
   return names;
 }
