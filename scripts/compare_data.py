@@ -137,7 +137,7 @@ def station_curves(cases, name, kind):
 
 def runs_over_x(cases):
     """[(quantity, unit, label of x, [(x, worst of all other axes) or None])] of the quantities and of the option along
-    x that at least two sweeps or studies have."""
+    x that at least two sweeps or studies have; without those that are 0 in all runs, as losses of contact."""
     runs = [Runs(case.results) if {"sweep", "study"} & set(case.results.file) else None for case in cases]
     known, found = [one for one in runs if one is not None], []
     if len(known) < 2:
@@ -149,7 +149,7 @@ def runs_over_x(cases):
     label = next((one for one in sorted(common) if one.startswith("speed")), sorted(common)[0])
     for name in [name for name in QUANTITIES if name not in SAME]:
         lines = [None if one is None else worst_over(one, name, label) for one in runs]
-        if sum(line is not None for line in lines) > 1:
+        if sum(line is not None for line in lines) > 1 and any(line is not None and line[1].any() for line in lines):
             others = any(len(one.axes) > 1 for one in known)
             worst = "least" if sign_of(name) < 0.0 else "greatest"
             words = f", the {worst} over all other varied options" if others else ""

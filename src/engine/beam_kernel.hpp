@@ -96,8 +96,8 @@ struct BeamRows : BeamFactor<Size> {
         u[i] = v[i] + of_w * w[i];
         v[i] -= displacement * alpha * w[i];
       }
-      const int known = past == t.unknowns ? past : past / b * b - b;  // with the next column's unknowns
-      if (known > done) subtract_forces(done, known, u, w);
+      const int known = past == t.unknowns ? past : past / b * b - b;  // a residual needs the next column's v~ and w~
+      if (known > done) store_residual(done, known, u, w);
       done = known;
     }
   }
@@ -105,8 +105,8 @@ struct BeamRows : BeamFactor<Size> {
  private:
   Row shift(Row rate) const { return row(t.by_mass) / (1.0 + rate * row(t.by_mass)); }
 
-  /// The residual P - K v - C w of the unknowns from `first` on to `past`, without C w if damping is proportional.
-  void subtract_forces(int first, int past, const Row* v, const Row* w) const {
+  /// The residual P - K v - C w of the unknowns from `first` to before `past`; without C w if damping is proportional.
+  void store_residual(int first, int past, const Row* v, const Row* w) const {
     Row* const r = rows(t.residual);
     for (int i = first; i < past; ++i) r[i] = t.shared ? Rows::fill(t.dead[i]) : rows(t.dead)[i];
     subtract_product<double>(first, past, t.equal, t.equal.stiffness, v, r);

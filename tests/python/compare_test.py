@@ -169,6 +169,15 @@ study: {vary: {load_speed: {from: 20.0, to: 80.0, step: 10.0}, beam_mass: [1.6e4
             speeds = str(study.attrs["axes"]).split(",").index("load_speed")
             np.testing.assert_allclose(kept[title][case.name], 1e3 * peaks.max(axis=1 - speeds))
 
+    def test_what_never_occurs_has_no_panel(self):
+        cases, worst_over = self.cases("study"), compare_data.worst_over
+        with mock.patch.object(compare_data, "worst_over", lambda one, name, label: worst_over(
+                one, "peak_moment", label) if name == "longest_loss" else worst_over(one, name, label)):
+            self.assertIn("Longest loss of wheel-rail contact", " ".join(self.kept(cases)))
+        with mock.patch.object(compare_data, "worst_over", lambda one, name, label: (
+                np.arange(2.0), np.zeros(2)) if name == "longest_loss" else worst_over(one, name, label)):
+            self.assertNotIn("Longest loss of wheel-rail contact", " ".join(self.kept(cases)))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <random>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "engine/batch_kernel.hpp"
+#include "engine/elimination_order.hpp"
 #include "engine/matrix_lanes.hpp"
 #include "engine/processor.hpp"
 
@@ -132,6 +134,26 @@ struct Chain {
   BeamTask task;
   std::vector<std::unique_ptr<Aligned>> memory;
 };
+
+// A track of five unknowns a column: the rail's deflection and rotation, which are coupled with the next column, and a
+// chain of sleeper, ballast and sub-ballast below the deflection.
+TEST(EliminationOrder, OfATrackHasNoOtherLinks) {
+  constexpr int block = 5, columns = 4;
+  const EliminationOrder order(block, columns, [](int i, int j) {
+    const int one = i % block, other = j % block;
+    if (i / block != j / block || (one < 2 && other < 2)) return one < 2 && other < 2;
+    return std::min(one, other) != 1 && std::abs(one - other) <= (std::min(one, other) == 0 ? 2 : 1);
+  });
+  BeamTask task;
+  order.set(task);
+  for (int c = 0; c < columns; ++c) {
+    const ColumnOrder& own = *task.order[c];
+    EXPECT_EQ(std::vector<int>(own.unknown, own.unknown + own.count), (std::vector<int>{4, 3, 2, 0, 1}));
+    EXPECT_EQ(std::vector<int>(own.earlier, own.earlier + own.links), (std::vector<int>{4, 3, 2, 0}));
+    EXPECT_EQ(std::vector<int>(own.later, own.later + own.links), (std::vector<int>{3, 2, 0, 1}));
+  }
+  EXPECT_EQ(order.factor_size(), static_cast<std::size_t>(4 * columns + 4 * (columns - 1)));  // 8 a column, then 4
+}
 
 /// One wheel in every lane, on an element.
 struct Wheels {
