@@ -5,12 +5,13 @@
 A train crosses three spans, with linear vehicles and with mechanisms, and is killed (SIGKILL) 100 times in all while it
 computes or starts, with checkpoints as often as they may be written. After every kill the results file has to open,
 with all rows of every series that its times say; the checkpoint, where there is one, has to be taken up. Once the run
-has reached its end its series have to be those of a run that nobody touched, bit for bit. Writes kills.csv to
-OUT_FOLDER.
+has reached its end its series have to be those of a run that nobody touched, bit for bit. A study is killed as often
+while it is resumed: the runs that it finds may never become fewer. Writes kills.csv to OUT_FOLDER.
 """
 
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -75,6 +76,26 @@ def killed_run(command, checkpoint, generator, kills, file, longest):
         rows.append(rows_in(file))
 
 
+def killed_study(build, folder, generator, kills):
+    """Kills a study that is resumed again and again; returns how often runs were found in its file."""
+    command = [runs.traverse(build), "-options_file", os.path.join(runs.ROOT, "options/studies/truck_class_c.yml"),
+               "-output_file", os.path.join(folder, "study.h5"), "-study_resume"]
+    found, known, longest = 0, 0, 0.5
+    for _ in range(kills):
+        child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(generator.uniform(0.0, longest))
+        child.send_signal(signal.SIGKILL)
+        said, complaint = child.communicate()
+        if child.returncode not in (0, -signal.SIGKILL):
+            sys.exit(f"study: status {child.returncode}: {complaint}")
+        now = re.search(r"(\d+) of them are read from the existing", said)
+        if now and int(now[1]) < known or (not now and known and "contains no finished run" in said):
+            sys.exit(f"study: {known} runs were finished before, {now[1] if now else 0} are found")
+        known = int(now[1]) if now else known
+        found += bool(now)
+    return found
+
+
 def main():
     arguments = runs.parser(__doc__)
     arguments.add_argument("--kills", type=int, default=100, help="in all")
@@ -102,6 +123,8 @@ def main():
                     sys.exit(f"{model}: the results differ after {done} kills")
             table.append([model, done, restarts, len(one)])
             print(f"{model}: {done} kills, {restarts} restarts, {len(one)} series the same bit for bit")
+        found = killed_study(given.build, folder, generator, kills)
+        print(f"study: {kills} kills, {found} times with runs in its file")
     runs.write_table(os.path.join(given.out, "kills.csv"), ["vehicles", "kills", "restarts", "series"], table)
 
 

@@ -75,7 +75,7 @@ struct Steps {
   void restart() {
     y = start;
     t = 0.0;
-    scene.system->restart_motion(t, y.data());
+    scene.system->restart_motion(t, step, y.data());
   }
   double time(int steps) {
     if (t + steps * step > scene.system->leaving_time()) restart();

@@ -16,10 +16,13 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+import output_files  # noqa: E402
+from checked_results import in_one_line, opened  # noqa: E402
 from matplotlib.animation import FFMpegWriter, PillowWriter  # noqa: E402
 from matplotlib.patches import Circle, Polygon  # noqa: E402
+from output_files import PROGRAM, OutputError  # noqa: E402
 from picture_axes import COLOURS, GREY, PALE  # noqa: E402
-from picture_data import Results, opened  # noqa: E402
+from picture_data import Results  # noqa: E402
 from picture_model import BODY, DARK, body_boxes, draw_forces, draw_foundation, draw_supports, vertical_reach  # noqa: E402
 from picture_motion import Motion, outline, wheel_places  # noqa: E402
 from picture_words import millimetres  # noqa: E402
@@ -29,6 +32,7 @@ MARGIN = 0.15       # ground on either side, as a fraction of the bridge
 DRAWN, SWAY = 0.03, 0.08  # greatest deflection and vehicle motion as fractions of the width
 FRAMES, RATE = 120, 20  # default number of frames; frames per second
 MOST_INSTANTS, MOST_PLACES = 1500, 1000  # of a space-time picture
+KINDS = ("gif", "mp4", "png")  # the last one: the first frame alone
 SIZE, DPI = (11.0, 4.2), 100
 AXES = (10.12, 2.604)  # inches; higher for bodies far below or above the bridge
 
@@ -140,26 +144,34 @@ class Stage:
 def writer_of(path, rate):
     if path.suffix == ".gif":
         return PillowWriter(fps=rate)
-    if path.suffix == ".mp4":
-        if not shutil.which("ffmpeg"):
-            raise ValueError(f"{path}: an .mp4 needs ffmpeg, which is not installed; a .gif does not")
-        return FFMpegWriter(fps=rate)
     if path.suffix == ".png":
         return None
-    raise ValueError(f"{path}: allowed: .gif, .mp4, or .png for the first frame alone")
+    if not shutil.which("ffmpeg"):
+        raise ValueError(f"{path}: an .mp4 needs ffmpeg, which is not installed; a .gif does not")
+    return FFMpegWriter(fps=rate, metadata={"comment": PROGRAM})
+
+
+def add_name(path):
+    """Adds a comment with the name of the program before the end of a GIF file."""
+    content = path.read_bytes()
+    path.write_bytes(content[:-1] + b"\x21\xfe" + bytes([len(PROGRAM)]) + PROGRAM.encode() + b"\x00" + content[-1:])
 
 
 def animate(motion, path, rows, exaggeration):
+    kind = output_files.kind_of(path, KINDS)
     writer = writer_of(path, RATE)
     stage = Stage(motion, exaggeration)
     if writer is None:
         stage.draw(rows[0])
-        stage.figure.savefig(path, dpi=DPI)
+        output_files.save_figure(stage.figure, path, dpi=DPI)
     else:
-        with writer.saving(stage.figure, str(path), DPI):
-            for row in rows:
-                stage.draw(row)
-                writer.grab_frame()
+        with output_files.written(path, kind) as temporary:
+            with writer.saving(stage.figure, str(temporary), DPI):
+                for row in rows:
+                    stage.draw(row)
+                    writer.grab_frame()
+            if kind == "gif":
+                add_name(temporary)
     plt.close(stage.figure)
 
 
@@ -190,11 +202,15 @@ def space_time(motion, path, rows):
     ax.set_title(f"{motion.results.scene()}: deflection of the bridge over place and time", pad=26)
     ax.text(0.0, 1.02, f"{lines}dashed: span ends; triangles: stations, {motion.in_words()}", transform=ax.transAxes,
             fontsize=9, color=GREY, va="bottom")
-    figure.savefig(path, dpi=130, bbox_inches="tight")
+    output_files.save_figure(figure, path, dpi=130, bbox_inches="tight")
     plt.close(figure)
 
 
 def make(given):
+    path = pathlib.Path(given.o or pathlib.Path(given.results).with_suffix(".gif"))
+    moving = bool(given.o) or not given.space_time
+    for one, kinds in ((path, KINDS),) * moving + ((given.space_time, ["png"]),) * bool(given.space_time):
+        output_files.check(one, output_files.kind_of(one, kinds), [given.results])
     with opened(given.results) as file:
         motion = Motion(Results(file))
         start = motion.time[0] if given.start is None else given.start
@@ -203,8 +219,7 @@ def make(given):
         if given.space_time:
             space_time(motion, given.space_time, chosen_rows(motion.time, start, end, MOST_INSTANTS))
             written.append(given.space_time)
-        if given.o or not given.space_time:
-            path = pathlib.Path(given.o or pathlib.Path(given.results).with_suffix(".gif"))
+        if moving:
             animate(motion, path, chosen_rows(motion.time, start, end, given.frames), given.exaggeration)
             written.append(path)
         return written
@@ -234,8 +249,11 @@ def main():
     given = parser.parse_args()
     try:
         print(*make(given), sep="\n")
-    except (OSError, ValueError) as error:
-        print(f"animate.py: {given.results}: {error}", file=sys.stderr)
+    except OutputError as error:
+        print(f"animate.py: {error}", file=sys.stderr)
+        return 2
+    except Exception as error:
+        print(f"animate.py: {given.results}: {in_one_line(error)}", file=sys.stderr)
         return 2
     return 0
 

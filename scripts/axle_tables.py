@@ -5,11 +5,18 @@ distances in m, speeds in m/s after reading. A wrong table raises ValueError wit
 """
 
 import datetime
+import os
 import pathlib
 from typing import NamedTuple
 
+from input_files import LARGEST_TABLE, text_of
+
 LOADS = {"load_kN": 1e3, "load_t": 9810.0, "load_N": 1.0}
 MOST_ROWS = 2_000_000
+FAST_TRAIN, FAST_LORRY = 128.0, 60.0          # m/s: 1.2 times a line speed of 384 km/h; faster than on any road
+HEAVIEST_AXLE, LIGHTEST_AXLE = 392.4e3, 20e3  # N: the heaviest on rails has 40 t; each table has an axle of 2 t
+LONGEST_SPACING = 50.0                        # m, between neighbouring axles
+DECIMAL_POINT = "a comma separates cells, decimals need a point"
 
 
 class Passage(NamedTuple):
@@ -23,23 +30,25 @@ class Passage(NamedTuple):
 def rows_of(path, allowed):
     """[(where, {column: text})] of a table; where is "FILE:LINE"."""
     rows, columns = [], None
-    with open(path, encoding="utf-8-sig") as file:
-        for number, line in enumerate(file, 1):
-            line = line.split("#")[0].strip()
-            if not line:
-                continue
-            cells, where = [cell.strip() for cell in line.replace(";", ",").split(",")], f"{path}:{number}"
-            if columns is None:
-                columns = cells
-                for column in columns:
-                    if column not in allowed or columns.count(column) > 1:
-                        raise ValueError(f"{where}: column '{column}'; allowed, each once: {', '.join(allowed)}")
-                continue
-            if len(cells) != len(columns):
-                raise ValueError(f"{where}: {len(cells)} cells, expected {len(columns)}")
-            rows.append((where, dict(zip(columns, cells))))
-            if len(rows) > MOST_ROWS:
-                raise ValueError(f"{where}: allowed: at most {MOST_ROWS} rows")
+    for number, line in enumerate(text_of(path, LARGEST_TABLE).splitlines(), 1):
+        line = line.split("#")[0].strip()
+        if not line:
+            continue
+        cells, where = [cell.strip() for cell in line.replace(";", ",").split(",")], f"{path}:{number}"
+        if ";" in line and "," in line:
+            raise ValueError(f"{where}: commas and semicolons in one row; {DECIMAL_POINT}")
+        if columns is None:
+            columns = cells
+            for column in columns:
+                if column not in allowed or columns.count(column) > 1:
+                    raise ValueError(f"{where}: column '{column}'; allowed, each once: {', '.join(allowed)}")
+            continue
+        if len(cells) != len(columns):
+            hint = f"; {DECIMAL_POINT}" if "," in line else ""
+            raise ValueError(f"{where}: {len(cells)} cells, expected {len(columns)}{hint}")
+        rows.append((where, dict(zip(columns, cells))))
+        if len(rows) > MOST_ROWS:
+            raise ValueError(f"{where}: allowed: at most {MOST_ROWS} rows")
     if not rows:
         raise ValueError(f"{path}: expected a line of column names and at least one row")
     return rows
@@ -81,7 +90,7 @@ def loads_column(where, row, names):
 def formations(path):
     """{name: (loads, distances)} of a table of axles, or of all tables of a folder."""
     path, found = pathlib.Path(path), {}
-    for file in sorted(path.glob("*.csv")) if path.is_dir() else [path]:
+    for file in sorted(path.glob("*.csv")) if os.path.isdir(path) else [path]:
         for where, row in rows_of(file, ["name", "speed", *LOADS, "position", "spacing"]):
             name = row.get("name", file.stem)
             if not name or ("position" in row) == ("spacing" in row):
@@ -143,3 +152,22 @@ def weighed(path, days=None):
         records.append((row["time"], speed_of(where, row["speed"]), tuple(loads), tuple(distances)))
     days = days or max(max(times) - min(times), 1.0)
     return [Passage(*record, 1.0 / days) for record in records]
+
+
+def unusual(passages, fast=FAST_TRAIN):
+    """Sentences on numbers of a table that are usual in another unit. fast: the speed (m/s) that nothing exceeds."""
+    said = []
+    fastest = max(passages, key=lambda one: one.speed)
+    if fastest.speed > fast:
+        said.append(f"{fastest.name}: {fastest.speed:g} m/s is {3.6 * fastest.speed:g} km/h; speeds are in m/s, or in "
+                    "km/h as in 80 km/h")
+    heaviest = max(passages, key=lambda one: max(one.loads))
+    load = max(heaviest.loads)
+    if not LIGHTEST_AXLE <= load <= HEAVIEST_AXLE:
+        words = "the heaviest on rails have 40 t" if load > HEAVIEST_AXLE else "the heaviest of the table"
+        said.append(f"{heaviest.name}: an axle of {1e-3 * load:.4g} kN, {words}; loads are possibly given in another "
+                    "unit than the name of their column")
+    spacings = [(b - a, one.name) for one in passages for a, b in zip(one.distances, one.distances[1:])]
+    if spacings and max(spacings)[0] > LONGEST_SPACING:
+        said.append(f"{max(spacings)[1]}: {max(spacings)[0]:g} m between two axles; the unit of distances is m")
+    return said

@@ -11,7 +11,7 @@ import argparse
 import sys
 from typing import NamedTuple
 
-import h5py
+import checked_results
 import numpy as np
 from picture_data import Results, car_body
 
@@ -83,7 +83,7 @@ def complain(text):
 def of_file(path, body, distances):
     """Yields the rows of one file: path, vehicle, body, distance, Comfort."""
     try:
-        with h5py.File(path) as file:
+        with checked_results.opened(path) as file:
             results = Results(file)
             if results.time is None or len(results.time) < 3 or not results.vehicles:
                 complain(f"{path} holds no vehicles over time")
@@ -97,8 +97,10 @@ def of_file(path, body, distances):
                 a = results.over_time(vehicle[f"{name}/acceleration"])
                 for x in distances:
                     yield path, i, name, x, comfort(a[:, 1] + x * a[:, 2], steps[0])
-    except OSError:
-        complain(f"{path} is no results file that can be read")
+    except checked_results.ResultsError as error:
+        complain(f"{path} {error}")
+    except Exception as error:
+        complain(f"{path}: {checked_results.in_one_line(error)}")
 
 
 def main():

@@ -14,7 +14,8 @@ import matplotlib
 matplotlib.use("Agg")
 import numpy as np  # noqa: E402
 import picture_page  # noqa: E402
-from compare_data import abscissa, differing, opened_cases, peaks, runs_over_x, station_curves  # noqa: E402
+from checked_results import in_one_line  # noqa: E402
+from compare_data import abscissa, differing, opened_cases, peaks, runs_over_x, shown_option, station_curves  # noqa: E402
 from engineering_units import shown  # noqa: E402
 from picture_axes import COLOURS, GREY, STYLES, End, Panel, label_at_ends  # noqa: E402
 from picture_bridge import QUANTITIES, STATIC  # noqa: E402
@@ -136,7 +137,7 @@ def of_vehicles(cases, label, xs):
 def of_runs(cases):
     """Panels of sweeps and studies: the worst of all other options over the common one."""
     return [one for title, unit, label, lines in runs_over_x(cases)
-            for one in panel(cases, [[(*line, "")] if line is not None else [] for line in lines], title, unit, label)]
+            for one in panel(cases, [[line] if line is not None else [] for line in lines], title, unit, label)]
 
 
 def difference(value, first):
@@ -163,7 +164,8 @@ def peak_rows(cases):
 def option_rows(cases):
     """Head and rows of the table of options in which the files differ."""
     table = differing([case.results for case in cases])
-    rows = [[name, *(value or "–" for value in values)] for name, values in list(table.items())[:MOST_OPTIONS]]
+    rows = [[name, *(shown_option(name, value) or "–" for value in values)]
+            for name, values in list(table.items())[:MOST_OPTIONS]]
     if len(table) > MOST_OPTIONS:
         rows.append([f"and {len(table) - MOST_OPTIONS} more", *[""] * len(cases)])
     return ["option", *(case.name for case in cases)], rows
@@ -222,11 +224,12 @@ def main():
     if not 2 <= len(arguments.results) <= MOST_FILES:
         sys.exit(f"compare.py: give 2 to {MOST_FILES} results files, not {len(arguments.results)}")
     try:
+        picture_page.check(arguments.out, formats, arguments.results)
         draw(opened_cases(arguments.results), arguments.out, formats)
     except (OSError, ValueError) as error:
-        sys.exit(f"compare.py: {error}")
-    except (KeyError, IndexError, TypeError, AttributeError) as error:
-        sys.exit(f"compare.py: a file is damaged or no results file of this program: {error}")
+        sys.exit(f"compare.py: {in_one_line(error)}")
+    except Exception as error:
+        sys.exit(f"compare.py: a file {in_one_line(error)}")
 
 
 if __name__ == "__main__":

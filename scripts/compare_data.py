@@ -4,13 +4,14 @@ import pathlib
 from typing import NamedTuple
 
 import numpy as np
+from checked_results import in_one_line, opened
 from engineering_units import shown
-from picture_data import Results, opened, place_in_words
+from picture_data import Results, place_in_words
 from picture_model import Model
-from picture_runs import SAME, Runs, engineering, sign_of, worst_over
+from picture_runs import SAME, SPAN, Runs, digits, engineering, sign_of, worst_over
 from picture_track import wheel_paths
 from traverse_report.language import capital
-from traverse_report.quantities import QUANTITIES, words_of
+from traverse_report.quantities import QUANTITIES, with_factor
 
 # Options about the file and the terminal, in which runs may differ without different results.
 UNRELATED = ("output_file", "output_quiet", "options_file", "scene_name", "report_")
@@ -24,6 +25,13 @@ PEAKS = [("deflection", "greatest deflection", "deflection"),
          ("moment", "greatest bending moment", "moment"), ("shear", "greatest shear force", "force"),
          ("least_wheel_force", "least wheel force", "force"), ("greatest_wheel_force", "greatest wheel force", "force"),
          ("wheel_unloading", "greatest wheel unloading", ""), ("longest_loss", "longest loss of contact", "loss_time")]
+
+# Rows of engineering_units.csv of options with a number; values of other options are shown as they are given.
+KINDS = {"beam_EI": "bending_stiffness", "beam_EA": "axial_stiffness", "beam_GA": "axial_stiffness", "beam_mass": "mass_per_length",
+         "beam_tension": "force", "foundation_vertical_k": "spring_stiffness", "foundation_longitudinal_k": "spring_stiffness",
+         "foundation_rotational_k": "rotational_stiffness", "foundation_vertical_bed_k": "bed_stiffness",
+         "support_stiffness": "spring_stiffness", "support_settlement": "displacement", "load_forces": "force",
+         "train_speed": "speed", "load_speed": "speed"}
 
 RAIL_PEAKS = [("tension", "greatest additional tension of the rails", "stress"),
               ("compression", "greatest additional compression of the rails", "stress")]
@@ -42,8 +50,8 @@ def opened_cases(paths):
     for path in paths:
         try:
             found.append(Results(opened(path)))
-        except (ValueError, OSError, KeyError) as error:
-            raise ValueError(f"{path}: {error}") from None
+        except Exception as error:
+            raise ValueError(f"{path}: {in_one_line(error)}") from None
     return [Case(*case) for case in zip(paths, found, names_of(paths, found))]
 
 
@@ -54,13 +62,26 @@ def differing(results):
     return {name: values for name, values in table.items() if len(set(values)) > 1}
 
 
+def shown_option(name, text):
+    """The value of an option with its engineering unit: '260 MN m²' of beam_EI 2.6e8."""
+    try:
+        value = float(text)
+    except ValueError:
+        return text
+    if name not in KINDS:
+        return text
+    unit, factor = shown(KINDS[name])
+    return f"{digits(factor * value)} {unit}"
+
+
 def names_of(paths, results):
     """A name for each file: the values of the few options in which they differ, otherwise the name of the file."""
     table = {option: values for option, values in differing(results).items() if option != "limits"}
     rows = list(zip(*table.values()))
     short = table and len(table) <= MOST_NAMING and all(len(value) <= LONGEST_VALUE for row in rows for value in row)
     if short and len(set(rows)) == len(rows):
-        return [", ".join(f"{name} {value or 'not given'}" for name, value in zip(table, row)) for row in rows]
+        return [", ".join(f"{name} {shown_option(name, value) or 'not given'}" for name, value in zip(table, row))
+                for row in rows]
     stems = [path.stem for path in paths]
     names = stems if len(set(stems)) == len(stems) else [str(path) for path in paths]
     return names if len(set(names)) == len(names) else [f"{name} ({i})" for i, name in enumerate(names, 1)]
@@ -136,8 +157,10 @@ def station_curves(cases, name, kind):
 
 
 def runs_over_x(cases):
-    """[(quantity, unit, label of x, [(x, worst of all other axes) or None])] of the quantities and of the option along
-    x that at least two sweeps or studies have; without those that are 0 in all runs, as losses of contact."""
+    """[(quantity, unit, label of x, [(x, worst of all other axes, words) or None])] of the quantities and of the option
+    along x that at least two sweeps or studies have; without those that are 0 in all runs, as losses of contact. The words
+    name the factor of a limit that the values contain, if it is not the same in all files and therefore in the quantity.
+    """
     runs = [Runs(case.results) if {"sweep", "study"} & set(case.results.file) else None for case in cases]
     known, found = [one for one in runs if one is not None], []
     if len(known) < 2:
@@ -153,5 +176,13 @@ def runs_over_x(cases):
             others = any(len(one.axes) > 1 for one in known)
             worst = "least" if sign_of(name) < 0.0 else "greatest"
             words = f", the {worst} over all other varied options" if others else ""
-            found.append((capital(words_of(name)) + words, next(one.unit(name) for one in known), label, lines))
+            factors = [1.0 if one is None else one.contained(name) for one in runs]
+            drawn = {factor for factor, line in zip(factors, lines) if line is not None}
+            common = factors[next(i for i, line in enumerate(lines) if line is not None)] if len(drawn) == 1 else None
+            unit, by = next(one.unit(name) for one in known), 1.0
+            if unit == SPAN:  # thousandths are readable, L/600 is no scale
+                unit, by = "mm per m of the span", 1e3
+            found.append((capital(with_factor(name, common or 1.0)) + words, unit, label,
+                          [None if line is None else (line[0], by * line[1], f", × {factor:.5g}" if common is None else "")
+                           for line, factor in zip(lines, factors)]))
     return found

@@ -11,6 +11,7 @@ import sys
 from typing import NamedTuple
 
 import numpy as np
+from input_files import LARGEST_TABLE, InputError, text_of
 
 FEWEST = 20             # values
 MOST_COLUMNS = 400      # of the matrix of delayed values
@@ -140,8 +141,8 @@ def decrement_of(values, interval, frequency, noise=0.0):
 
 def read(path, column, first, last):
     """(values, interval) of a column of a table between two times."""
-    with open(path, encoding="utf-8") as file:
-        lines = [line.partition("#")[0].replace(",", " ").replace(";", " ").split() for line in file]
+    lines = [line.partition("#")[0].replace(",", " ").replace(";", " ").split()
+             for line in text_of(path, LARGEST_TABLE).splitlines()]
     rows = [line for line in lines if line]
     if not rows or column < 2 or min(map(len, rows)) < column:
         raise ValueError(f"has no column {column} in every line")
@@ -171,7 +172,9 @@ def main():
             raise ValueError(f"--modes {given.modes}: allowed: 1 to {MOST_MODES}")
         values, interval = read(given.series, given.column, given.first, given.last)
         modes, constant, rest = modes_of(values, interval, given.modes)
-    except (OSError, ValueError, np.linalg.LinAlgError) as error:
+    except InputError as error:
+        sys.exit(f"decay.py: {error}")
+    except (ValueError, np.linalg.LinAlgError) as error:
         sys.exit(f"decay.py: {given.series}: {error}")
     print(f"{'mode':>4} {'frequency (Hz)':>24} {'damping ratio':>24} {'amplitude':>12}")
     for number, mode in enumerate(modes, 1):

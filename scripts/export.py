@@ -8,15 +8,16 @@ the vehicles over time for ParaView, or the envelopes along the rails: NAME.xdmf
 """
 
 import argparse
-import csv
 import pathlib
 import signal
 import sys
 
 import export_tables
 import h5py
-from export_xdmf import write_rail_xdmf, write_xdmf
-from picture_data import Results, opened
+import output_files
+from checked_results import in_one_line, opened
+from export_xdmf import data_file, write_rail_xdmf, write_xdmf
+from picture_data import Results
 
 
 def listed(file):
@@ -37,15 +38,8 @@ def all_names(file):
     return list(dict.fromkeys(groups)) + others
 
 
-def write_csv(file, name, folder):
-    """Writes a table and returns its path."""
-    table = export_tables.table_of(file, name)
-    path = folder / f"{name.strip('/').replace('/', '_')}.csv"
-    with open(path, "w", newline="", encoding="utf-8") as out:
-        writer = csv.writer(out)
-        writer.writerow(table.heads)
-        writer.writerows(table.rows())
-    return path
+def csv_file(folder, name):
+    return folder / f"{name.strip('/').replace('/', '_')}.csv"
 
 
 def export(given):
@@ -57,11 +51,17 @@ def export(given):
         wanted = given.series if given.series or given.xdmf else all_names(file)
         if not wanted and not given.xdmf:
             raise ValueError("holds no series over time and no table")
-        tables = [export_tables.table_of(file, name) for name in wanted]  # finds unknown names before writing
         folder.mkdir(parents=True, exist_ok=True)
-        written = [write_csv(file, name, folder) for name in wanted]
+        inputs, path = [given.results], folder / f"{pathlib.Path(given.results).stem}.xdmf"
+        tables = {csv_file(folder, name): export_tables.table_of(file, name) for name in wanted}
+        for one, table in tables.items():
+            output_files.check(one, "csv", inputs, table.heads)
+        for one, kind in ((path, "xdmf"), (data_file(path), "exported")) if given.xdmf else ():
+            output_files.check(one, kind, inputs)
+        for one, table in tables.items():
+            output_files.write_table(one, table.heads, table.rows())
+        written = list(tables)
         if given.xdmf:
-            path = folder / f"{pathlib.Path(given.results).stem}.xdmf"
             written += (write_rail_xdmf(file, path) if "rail_forces" in file else
                         write_xdmf(Results(file), path, given.exaggeration, given.every))
         return written
@@ -81,8 +81,11 @@ def main():
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ends without a message if the reader of a pipe ends, such as head
     try:
         print(*export(given), sep="\n")
-    except (OSError, ValueError) as error:
-        print(f"export.py: {given.results}: {error}", file=sys.stderr)
+    except output_files.OutputError as error:
+        print(f"export.py: {error}", file=sys.stderr)
+        return 2
+    except Exception as error:
+        print(f"export.py: {given.results}: {in_one_line(error)}", file=sys.stderr)
         return 2
     return 0
 

@@ -1,5 +1,5 @@
-"""Tables of searches, sensitivity analyses, fits and screens for export.py, one row for each answer, effect, estimate, value or
-pair."""
+"""Tables of searches, sensitivity analyses, fits, screens, natural modes and static effects for export.py, one row for each
+answer, effect, estimate, value, pair, mode or station."""
 
 import numpy as np
 
@@ -53,6 +53,35 @@ def of_pairs(file, add):
         add(name, file[f"screen/{name}"].attrs["unit"], file[f"screen/{name}"][:].ravel())
 
 
+def of_modes(first, *others):
+    """The table of natural modes: a row for each mode with those of these quantities that the file has."""
+    def table(file, add):
+        add("mode", "", np.arange(len(file[f"modes/{first}"])) + 1)
+        for name in (first, *others):
+            if f"modes/{name}" in file:
+                add(name, file[f"modes/{name}"].attrs["unit"], file[f"modes/{name}"][:])
+    return table
+
+
+def of_shapes(file, add):
+    """A row for each station: the shape of each mode."""
+    add("x", file["modes/x"].attrs["unit"], file["modes/x"][:])
+    for k, shape in enumerate(file["modes/shape"][:]):
+        add(f"shape of mode {k + 1}", file["modes/shape"].attrs["unit"], shape)
+
+
+def of_static_effects(x, quantities):
+    """The table of the least and greatest static effects of each load model at the stations x."""
+    def table(file, add):
+        add("x", file[f"static/{x}"].attrs["unit"], file[f"static/{x}"][:])
+        for name in quantities:
+            effects = file[f"static/{name}"]
+            for k, load in enumerate(texts(file, "static/load")[:, 0]):
+                for side, extreme in enumerate(("least", "greatest")):
+                    add(f"{name} under {load}, {extreme}", effects.attrs["unit"], effects[k, :, side])
+    return table
+
+
 def of_series(name):
     """The table of a fitted series: measured and computed values by the clock of the measurement."""
     def table(file, add):
@@ -63,7 +92,13 @@ def of_series(name):
 
 TABLES = {"find/ratios": ("find/value", of_find), "find/intervals": ("find/interval", of_intervals),
           "sensitivity": ("sensitivity/units", of_sensitivity), "fit/estimates": ("fit/estimate", of_estimates),
-          "screen": ("screen/ratio", of_pairs)}
+          "screen": ("screen/ratio", of_pairs), "modes/shapes": ("modes/x", of_shapes),
+          "modes/undamped": ("modes/frequency", of_modes("frequency", "modal_damping_ratio", "modal_mass", "axial")),
+          "modes/damped": ("modes/damped_frequency",
+                           of_modes("damped_frequency", "damping_ratio", "decay_rate", "damped_axial")),
+          "static/effects": ("static/x", of_static_effects("x", ("deflection", "moment", "shear"))),
+          "static/reactions": ("static/reaction", of_static_effects("reaction_x", ("reaction",))),
+          "static/end_rotations": ("static/end_rotation", of_static_effects("end_rotation_x", ("end_rotation",)))}
 
 
 def tables(file):

@@ -138,9 +138,9 @@ def of_sweep(file):
     table.add("train", "", np.repeat(numbers, len(speed)).astype(int))
     table.add("sweep/speed", *units(file["sweep/speed"]), np.tile(speed, trains))
     for name in datasets(file, "sweep"):
-        values = file[name][()]
-        if name in ("sweep/speed", "sweep/hslm_a"):
+        if name.rsplit("/", 1)[-1] in ("speed", "hslm_a", *PLACES):
             continue
+        values = file[name][()]
         if values.ndim == 1:
             values = np.tile(values, (trains, 1))
         elif name == "sweep/static_deflection":

@@ -1,10 +1,12 @@
 """XDMF of a run for ParaView: the bridge as a polyline and the bodies of vehicles as points, over time."""
 
+import contextlib
 import pathlib
 import xml.etree.ElementTree as tree
 
 import h5py
 import numpy as np
+import output_files
 from picture_motion import Motion
 
 OF_BRIDGE = ("deflection", "velocity", "acceleration", "moment", "shear")  # series at stations
@@ -50,7 +52,7 @@ def add_item(parent, file, place, values):
     kind = "Int" if values.dtype.kind == "i" else "Float"
     item = tree.SubElement(parent, "DataItem", Format="HDF", NumberType=kind, Precision="8",
                            Dimensions=" ".join(map(str, values.shape)))
-    item.text = f"{pathlib.Path(file.filename).name}:/{place}"
+    item.text = f"{file.attrs['name']}:/{place}"
 
 
 def add_grid(parent, name, topology, data, file, row):
@@ -85,18 +87,39 @@ def along_rail(group, at, quantity):
     return data
 
 
+def data_file(path):
+    return pathlib.Path(f"{path}.h5")
+
+
+def domain_of(root):
+    """The domain of a new XDMF file, which names the program."""
+    domain = tree.SubElement(root, "Domain")
+    tree.SubElement(domain, "Information", Name="program", Value=output_files.PROGRAM)
+    return domain
+
+
+@contextlib.contextmanager
+def files(root, path):
+    """Gives the HDF5 file of the data; writes it and the tree. Their names are those in the tree."""
+    with output_files.written(data_file(path), "exported") as temporary:
+        with h5py.File(temporary, "w") as out:
+            out.attrs["program"], out.attrs["name"] = output_files.RESULTS["exported"], data_file(path).name
+            yield out
+    tree.indent(root)
+    with output_files.written(path, "xdmf") as temporary:
+        tree.ElementTree(root).write(temporary, encoding="utf-8", xml_declaration=True)
+
+
 def write_rail_xdmf(results, path):
     """Writes the envelopes of scene_analysis rail to PATH and PATH.h5, and returns both paths."""
     group = results["rail_forces"]
     root = tree.Element("Xdmf", Version="3.0")
-    whole = tree.SubElement(tree.SubElement(root, "Domain"), "Grid", Name="rail_forces", GridType="Collection",
+    whole = tree.SubElement(domain_of(root), "Grid", Name="rail_forces", GridType="Collection",
                             CollectionType="Spatial")
-    with h5py.File(f"{path}.h5", "w") as out:
+    with files(root, path) as out:
         add_grid(whole, "rails", "Polyline", along_rail(group, "x", "stress"), out, 0)
         add_grid(whole, "sleepers", "Polyvertex", along_rail(group, "sleeper_x", "slip"), out, 0)
-    tree.indent(root)
-    tree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
-    return [path, pathlib.Path(f"{path}.h5")]
+    return [path, data_file(path)]
 
 
 def write_xdmf(results, path, exaggeration=1.0, every=1):
@@ -109,14 +132,12 @@ def write_xdmf(results, path, exaggeration=1.0, every=1):
              "vehicles": ("Polyvertex", vehicles_of(motion, rows, exaggeration))}
     parts = {name: part for name, part in parts.items() if part[1]}
     root = tree.Element("Xdmf", Version="3.0")
-    steps = tree.SubElement(tree.SubElement(root, "Domain"), "Grid", Name=results.scene(), GridType="Collection",
+    steps = tree.SubElement(domain_of(root), "Grid", Name=results.scene(), GridType="Collection",
                             CollectionType="Temporal")
-    with h5py.File(f"{path}.h5", "w") as out:
+    with files(root, path) as out:
         for row, time in enumerate(motion.time[rows]):
             step = tree.SubElement(steps, "Grid", Name=f"{time:.9g} s", GridType="Collection", CollectionType="Spatial")
             tree.SubElement(step, "Time", Value=repr(float(time)))
             for name, (topology, data) in parts.items():
                 add_grid(step, name, topology, data, out, row)
-    tree.indent(root)
-    tree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
-    return [path, pathlib.Path(f"{path}.h5")]
+    return [path, data_file(path)]

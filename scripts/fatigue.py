@@ -9,15 +9,17 @@ evaluated separately.
 """
 
 import argparse
-import csv
 import re
 import sys
 from typing import NamedTuple
 
+import checked_results
 import h5py
 import numpy as np
+import output_files
 
 DAYS_A_YEAR = 365.25
+HEAD = ["series", "range", "mean", "count"]  # of the table of cycles
 
 
 class Cycle(NamedTuple):
@@ -148,10 +150,12 @@ def counted(runs, wanted, factor):
     days = {}
     for path, times in runs:
         try:
-            with h5py.File(path) as file:
+            with checked_results.opened(path) as file:
                 series = series_of(file, wanted)
-        except OSError:
-            sys.exit(f"fatigue.py: {path} is no results file that can be read")
+        except checked_results.ResultsError as error:
+            sys.exit(f"fatigue.py: {path} {error}")
+        except Exception as error:
+            sys.exit(f"fatigue.py: {path}: {checked_results.in_one_line(error)}")
         for name, values in series.items():
             days.setdefault(name, []).extend(
                 Cycle(c.range * abs(factor), c.mean * factor, c.count * times) for c in rainflow(values))
@@ -186,16 +190,15 @@ def main():
     given = arguments.parse_args()
     if not given.cycles > 0.0:
         arguments.error("--cycles: allowed: a number above 0")
+    if given.csv:
+        output_files.check_or_exit("fatigue.py", given.csv, "csv", [path for path, _ in given.runs], HEAD)
     days = counted(given.runs, given.of, given.factor)
     if given.line:
         print(f"damage by {given.line.name}; the range at {given.cycles:g} cycles by its first slope, "
               f"{given.line.slope:g}, for the passages of one day")
     print("\n".join(table(days, given.line, given.cycles)))
     if given.csv:
-        with open(given.csv, "w", newline="") as out:
-            writer = csv.writer(out)
-            writer.writerow(["series", "range", "mean", "count"])
-            writer.writerows([name, *cycle] for name, cycles in days.items() for cycle in cycles)
+        output_files.write_table(given.csv, HEAD, ([name, *cycle] for name, cycles in days.items() for cycle in cycles))
 
 
 if __name__ == "__main__":

@@ -17,7 +17,9 @@ import sys
 import tempfile
 
 import h5py
+import output_files
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 from picture_words import weighs
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -89,12 +91,17 @@ def draw(results, picture):
     with h5py.File(results, "a") as file:  # the picture must not contain the computing time
         for name in ("steps", "runs"):
             file.attrs.pop(name, None)
-    subprocess.run([sys.executable, ROOT / "scripts" / "picture.py", results, picture], check=True,
+    large = results.with_suffix(".png")
+    subprocess.run([sys.executable, ROOT / "scripts" / "picture.py", results, large], check=True,
                    stdout=subprocess.DEVNULL)
-    with Image.open(picture) as page:
+    with Image.open(large) as page:
         height = round(page.height * PICTURE_WIDTH / page.width)
         small = page.convert("RGB").resize((PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
-    small.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(picture, optimize=True)
+    about = PngInfo()
+    about.add_text("Software", output_files.PROGRAM)
+    with output_files.written(picture, "png") as temporary:
+        small.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(temporary, optimize=True,
+                                                                                          pnginfo=about)
 
 
 def in_figures(value):
@@ -170,7 +177,8 @@ def main():
             print(name, flush=True)
             page += shown(name, folder, given.program, pathlib.Path(scratch))
     page += table_of([name for name in names() if name not in chosen])
-    (folder / "gallery.md").write_text("\n".join(page).rstrip() + "\n", encoding="utf-8")
+    with output_files.written(folder / "gallery.md", "md") as temporary:
+        temporary.write_text("\n".join(page).rstrip() + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -14,11 +14,12 @@ file(GLOB pictures CONFIGURE_DEPENDS scripts/picture*.py)
 install(FILES ${pictures} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
         scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_tables.py
         scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/traffic.py
+        scripts/checked_results.py scripts/input_files.py scripts/output_files.py
         scripts/search_answers.py scripts/sensitivity_measures.py
         DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
-install(FILES examples/three_span_train.py DESTINATION ${share}/examples)
+install(FILES examples/three_span_train.py examples/bridge.yml DESTINATION ${share}/examples)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR})

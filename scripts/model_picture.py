@@ -9,6 +9,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+import output_files  # noqa: E402
 from matplotlib.patches import Circle, FancyBboxPatch, Polygon  # noqa: E402
 
 BLUE, ORANGE, GREEN, GREY, DARK = "#0072B2", "#D55E00", "#007A59", "#666666", "#222222"
@@ -117,7 +118,7 @@ def draw(out):
     ax.set_ylim(-3.2, 5.2)
     ax.set_aspect("equal")
     ax.axis("off")
-    figure.savefig(out, dpi=110, bbox_inches="tight")
+    output_files.save_figure(figure, out, dpi=110, bbox_inches="tight")
     plt.close(figure)
 
 

@@ -14,6 +14,9 @@ import pathlib
 import re
 import sys
 
+import output_files
+from checked_results import in_one_line
+
 here = pathlib.Path(__file__).resolve().parent
 PARTS = here / "traverse_page"
 SCRIPTS = ("format.js", "symbols.js", "places.js", "stage.js", "gestures.js", "charts.js", "tables.js", "runs.js",
@@ -52,7 +55,8 @@ def page(data):
     policy = (f"default-src 'none'; script-src {fingerprint(library)} {fingerprint(script)}; "
               f"style-src {fingerprint(style)}; base-uri 'none'; form-action 'none'")
     words = {name: html.escape(text) for name, text in data["words"].items()}
-    parts = {**words, "title": html.escape(data["title"]), "policy": policy, "style": style, "library": library,
+    parts = {**words, "title": html.escape(data["title"]), "generator": output_files.GENERATOR,
+             "policy": policy, "style": style, "library": library,
              "script": script, "data": as_json(data)}
     template = (PARTS / "page.html").read_text(encoding="utf-8")
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)
@@ -61,10 +65,12 @@ def page(data):
 def write(results, out):
     sys.path.insert(0, str(here))
     from traverse_page.data import collect  # imported here because it takes a second
+    output_files.check(out, "html", [results])
     text = page(collect(results)).encode("utf-8", "replace")
     if len(text) > LARGEST:
         raise ValueError(f"the page would have {len(text):,} bytes, more than {LARGEST:,}")
-    pathlib.Path(out).write_bytes(text)
+    with output_files.written(out, "html", [results]) as temporary:
+        temporary.write_bytes(text)
 
 
 def main():
@@ -74,8 +80,11 @@ def main():
     given = parser.parse_args()
     try:
         write(given.results, given.out)
-    except (OSError, ValueError) as error:
-        print(f"page.py: {given.results}: {error}".replace("\n", " "), file=sys.stderr)
+    except output_files.OutputError as error:
+        print(f"page.py: {error}", file=sys.stderr)
+        return 1
+    except Exception as error:
+        print(f"page.py: {given.results}: {in_one_line(error)}", file=sys.stderr)
         return 1
     return 0
 

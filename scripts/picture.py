@@ -13,12 +13,14 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
+import checked_results  # noqa: E402
 import picture_find  # noqa: E402
 import picture_fit  # noqa: E402
 import picture_page  # noqa: E402
 import picture_screen  # noqa: E402
 import picture_sensitivity  # noqa: E402
-from picture_data import Results, opened  # noqa: E402
+from output_files import OutputError  # noqa: E402
+from picture_data import Results  # noqa: E402
 from picture_modes import draw_modes  # noqa: E402
 from picture_panels import MAY_BE_ASKED, panels  # noqa: E402
 from picture_words import method_in_words, speed_in_words, summary_in_words, sweep_in_words  # noqa: E402
@@ -99,12 +101,13 @@ def main():
     formats = picture_page.listed("picture.py", "formats", arguments.formats, picture_page.FORMATS)
     asked = picture_page.listed("picture.py", "panels", arguments.panels, MAY_BE_ASKED)
     try:
-        with opened(arguments.results) as file:
+        picture_page.check(arguments.out, formats, [arguments.results])
+        with checked_results.opened(arguments.results) as file:
             draw(Results(file), arguments.out, asked, formats)
-    except (OSError, ValueError) as error:
-        sys.exit(f"picture.py: {arguments.results}: {error}")
-    except (KeyError, IndexError, TypeError, AttributeError) as error:
-        sys.exit(f"picture.py: {arguments.results}: is damaged or no results file of this program: {error}")
+    except OutputError as error:
+        sys.exit(f"picture.py: {error}")
+    except Exception as error:
+        sys.exit(f"picture.py: {arguments.results}: {checked_results.in_one_line(error)}")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 import re
 
-import h5py
 import numpy as np
 
 MOST_CURVES = 6
@@ -57,14 +56,6 @@ def speed_of(text):
     if text.endswith("km/h"):
         return float(text[:-4]) / 3.6
     return float(text.removesuffix("m/s"))
-
-
-def opened(path):
-    """Opens a file, also while a run writes it; ValueError if it cannot be read."""
-    try:
-        return h5py.File(path, "r", locking=False)
-    except OSError:
-        raise ValueError("is no results file that can be read") from None
 
 
 def natural(name):

@@ -4,6 +4,7 @@ import pathlib
 import sys
 
 import matplotlib.pyplot as plt
+import output_files
 import picture_table
 from picture_axes import GREY
 from picture_layout import fit, stack, wrapped
@@ -56,13 +57,24 @@ def draw_panels(figure, found, title, said, foot):
     heading(figure, title, said, foot)
 
 
+def files(out, formats):
+    """The file `out`, or files of this name with the endings of the formats."""
+    return [pathlib.Path(out).with_suffix(f".{one}") for one in formats] or [pathlib.Path(out)]
+
+
+def check(out, formats, inputs):
+    """OutputError unless the files may be written."""
+    for path in files(out, formats):
+        output_files.check(path, output_files.kind_of(path, FORMATS), inputs)
+
+
 def save(figure, out, formats=()):
-    """Writes the page into `out`, or into files of this name with the endings of the formats; csv: its curves."""
-    for path in [pathlib.Path(out).with_suffix(f".{one}") for one in formats] or [pathlib.Path(out)]:
+    """Writes the page into its files; csv: its curves."""
+    for path in files(out, formats):
         if path.suffix == ".csv":
             picture_table.write(figure, path)
         else:
-            figure.savefig(path, dpi=130)
+            output_files.save_figure(figure, path, dpi=130)
     plt.close(figure)
 
 

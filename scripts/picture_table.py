@@ -1,8 +1,7 @@
 """The curves of a picture as a table: a CSV file with one column for each curve, and one for its places or times."""
 
-import csv
-
 import numpy as np
+import output_files
 
 
 def keep(ax, name, x, values, unit=None):
@@ -53,11 +52,9 @@ def one_line(text):
 def write(figure, path):
     """Writes the table with all digits of the drawn numbers; shorter columns end with empty cells."""
     table = columns(figure)
-    with open(path, "w", encoding="utf-8", newline="") as file:
-        rows = csv.writer(file)
-        rows.writerow([heading for heading, _ in table])
-        for i in range(max((len(values) for _, values in table), default=0)):
-            rows.writerow([cell(values[i]) if i < len(values) else "" for _, values in table])
+    rows = ([cell(values[i]) if i < len(values) else "" for _, values in table]
+            for i in range(max((len(values) for _, values in table), default=0)))
+    output_files.write_table(path, [heading for heading, _ in table], rows)
 
 
 def cell(value):

@@ -44,7 +44,8 @@ def summary_in_words(results):
         probed = "" if "sweep" in results.file or at_worst_place(results) else " at a probe"
         said.append(f"greatest deflection{probed} {millimetres(summary['deflection'])}, "
                     f"{place_in_words(summary['deflection_place'], results.supports)}"
-                    f"{run_in_words(results, 'deflection')}")
+                    f"{run_in_words(results, 'deflection')}"
+                    f"{' relative to the supports' if 'deflection_relative_to' in summary else ''}")
     if summary.get("amplification") and not from_rest(results.options):
         weight = ", both with the weight of the bridge" if weighs(results.options) else ""
         said.append(f"{summary['amplification']:.3g} times the static one{weight}")

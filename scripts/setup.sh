@@ -9,8 +9,8 @@ setup_log=build/setup.log
 # No name carries a version, so that Debian 12 and 13 and Ubuntu take what they have.
 program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-real-dev libopenmpi-dev openmpi-bin
   libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev libboost-dev libjs-chart.js python3-h5py python3-matplotlib
-  python3-openpyxl python3-yaml)
-test_packages=(chromium libgtest-dev python3-h5netcdf python3-netcdf4 python3-xarray)
+  python3-openpyxl python3-xarray python3-yaml)
+test_packages=(chromium libgtest-dev python3-h5netcdf python3-netcdf4)
 benchmark_packages=(libbenchmark-dev)
 check_packages=(clang-format clang-tidy)
 
@@ -78,11 +78,31 @@ build() {
   shift
   if ! configured "$@"; then
     configured || fresh=--fresh
+    [ ! -t 2 ] || printf 'Building Traverse, log in %s' "$setup_log" >&2
     cmake $fresh --preset release "$@" >"$setup_log" 2>&1 || fail "CMake could not configure."
   fi
-  cmake --build build --target "$target" 2>&1 | awk -v log_file="$setup_log" '
-    /^\[[1-9]/ && !said++ { print "Building Traverse, log in " log_file > "/dev/stderr" }
-    { print > log_file }' || fail "Traverse could not be built."
+  cmake --build build --target "$target" 2>&1 | show_progress || fail "Traverse could not be built."
+}
+
+# Copies Ninja's lines to the log. Says one line if something is built; on a terminal this line shows how many steps are
+# done, and the time left at their mean pace so far.
+show_progress() {
+  local said='' start=$SECONDS line ended total left terminal=
+  [ ! -t 2 ] || terminal=1
+  while IFS= read -r line; do
+    printf '%s\n' "$line" >&3
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] && ((BASH_REMATCH[1] > 0)) || continue
+    ended=${BASH_REMATCH[1]} total=${BASH_REMATCH[2]}
+    if [ -n "$terminal" ]; then
+      left=$(((SECONDS - start) * (total - ended) / ended))
+      printf '\rBuilding Traverse [%d/%d], %d min %02d s left, log in %s\033[K' "$ended" "$total" $((left / 60)) $((left % 60)) \
+        "$setup_log" >&2
+    elif [ -z "$said" ]; then
+      echo "Building Traverse, log in $setup_log" >&2
+    fi
+    said=1
+  done 3>"$setup_log"
+  [ -z "$terminal" ] || [ -z "$said" ] || echo >&2
 }
 
 # The program alone; the program and its tests; the benchmarks too.

@@ -12,7 +12,9 @@ import re
 
 SHOWN = 20
 TEST = re.compile(r"^\d+/\d+ Testing: (.+)$", re.MULTILINE)
-END = re.compile(r"^Test (Passed|Failed)\.$", re.MULTILINE)
+# CTest writes "Test Passed." also if there is no program to be started; then its command is empty.
+END = re.compile(r"^(Test Passed|Test Failed|Skip regular expression found in output)\.", re.MULTILINE)
+NO_PROGRAM = re.compile(r'^Command: ""$', re.MULTILINE)
 CASES = re.compile(r'^Command: .*"--gtest_filter=([^"]*)"', re.MULTILINE)
 STARTED = re.compile(r"\[ RUN      \] (\S+)")
 ENDED = re.compile(r"\[(       OK |  SKIPPED |  FAILED  )\] ([^\s,]+).*\((\d+) ms\)")
@@ -20,6 +22,7 @@ USED = re.compile(r"\[ SECONDS  \] (\S+) ([\d.]+)")
 SECONDS = re.compile(r"^Test time =\s+([\d.]+) sec$", re.MULTILINE)
 PASSED, SKIPPED, FAILED = "passed", "skipped", "failed"
 RESULTS = {"OK": PASSED, "SKIPPED": SKIPPED, "FAILED": FAILED}
+ENDS = {"Test Passed": PASSED, "Test Failed": FAILED, "Skip regular expression found in output": SKIPPED}
 
 
 def cases_of_program(name, text, wanted):
@@ -43,8 +46,9 @@ def cases_in(log):
         if wanted:
             yield from cases_of_program(name, text, wanted[1].split(":"))
             continue
-        end, seconds = END.search(text), SECONDS.search(text)
-        yield name, PASSED if end and end[1] == "Passed" else FAILED, float(seconds[1]) if seconds else 0.0, ""
+        end, seconds, missing = END.search(text), SECONDS.search(text), NO_PROGRAM.search(text)
+        result = ENDS[end[1]] if end and not missing else FAILED
+        yield name, result, float(seconds[1]) if seconds else 0.0, "did not start" if missing else ""
 
 
 def slow_ones(cases, seconds):

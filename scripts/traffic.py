@@ -10,19 +10,21 @@ the last two are lists separated by blanks.
 
 import argparse
 import concurrent.futures
-import csv
 import os
 import pathlib
 import sys
 import tempfile
+import warnings
 from typing import NamedTuple
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 import axle_tables  # noqa: E402
 import fatigue  # noqa: E402
+import output_files  # noqa: E402
 import traverse  # noqa: E402
 
 MOST_LISTED = 20
+HEAD = ["series", "passage", "speed", "count a day", "damage a day", "largest range"]  # of the table of passages
 
 
 class Share(NamedTuple):
@@ -50,6 +52,19 @@ def cycles_of(scene, passage, series, factor):
         return fatigue.counted([(results, 1.0)], series, factor)
 
 
+def cycles_of_all(given, passages, said):
+    """The cycles of each passage. Prints what is unusual in the tables, `said`, and in the scene of the first one."""
+    with warnings.catch_warnings(record=True) as noted:
+        warnings.simplefilter("always", traverse.UnusualInput)
+        first = cycles_of(given.scene, passages[0], given.of, given.factor)
+        said = [*said, *(str(one.message) for one in noted)]
+        if said:
+            print("\n  ".join(["unusual input", *said]), flush=True)
+        with concurrent.futures.ThreadPoolExecutor(given.processes) as pool:
+            others = pool.map(lambda one: cycles_of(given.scene, one, given.of, given.factor), passages[1:])
+            return [first, *others]
+
+
 def shares_of(passages, found, name, line):
     """The passages by falling damage in a series."""
     shares = [Share(passage, cycles[name], passage.count * line.damage(cycles[name]))
@@ -75,12 +90,9 @@ def table(name, shares, line, repeated):
 
 
 def write(path, found):
-    with open(path, "w", newline="", encoding="utf-8") as out:
-        writer = csv.writer(out)
-        writer.writerow(["series", "passage", "speed", "count a day", "damage a day", "largest range"])
-        for name, shares in found.items():
-            writer.writerows([name, s.passage.name, s.passage.speed, s.passage.count, s.damage,
-                              max((c.range for c in s.cycles), default=0.0)] for s in shares)
+    output_files.write_table(path, HEAD, (
+        [name, s.passage.name, s.passage.speed, s.passage.count, s.damage, max((c.range for c in s.cycles), default=0.0)]
+        for name, shares in found.items() for s in shares))
 
 
 def asked():
@@ -107,11 +119,14 @@ def asked():
 
 def main():
     given = asked()
+    if given.csv:
+        read = [path for path in (given.scene, given.mix, given.fleet, given.weighed) if path]
+        output_files.check_or_exit("traffic.py", given.csv, "csv", read, HEAD)
     try:
         passages = merged(axle_tables.mix(given.mix, axle_tables.formations(given.fleet)) if given.mix
                           else axle_tables.weighed(given.weighed, given.days))
-        with concurrent.futures.ThreadPoolExecutor(given.processes) as pool:
-            found = list(pool.map(lambda one: cycles_of(given.scene, one, given.of, given.factor), passages))
+        said = axle_tables.unusual(passages, axle_tables.FAST_TRAIN if given.mix else axle_tables.FAST_LORRY)
+        found = cycles_of_all(given, passages, said)
     except (OSError, ValueError, traverse.Error) as error:
         sys.exit(f"traffic.py: {error}")
     shares = {name: shares_of(passages, found, name, given.line) for name in found[0]}

@@ -1,4 +1,4 @@
-"""The paths of the program and its library, and the error of both."""
+"""The paths of the program and its library, the error of both, and the warning about unusual input."""
 
 import os
 import pathlib
@@ -15,6 +15,10 @@ class Error(RuntimeError):
     def __init__(self, message, status):
         super().__init__(message)
         self.status = status
+
+
+class UnusualInput(UserWarning):
+    """A line of the program on input that is valid but probably not intended, such as a value in another unit."""
 
 
 def program():

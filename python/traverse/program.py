@@ -1,23 +1,27 @@
 """Runs of the program: each in a separate process, so that no failure ends the interpreter."""
 
+import operator
 import os
 import pathlib
 import subprocess
+import warnings
 
 from . import places, words
 from .dataset import open_results
 
+MOST_RANKS = 1024
 
 def run(scene, *, folder=None, ranks=1, output=None, **options):
     """Computes a scene and returns its results, an xarray.Dataset like that of `open`.
 
     scene: the path of a scene file, or a dictionary with the same structure.
     folder: the folder of files named in a dictionary and of a relative `output`; default: the working directory.
-    ranks: the number of MPI ranks.
+    ranks: the number of MPI ranks, from 1 to 1024.
     output: the results file; None: the file is deleted.
     options: options of the program, with priority over the scene: train_speed=70.0, output_probes=[12.5, 40.0]. The
         program reads neither .petscrc nor PETSC_OPTIONS.
-    Raises Error with the last message of the program.
+    Warns with UnusualInput about each value that is probably not intended. Raises Error with the last message of the
+    program.
     """
     return _computed([scene], folder, ranks, output, options)
 
@@ -111,17 +115,44 @@ def screen(stock, fleet, limits, speeds=None, *, folder=None, ranks=1, output=No
     return _computed([scene], folder, ranks, output, {**asked, **options})
 
 
+def _number_of(ranks):
+    """The number of ranks, a whole number from 1 to MOST_RANKS; Error otherwise."""
+    try:
+        number = 0 if isinstance(ranks, bool) else operator.index(ranks)
+    except TypeError:
+        number = 0
+    if not 1 <= number <= MOST_RANKS:
+        raise places.Error(f"ranks = {ranks!r}: allowed: a whole number from 1 to {MOST_RANKS}", 2)
+    return number
+
+
+def _version_of(path):
+    """What distinguishes two versions of a file; None if it does not exist."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_size, found.st_mtime_ns
+
+
 def _computed(scenes, folder, ranks, output, options):
+    ranks = _number_of(ranks)
     with words.of_scenes(*scenes) as (files, scratch):
         kept = pathlib.Path(folder or ".", output) if output is not None else pathlib.Path(scratch, "results.h5")
         asked = [places.program(), *files, *words.of_options(options), "-output_quiet", "true",
                  "-skip_petscrc"]
         if ranks != 1:
             asked = ["mpirun", "-n", str(ranks), *asked]
+        earlier = _version_of(kept)
         ended = subprocess.run([*asked, "-output_file", str(kept.resolve())], cwd=folder, capture_output=True,
                                text=True, errors="replace", env=_environment(), stdin=subprocess.DEVNULL)
+        for line in words.unusual_input(ended.stdout):
+            warnings.warn(line, places.UnusualInput, stacklevel=3)
         if ended.returncode != 0:
             raise places.Error(_reason(ended).replace(scratch + os.sep, ""), _status(ended.returncode))
+        if _version_of(kept) == earlier:
+            raise places.Error("the program has ended without results: with options such as check, help or version it "
+                               "computes nothing; leave them out, or give them to the program in a terminal", 2)
         return open_results(kept)
 
 

@@ -46,3 +46,14 @@ def of_scenes(*scenes):
                 scene = path
             words += ["-options_file", os.fspath(scene)]
         yield words, folder
+
+
+def unusual_input(printed):
+    """The lines on unusual input that the program has printed."""
+    found, inside = [], False
+    for line in printed.splitlines():
+        if inside and line.startswith("  "):
+            found.append(line.strip())
+        else:
+            inside = line == "unusual input"
+    return found

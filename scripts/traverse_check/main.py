@@ -2,11 +2,15 @@
 
 import concurrent.futures
 import contextlib
+import io
 import os
 import pathlib
 import signal
 import sys
 import textwrap
+
+import output_files
+from output_files import write_text as write
 
 from . import flow_chart, outcome, question, runs, scene, track_defects, units
 from .rules import MARKS, CheckError, clause, printable, rule
@@ -28,12 +32,22 @@ def stiffnesses_of(asked, traverse):
     return [trial.EI * (frequency / n0) ** 2 for frequency in asked.frequencies]
 
 
+def check_frequency(n0, length):
+    """CheckError for a frequency of no bridge of this length: EI, mass and span do not belong together."""
+    upper = rule("frequencies")["upper"]
+    usual = upper["c"] * length ** upper["e"]
+    if not usual / 100.0 <= n0 <= 10.0 * usual:
+        raise CheckError(f"the first frequency of {n0:.3g} Hz is that of no bridge with L = {length:g} m, whose upper limit is "
+                         f"{usual:.3g} Hz (figure 6.10): check EI, mass and span with their units")
+
+
 def parts_of(asked, case, traverse):
     """The parts that the flow chart judges: the bridge, or its simply supported spans of different lengths."""
     different = [[span] for span in sorted(set(asked.spans))] if asked.separate else [asked.spans]
     found = []
     for spans in different:
         n0, length = runs.scratch_run(traverse, scene.bare_static_scene(asked, case, spans), first_frequency)
+        check_frequency(n0, length)
         found.append(flow_chart.Part(length, n0, asked.separate))
     return found
 
@@ -86,16 +100,28 @@ def trains_of(asked):
     return [train for train, applies in (("A", not all(short)), ("B", any(short))) if applies]
 
 
-def write(path, text):
-    path.write_text(text, encoding="utf-8")
+def limits_file_of(asked):
+    return pathlib.Path(asked.limits) if asked.limits else runs.data_file("limits", "en1991_2.yml")
+
+
+def check_outputs(asked, cases, words):
+    """OutputError unless all files of the folder may be written, of whatever trains these will be. words: of the
+    command line, which may be names of files that are read."""
+    inputs = [limits_file_of(asked), *(word for word in words if pathlib.Path(word).is_file())]
+    names = [case.name + train for case in cases for train in ("", "_hslm_a", "_hslm_b")]
+    endings = ("yml", "txt", "h5", *(("png", "html") if asked.report else ()))
+    files = [("limits", "yml"), ("summary", "txt"), *(("report", ending) for ending in ("pdf", "xlsx") if asked.report),
+             *((name, ending) for name in names for ending in endings)]
+    for name, ending in files:
+        kind = "results" if ending == "h5" else ending
+        output_files.check(asked.folder / f"{name}.{ending}", kind, inputs)
 
 
 def run_all(asked, cases, factor, needed, traverse):
     """Writes and runs the scenes of all cases; the names of the results files, with the words of their cases. factor:
     of the limits of effects of trains; None without a dynamic analysis."""
     dynamic = factor is not None
-    limits = pathlib.Path(asked.limits) if asked.limits else runs.data_file("limits", "en1991_2.yml")
-    write(asked.folder / "limits.yml", scene.limits_text(asked, limits, factor))
+    write(asked.folder / "limits.yml", scene.limits_text(asked, limits_file_of(asked), factor))
     trains = trains_of(asked) if dynamic else [""]
     names, done = [], []
     for case in cases:
@@ -108,9 +134,13 @@ def run_all(asked, cases, factor, needed, traverse):
             done.append((f"{names[-1]}.h5", words, case))
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         printed = pool.map(lambda name: runs.compute(traverse, asked.folder, f"{name}.yml", f"{name}.h5"), names)
+        said = []
         for name, text in zip(names, printed):
             write(asked.folder / f"{name}.txt", text)
+            said += runs.unusual_input(text)
             print(f"  {name}.yml is computed", flush=True)
+    for line in dict.fromkeys(said):
+        print(textwrap.fill(f"Unusual input: {line}", WIDTH, subsequent_indent="  "))
     return done
 
 
@@ -138,7 +168,7 @@ def print_remarks(asked, judged, dynamic):
 
 
 class Both:
-    """Writes to the terminal and to a file."""
+    """Writes to the terminal and to a text."""
 
     def __init__(self, *streams):
         self.streams = streams
@@ -157,15 +187,21 @@ def check(words):
     asked = question.ask(words)
     traverse = runs.program(asked.program)
     asked.folder.mkdir(parents=True, exist_ok=True)
-    with open(asked.folder / "summary.txt", "w", encoding="utf-8") as file, \
-            contextlib.redirect_stdout(Both(sys.stdout, file)):
-        return status_of(asked, traverse)
+    summary = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(Both(sys.stdout, summary)):
+            return status_of(asked, traverse, words)
+    finally:
+        if summary.getvalue():
+            write(asked.folder / "summary.txt", summary.getvalue())
 
 
-def status_of(asked, traverse):
+def status_of(asked, traverse, words):
     """Runs the check, step by step."""
-    print(f"Bridge: {scene.bridge_in_words(asked)}")
     cases = scene.cases(asked, stiffnesses_of(asked, traverse))
+    scene.read_limits(limits_file_of(asked))
+    check_outputs(asked, cases, words)
+    print(f"Bridge: {scene.bridge_in_words(asked)}")
     needed, parts = need(asked, cases, traverse)
     dynamic = needed or asked.always
     first, last, _ = scene.speeds(asked)
@@ -193,6 +229,9 @@ def main():
     except CheckError as error:
         print(f"traverse check: {error}", file=sys.stderr)
         return error.status
+    except output_files.OutputError as error:
+        print(f"traverse check: {printable(error)}", file=sys.stderr)
+        return 4
     except OSError as error:
         print(f"traverse check: {printable(error.filename or 'output')}: {error.strerror}", file=sys.stderr)
         return 4

@@ -6,7 +6,7 @@ import os
 import pathlib
 from typing import NamedTuple, Optional
 
-import yaml
+from input_files import InputError, yaml_of
 
 from . import units
 from .rules import CheckError, rule
@@ -38,7 +38,6 @@ FLAGS = {
 }
 TITLE = ("project", "structure", "line", "author", "checker", "revision", "date", "note", "logo", "norm-edition",
          "national-annex", "language")
-LARGEST_FILE = 100_000  # bytes
 
 
 class Question(NamedTuple):
@@ -107,13 +106,9 @@ def scalar(value):
 def words_of_file(path):
     """{word: text} of a YAML file."""
     try:
-        if pathlib.Path(path).stat().st_size > LARGEST_FILE:
-            raise CheckError(f"{path}: the file is too large for a few words about a bridge")
-        read = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise CheckError(f"{path}: {error.strerror}") from None
-    except (yaml.YAMLError, ValueError, RecursionError):
-        raise CheckError(f"{path} is no YAML file with one word and its value on each line") from None
+        read = yaml_of(path, "YAML file with one word and its value on each line")
+    except InputError as error:
+        raise CheckError(str(error)) from None
     if not isinstance(read, dict):
         raise CheckError(f"{path} is no YAML file with one word and its value on each line")
     words = {}
@@ -127,7 +122,7 @@ def words_of_file(path):
             raise CheckError(f"{path}: {name} needs a value, or a list of values")
         words[name] = ", ".join(scalar(part) for part in parts)
     folder = pathlib.Path(words.get("folder", "."))
-    if folder.is_absolute() or ".." in folder.parts:
+    if folder.is_absolute() or ".." in folder.parts or not folder.resolve().is_relative_to(pathlib.Path().resolve()):
         raise CheckError(f"{path}: folder {folder}: allowed in a file: a folder below the working directory; for "
                          "others use --folder")
     return words

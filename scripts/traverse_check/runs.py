@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
+import checked_results
 
 from .rules import CheckError
 
@@ -37,6 +37,17 @@ def last_line(ended):
     return lines[-1].removeprefix("traverse: ") if lines else "it ended without a message"
 
 
+def unusual_input(printed):
+    """The lines on unusual input that the program has printed."""
+    found, inside = [], False
+    for line in printed.splitlines():
+        if inside and line.startswith("  "):
+            found.append(line.strip())
+        else:
+            inside = line == "unusual input"
+    return found
+
+
 def compute(traverse, folder, scene, results, *words):
     """Runs a scene file of a folder; all names are relative to it. Returns what the program prints."""
     asked = [traverse, "-options_file", scene, "-output_file", results, "-output_quiet", "true", "-skip_petscrc",
@@ -55,7 +66,7 @@ def scratch_run(traverse, text, read, *words):
     with tempfile.TemporaryDirectory() as folder:
         pathlib.Path(folder, "scene.yml").write_text(text, encoding="utf-8")
         compute(traverse, folder, "scene.yml", "results.h5", *words)
-        with h5py.File(pathlib.Path(folder, "results.h5"), "r", locking=False) as file:
+        with checked_results.opened(pathlib.Path(folder, "results.h5")) as file:
             return read(file)
 
 

@@ -4,7 +4,7 @@ import json
 import math
 from typing import NamedTuple
 
-import yaml
+from input_files import InputError, yaml_of
 from traverse_report import language
 from traverse_report.language import t
 from traverse_report.quantities import speed_in_words
@@ -149,23 +149,27 @@ def static_scene(question, case):
             + report_text(question, False) + "limits: limits.yml\n")
 
 
+def read_limits(limits_file):
+    """The rows of a file of limits."""
+    try:
+        found = yaml_of(limits_file, "list of limits, each with quantity, value and clause")
+        return [{name: str(row[name]) for name in ("clause", "quantity", "value", "text", "factor")
+                 if name in row or name == "quantity"} for row in found]
+    except InputError as error:
+        raise CheckError(str(error), 4) from None
+    except (TypeError, KeyError):
+        raise CheckError(f"{limits_file} is no list of limits, each with quantity, value and clause") from None
+
+
 def limit_rows(question, limits_file, factor):
     """The limits of the file that apply, and that of EN 1991-2 6.4.6.5. Direct fastening replaces values of
     options/limits/en1991_2.yml. factor: of 6.4.6.4 for the effects of trains; None without a dynamic analysis."""
-    dynamic = factor is not None
-    try:
-        found = yaml.safe_load(limits_file.read_text(encoding="utf-8"))
-        found = [{name: str(row[name]) for name in ("clause", "quantity", "value", "text", "factor") if name in row}
-                 for row in found]
-        quantities = [row["quantity"] for row in found]
-    except OSError as error:
-        raise CheckError(f"{limits_file}: {error.strerror}", 4) from None
-    except (yaml.YAMLError, ValueError, TypeError, KeyError, RecursionError):
-        raise CheckError(f"{limits_file} is no list of limits, each with quantity, value and clause") from None
+    found, dynamic = read_limits(limits_file), factor is not None
     joints = question.simply_supported and len(question.spans) > 1
     others = data()["direct_fastening"] if question.track == "direct" and not question.limits else {}
     kept = []
-    for row, quantity in zip(found, quantities):
+    for row in found:
+        quantity = row["quantity"]
         row |= {name: str(value) for name, value in others.get(quantity, {}).items() if name != "sources"}
         if ("joint" not in quantity or joints) and (dynamic or quantity.startswith("lm71")):
             kept.append(row)

@@ -16,6 +16,7 @@ NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 class Kind(NamedTuple):
     row: str             # of engineering_units.csv
+    of_bridges: tuple    # the least and the greatest value of any railway bridge, in SI: others are errors
     least: float = 0.0   # a number without a unit must be above it, otherwise its unit is in doubt
     alone: str = ""      # unit of a number without a unit; empty: the SI unit
     example: str = ""
@@ -24,13 +25,13 @@ class Kind(NamedTuple):
 # No bridge has a bending stiffness of 1e7 N m2 or a mass of 500 kg/m: smaller numbers may be meant in MN m2 or t/m. No
 # line speed is 140 m/s: a larger number can only be meant in km/h, a smaller one in m/s too.
 KINDS = {
-    "span": Kind("length"),
-    "EI": Kind("bending_stiffness", 1e7, example="260 GN.m2"),
-    "mass": Kind("mass_per_length", 500.0, example="19 t/m"),
-    "frequency": Kind("frequency"),
-    "torsional-frequency": Kind("frequency"),
-    "line-speed": Kind("speed", 140.0, "km/h", example="250 km/h"),
-    "load-spread": Kind("length"),
+    "span": Kind("length", (0.5, 2e3)),
+    "EI": Kind("bending_stiffness", (1e5, 1e16), 1e7, example="260 GN.m2"),
+    "mass": Kind("mass_per_length", (50.0, 1e6), 500.0, example="19 t/m"),
+    "frequency": Kind("frequency", (0.01, 500.0)),
+    "torsional-frequency": Kind("frequency", (0.01, 1e3)),
+    "line-speed": Kind("speed", (1.0, 200.0), 140.0, "km/h", example="250 km/h"),
+    "load-spread": Kind("length", (0.05, 10.0)),
 }
 
 
@@ -83,5 +84,8 @@ def values(name, text):
             raise CheckError(f"{name} {text}: the unit {unit} is not known here; allowed: {', '.join(known)}")
         if not 0.0 < convert(number) < float("inf"):
             raise CheckError(f"{name} {text}: allowed: numbers above 0")
+        if not kind.of_bridges[0] <= convert(number) <= kind.of_bridges[1]:
+            raise CheckError(f"{name} {text}: no railway bridge has {in_words(name, convert(number))}; allowed: from "
+                             f"{in_words(name, kind.of_bridges[0])} to {in_words(name, kind.of_bridges[1])}")
         found.append(convert(number))
     return found

@@ -1,7 +1,8 @@
 """All that a page shows, collected from a results file."""
 
+from checked_results import opened
 from numpy.linalg import LinAlgError
-from picture_data import Results, opened
+from picture_data import Results
 from picture_model import Model
 from picture_words import speed_in_words, summary_in_words
 from traverse_report import language

@@ -100,8 +100,9 @@ def foundation(source, kind, data):
 def of_damping(source):
     options = source.options
     stated = noted(source, r"^damping ([\d.e-]+) %")
-    value = t("ζ = {value} % at the first two natural frequencies, Rayleigh damping at all others",
-              value=num(float(stated))) if stated else ""
+    words = "ζ = {value} % of each natural mode" if discretisation(source).modes else \
+        "ζ = {value} % of the first two natural modes, Rayleigh damping of all others"
+    value = t(words, value=num(float(stated))) if stated else ""
     for name, words in (("model_damping_bound", "lower bound of EN 1991-2, Table 6.6: {value}"),
                         ("beam_damping_ratios", "ratios of the first natural modes: {value}"),
                         ("model_damping_ratios", "ratio of each natural mode: {value}"),
@@ -112,10 +113,21 @@ def of_damping(source):
             said = options[name] if name in ("model_damping_bound", "beam_rayleigh") else \
                 "; ".join(percent(float(part)) for part in options[name].split(","))
             said = t(words, value=known(said))
-            return [(t("damping"), "; ".join(filter(None, (value, said))), origin(source, name)),
+            return [(t("damping"), "; ".join(filter(None, (value, said))), origin(source, name)), *ratios_of(source),
                     *([(t("additional damping"), t("by EN 1991-2 6.4.6.4"), origin(source, "model_additional_damping"))]
                       if options.get("model_additional_damping") == "true" else [])]
-    return [(t("damping"), t("none"), t("default of the program"))]
+    return [(t("damping"), t("none"), t("default of the program")), *ratios_of(source)]
+
+
+def ratios_of(source):
+    """The damping ratios that the first natural modes have, by the bridge itself and by dampers of its foundation."""
+    rows = []
+    for name, words in (("beam", "damping ratios of the first natural modes"),
+                        ("dampers", "damping ratios that dampers of the foundation add")):
+        values = source.file[f"modes/ratio_by_{name}"][:FIRST_FREQUENCIES] if f"modes/ratio_by_{name}" in source.file else []
+        if np.any(values):
+            rows.append((t(words), "; ".join(f"{num(100.0 * value, '.3g')} %" for value in values), t("computed")))
+    return rows
 
 
 def of_loads(source):
@@ -191,7 +203,7 @@ def discretisation(source):
     file = source.file
     group = file["sweep"] if "sweep" in file else file["study"] if "study" in file else None
     attrs = {} if group is None else dict(group.attrs)
-    modes = int(attrs.get("modes", source.options.get("model_modes", 0)) or 0)
+    modes = int(attrs.get("modes", noted(source, r"^the bridge by (\d+) modes")) or 0)
     stated = noted(source, r"(\d+) elements a span") or noted(source, r"(\d+) elements")
     elements = attrs.get("elements_per_span", stated)
     step = attrs.get("time_step", noted(source, r"steps of (?:at most )?([\d.e-]+) s"))

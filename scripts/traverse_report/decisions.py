@@ -9,7 +9,8 @@ from traverse_check.rules import rule
 
 from .language import num, t
 from .page import AMBER, GREEN, GREY, INK, RED
-from .quantities import speed_in_words, unit_of_si, words_of
+from .quantities import speed_in_words, words_of
+from .uplift import Bearing, force_in_words, least_over_time
 
 
 class Decision(NamedTuple):
@@ -82,20 +83,6 @@ def defects(source):
     return Decision(t("factors of the judged values: {factors}", factors=said), INK, "verdicts")
 
 
-class Bearing(NamedTuple):
-    value: float  # N, least force on the bridge, upward positive
-    load: str
-    x: float
-
-    def words(self):
-        return t("{value} ({load}, x = {x} m)", value=force_in_words(self.value), load=self.load, x=num(self.x))
-
-
-def force_in_words(force):
-    unit, factor = unit_of_si("N")
-    return f"{num(factor * force)} {unit}"
-
-
 def traffic_uplift(source):
     """The least static bearing force of all loads, with alpha and Phi or the dynamic factor of the trains at most."""
     group = source.file["static"]
@@ -106,21 +93,28 @@ def traffic_uplift(source):
 
 
 def dynamic_uplift(source):
-    """[the least bearing force over time] of the run of the file or of its governing run, if it has bearing forces."""
-    run = source if source.is_run else source.governing
-    if run is None or "supports/reaction" not in run.file:
-        return []
-    forces = run.results.over_time(run.file["supports/reaction"])[:, :, 1]
-    name = t("the run") if run is source else t("governing run")
-    return [Bearing(float(forces.min()), name, float(run.results.supports[int(forces.min(axis=0).argmin())]))]
+    """[the least bearing force over time] of the run of the file, of all runs, or of the governing run alone."""
+    if source.is_run:
+        least = least_over_time(source, t("the run"))
+    elif source.least_bearing is not None:
+        least = source.least_bearing
+    else:
+        least = None if source.governing is None else least_over_time(source.governing, t("governing run"))
+    return [] if least is None else [least]
+
+
+def has_least_bearing_of_runs(source):
+    """Whether the runs of a table have bearing forces of the traffic alone, with a bound from their accelerations."""
+    return source.runs is not None and "static/reaction" in source.file and "peak_acceleration" in source.runs.values \
+        and source.options.get("beam_self_weight") != "true" and permanent_force(source, 0.0) is not None
 
 
 def factors_of_reactions(source):
     """The largest factor of each static load: alpha Phi of a load model, 1 + phi'dyn + phi''/2 of the worst train."""
     group = source.file["norm"] if "norm" in source.file else {}
-    phi = float(group["phi"][:].max()) * float(group.attrs["alpha"]) if "phi" in group else 1.0
+    phi, alpha = float(group["phi"][:].max()) if "phi" in group else 1.0, source.load_models()
     of_train = float((group["train_dynamic"][:] / group["train_static"][:]).max()) if "train_dynamic" in group else 1.0
-    return [phi if load.startswith(("LM", "SW")) else of_train for load in source.static_loads()]
+    return [phi * alpha[load] if load in alpha else of_train for load in source.static_loads()]
 
 
 def permanent_force(source, at):

@@ -89,6 +89,8 @@ def peaks_of_run(source):
         if name in summary:
             unit, factor = unit_of(quantity)
             where = place_in_words(summary[f"{name}_place"], source.results.supports)
+            if f"{name}_relative_to" in summary:
+                where = f"{t('relative to the supports')}, {where}"
             rows.append((words_of(quantity), factor * abs(summary[name]), unit,
                          f"{where}, t = {num(summary[f'{name}_time'])} s"))
     if "amplification" in summary:

@@ -102,14 +102,14 @@ def governing_run(source, limits):
     return worst, why
 
 
-def repeat(source, run, limits, program, folder, scratch, finer=1):
+def repeat(source, run, limits, program, folder, scratch, finer=1, name="governing"):
     """Computes the run, with `finer` times the elements and natural modes. Returns the path of its results, or None and
-    the message of the program."""
+    the message of the program. name: of the results file."""
     options = write_vehicles(options_of(source, run), scratch)
     if finer > 1:
-        for name in ("model_modes", "beam_elements_per_span"):
-            options[name] = str(finer * int(options[name]))
-    out = scratch / f"governing_{finer}.h5"
+        for option in ("model_modes", "beam_elements_per_span"):
+            options[option] = str(finer * int(options[option]))
+    out = scratch / f"{name}_{finer}.h5"
     options["output_file"] = str(out)
     options["output_probes"] = ",".join(f"{x:.10g}" for x in stations(source, run))
     options["output_interval"] = "0.004"
@@ -122,8 +122,8 @@ def repeat(source, run, limits, program, folder, scratch, finer=1):
         (scratch / "limits.yml").write_text(rows, encoding="utf-8")
         options["limits"] = str(scratch / "limits.yml")
     words = [str(pathlib.Path(program).resolve()), "-output_quiet", "-skip_petscrc"]
-    for name, value in options.items():
-        words += [f"-{name}", value]
+    for option, value in options.items():
+        words += [f"-{option}", value]
     own = {name: value for name, value in os.environ.items() if not name.startswith("PETSC_OPTIONS")}
     try:
         ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=LONGEST, env=own)

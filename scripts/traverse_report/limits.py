@@ -4,7 +4,7 @@ import pathlib
 from typing import NamedTuple
 
 import numpy as np
-import yaml
+from input_files import InputError, yaml_of
 
 from .language import num, t
 from .larger_effect import larger, place_of, spans_at
@@ -15,6 +15,7 @@ from .source import ReportError
 STATIC = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "train_over_lm71"}
 # Quantities of limits with another name in a table of runs.
 STORED = {"unfiltered_deck_acceleration": "peak_acceleration", "contact_loss": "longest_loss"}
+LIST = "list of limits, each with quantity, value and clause"
 
 
 class Limit(NamedTuple):
@@ -53,13 +54,13 @@ def as_number(text):
 
 def read_limits(path):
     try:
-        rows = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
+        rows = yaml_of(path, LIST)
         return [Limit(str(row.get("clause", "")), str(row["quantity"]), as_number(row["value"]),
                       str(row.get("text", "")), as_number(row.get("factor", 1.0))) for row in rows]
-    except OSError as error:
-        raise ReportError(f"{path}: {error.strerror}") from None
-    except (yaml.YAMLError, KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError):
-        raise ReportError(f"{path} is no list of limits, each with quantity, value and clause") from None
+    except InputError as error:
+        raise ReportError(str(error)) from None
+    except (KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError):
+        raise ReportError(f"{path} is no {LIST}") from None
 
 
 def factors_of(file):

@@ -8,19 +8,20 @@ import tempfile
 from typing import NamedTuple, Optional
 
 import fatigue
-import h5py
+import output_files
+from checked_results import in_one_line
 from traverse_check import flow_chart, units
 from traverse_check.rules import CheckError
 
 from . import (
-    annex_sheet, assumptions_sheet, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet, fatigue_sheet,
-    find_sheet, fit_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, screen_sheet,
-    sensitivity_sheet, static_sheet, statistics, title_sheet, workbook_sheets)
+    annex_sheet, assumptions_sheet, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet, decisions,
+    fatigue_sheet, find_sheet, fit_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, screen_sheet,
+    sensitivity_sheet, static_sheet, statistics, title_sheet, uplift, workbook_sheets)
 from . import governing as again
 from . import limits as judging
 from .language import LANGUAGES, choose, t
 from .page import Report
-from .source import ReportError, Source
+from .source import ReportError, Source, opened
 
 # Texts of the title page. --line is the S-N curve, as in fatigue.py.
 TITLE = {"project": "name of the project", "structure": "name of the structure",
@@ -32,6 +33,7 @@ TITLE = {"project": "name of the project", "structure": "name of the structure",
 
 
 class Governing(NamedTuple):
+    run: int
     words: str  # name of the run
     why: str
     source: Optional[Source]  # its results; None if it could not be repeated
@@ -122,13 +124,26 @@ def governing_of(source, limits, arguments, scratch):
     words = source.runs.run_in_words(run)
     program = program_beside(arguments.program)
     if program is None:
-        return Governing(words, why, None, "the program traverse is not beside this script; --program names it")
+        return Governing(run, words, why, None, "the program traverse is not beside this script; --program names it")
     path, trouble = again.repeat(source, run, limits, program, arguments.folder or ".", scratch)
     if path is None:
-        return Governing(words, why, None, trouble)
+        return Governing(run, words, why, None, trouble)
     finer = again.repeat(source, run, limits, program, arguments.folder or ".", scratch, finer=2)[0] \
         if again.modes_of(source) else None
-    return Governing(words, why, Source(path), "", Source(finer) if finer is not None else None)
+    return Governing(run, words, why, Source(path), "", Source(finer) if finer is not None else None)
+
+
+def least_bearing_of_runs(source, governing, arguments, scratch):
+    """The least bearing force over time of all runs; those that may have it are repeated."""
+    program, folder = program_beside(arguments.program), arguments.folder or "."
+
+    def repeat(run):
+        if run == governing.run:
+            return governing.source
+        path, _ = again.repeat(source, run, [], program, folder, scratch, name=f"bearing_{run}")
+        return None if path is None else Source(path)
+
+    return uplift.least_of_runs(source, repeat)
 
 
 def add_pages(report, entry, asked, program):
@@ -163,7 +178,7 @@ def add_pages(report, entry, asked, program):
 
 def has_limits(path):
     """Whether a file is that of a sweep or a study with limits."""
-    with h5py.File(path, "r", locking=False) as file:
+    with opened(path) as file:
         many = "sweep/speed" in file or "study/finished" in file
         return many and "options" in file and "limits" in [name.lstrip("-") for name in file["options"].asstr()[:, 0]]
 
@@ -175,6 +190,8 @@ def entry_of(source, arguments, scratch):
     governing = governing_of(source, limits, arguments, scratch)
     if governing is not None and governing.source is not None:
         source.governing = governing.source
+        if decisions.has_least_bearing_of_runs(source):
+            source.least_bearing = least_bearing_of_runs(source, governing, arguments, scratch)
         alone = judging.stored(governing.source)
         name = t("{run}, governing run only", run=governing.words)
         verdicts = judging.with_governing(verdicts, [verdict._replace(run=name) for verdict in alone])
@@ -207,21 +224,29 @@ def report_of(entries, title, lines, colour, asked, program=None):
     return report
 
 
+def checked_outputs(arguments):
+    """The names of the PDF and the XLSX file, which may be written."""
+    out = pathlib.Path(arguments.output or arguments.results[0])
+    stem = out.with_suffix("") if out.suffix in (".pdf", ".xlsx", ".h5") else out
+    inputs = [path for path in (*arguments.results, arguments.limits, arguments.logo) if path]
+    for kind in ("pdf", "xlsx"):
+        output_files.check(f"{stem}.{kind}", kind, inputs)
+    return [f"{stem}.pdf", f"{stem}.xlsx"]
+
+
 def run(words):
     arguments = arguments_of(words)
     if arguments.if_limits:
         arguments.results = [path for path in arguments.results if has_limits(path)]
         if not arguments.results:
             return
-    line = line_of(arguments)
+    line, paths = line_of(arguments), checked_outputs(arguments)
     sources = [Source(path, line) for path in arguments.results]
     for source in sources:
         source.compared = sources
     wanted = arguments.language or sources[0].options.get("report_language", "en")
     choose(wanted if wanted in LANGUAGES else "en")
     title = title_sheet.title_of(sources, given_title(arguments), arguments.folder)
-    out = pathlib.Path(arguments.output) if arguments.output else sources[0].path
-    stem = out.with_suffix("") if out.suffix in (".pdf", ".xlsx", ".h5") else out
     asked = fatigue_sheet.Asked(arguments.factor, arguments.line, arguments.passages)
     with tempfile.TemporaryDirectory() as scratch:
         entries = []
@@ -231,19 +256,21 @@ def run(words):
             entries.append(entry_of(source, arguments, folder))
         lines, colour = comparison_sheet.headline([(source, verdicts) for source, _, verdicts, _ in entries])
         report = report_of(entries, title, lines, colour, asked, program_beside(arguments.program))
-        paths = [f"{stem}.pdf", f"{stem}.xlsx"]
         try:
             title_sheet.save(report, paths[0], title)
             workbook_sheets.write(paths[1], title, lines, entries, asked, program_beside(arguments.program))
         except OSError as error:
-            raise ReportError(f"{error.filename or stem}: {error.strerror}") from None
+            raise ReportError(f"{error.filename or paths[0]}: {error.strerror}") from None
     print(f"report  {paths[0]} ({len(report.pages)} pages), {paths[1]}")
 
 
 def main():
     try:
         run(sys.argv[1:])
-    except ReportError as error:
+    except (ReportError, output_files.OutputError) as error:
         print(f"traverse-report: {error}", file=sys.stderr)
+        return 1
+    except Exception as error:
+        print(f"traverse-report: a file {in_one_line(error)}", file=sys.stderr)
         return 1
     return 0

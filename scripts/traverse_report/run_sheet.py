@@ -16,6 +16,12 @@ HEIGHT = 0.8  # inches, of a curve along the bridge
 DECK = {"acceleration": "unfiltered_deck_acceleration", "acceleration_lowpass": "deck_acceleration"}  # their limits
 
 
+def words_of(source, name, words):
+    """The heading of an effect. Deflections are relative to supports that move or have settled."""
+    relative = name == "deflection" and "probes/relative_deflection" in source.file
+    return t("Deflection relative to the supports, upward positive") if relative else t(words)
+
+
 def envelope_of(source, name):
     """(least, greatest) value at each station; of filtered accelerations those of the stored instants."""
     file = source.file
@@ -64,7 +70,7 @@ def envelope_sheet(report, source, heading, run, limits):
         least, greatest = (factor * values for values in found)
         curves.along_bridge(ax, source.model.span_ends, x, [("", least, greatest)], unit, marks=False)
         ax.axhline(0.0, color=curves.PALE, lw=0.8)
-        ax.set_title(t("{effect}: least and greatest values", effect=t(words)))
+        ax.set_title(t("{effect}: least and greatest values", effect=words_of(source, name, words)))
         if name in DECK:
             curves.draw_bounds(ax, [factor * value for value in deck_limits(limits, name)])
         page.fit(ax)
@@ -91,9 +97,11 @@ def deck_panels(source, limits):
     for name, si, words in EFFECTS:
         if name != "shear" and f"probes/{name}" in file and len(results.probes):
             unit, factor = unit_of_si(si)
-            values = factor * results.over_time(file[f"probes/{name}"])
+            stored = file.get(f"probes/relative_{name}", file[f"probes/{name}"])
+            values = factor * results.over_time(stored)
             worst = int(np.argmax(np.abs(values).max(axis=0)))
-            panels.append((f"{t(words)}, {place_in_words(results.probes[worst], results.supports)}", unit,
+            place = place_in_words(results.probes[worst], results.supports)
+            panels.append((f"{words_of(source, name, words)}, {place}", unit,
                            [("", values[:, worst])], [factor * value for value in deck_limits(limits, name)]))
     return panels
 

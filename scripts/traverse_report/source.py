@@ -2,7 +2,7 @@
 
 import pathlib
 
-import h5py
+import checked_results
 import numpy as np
 from engineering_units import printed, shown
 from option_words import WORDS, option_in_words
@@ -129,17 +129,22 @@ class Runs:
         return None if values.ndim == 1 else float(stations[int(np.nanargmax(np.abs(values[run])))])
 
 
+def opened(path):
+    try:
+        return checked_results.opened(path)
+    except checked_results.ResultsError as error:
+        raise ReportError(f"{path} {error}") from None
+
+
 class Source:
     """One results file with the data of all pages. line: a flow_chart.Line, or None if it is unknown."""
 
     def __init__(self, path, line=None):
         self.line, self.governing = line, None  # the source of the governing run of a sweep or study
+        self.least_bearing = None  # uplift.Bearing: the least bearing force over time of all its runs
         self.compared = []  # the sources of all files of the report
         self.path = pathlib.Path(path)
-        try:
-            self.file = h5py.File(path, "r", locking=False)
-        except OSError:
-            raise ReportError(f"{path} is no results file that can be read") from None
+        self.file = opened(path)
         if self.file.attrs.get("program") != "traverse":
             raise ReportError(f"{path} is no results file of traverse")
         self.results = Results(self.file)
@@ -204,6 +209,15 @@ class Source:
     def static_loads(self):
         """The names of the trains and load models with static effects."""
         return [name for name, _ in self.file["static/load"].asstr()[:]] if "static/load" in self.file else []
+
+    def load_models(self):
+        """{name of a load model with static effects: its classification factor alpha}, without the trains."""
+        if "norm" not in self.file or "static/load" not in self.file:
+            return {}
+        clauses = [clause for _, clause in self.file["static/load"].asstr()[:]]
+        alpha = self.file["static/alpha"][:] if "static/alpha" in self.file else \
+            np.full(len(clauses), float(self.file["norm"].attrs.get("alpha", 1.0)))
+        return {name: float(factor) for name, clause, factor in zip(self.static_loads(), clauses, alpha) if clause}
 
     def title(self):
         return self.options.get("report_structure") or self.results.scene()

@@ -13,7 +13,6 @@ EFFECTS = {"deflection": "x", "moment": "x", "shear": "x", "reaction": "reaction
            "joint_rotation": "joint_rotation_x"}
 DRAWN = (("deflection", "Deflection, upward positive"), ("moment", "Bending moment, positive in sagging"),
          ("shear", "Shear force, on both sides of passing loads"))
-WITHOUT_ALPHA = ("SW/2",)  # load models that the classification factor does not multiply, EN 1991-2 6.3.3
 
 
 class Peak(NamedTuple):
@@ -59,9 +58,9 @@ def peak_rows(source):
 def factor_of(source, load):
     """alpha Phi of a load model; None for trains, and if the spans have different Phi."""
     group = source.file["norm"] if "norm" in source.file else {}
-    if "phi" not in group or len(np.unique(group["phi"][:])) > 1 or not load.startswith(("LM", "SW")):
+    if "phi" not in group or len(np.unique(group["phi"][:])) > 1 or load not in source.load_models():
         return None
-    return float(group["phi"][0]) * (1.0 if load in WITHOUT_ALPHA else float(group.attrs["alpha"]))
+    return float(group["phi"][0]) * source.load_models()[load]
 
 
 def sheet(report, source):

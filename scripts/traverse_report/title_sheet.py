@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 from matplotlib.backends.backend_pdf import PdfPages
+from output_files import written
 from PIL import Image
 
 from . import norm_sheet
@@ -191,7 +192,8 @@ def save(report, path, title):
     head = shortened(" · ".join(filter(None, (title.project, title.structure))), 90)
     side = f"{t('revision')} {title.revision} · {title.date}" if title.revision else title.date
     report.fill_references()
-    with PdfPages(path, metadata={"Title": head, "Author": title.author or None, "Creator": "traverse-report"}) as pdf:
+    about = {"Title": head, "Author": title.author or None, "Creator": "traverse-report"}
+    with written(path, "pdf") as temporary, PdfPages(temporary, metadata=about) as pdf:
         for number, page in enumerate(report.pages, 1):
             if number > 1:
                 page.paper.text(LEFT, 11.25, head, fontsize=7.5, color=GREY, va="top")

@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import openpyxl
+import output_files
 from openpyxl.chart import Reference, ScatterChart, Series
 from openpyxl.styles import Alignment, Font, PatternFill
 from openpyxl.utils import get_column_letter
@@ -77,7 +78,9 @@ class Workbook:
         return sheet
 
     def save(self, path):
-        self.book.save(path)
+        self.book.properties.creator = output_files.PROGRAM
+        with output_files.written(path, "xlsx") as temporary:
+            self.book.save(temporary)
 
 
 def add_chart(sheet, title, x_title, y_title, columns, place, limits=()):

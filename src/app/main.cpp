@@ -1,7 +1,9 @@
 // The program traverse: computes vehicles crossing flexible beams. See README.md.
+#include <hdf5.h>
 #include <slepceps.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -9,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -48,20 +51,28 @@ int complain(const traverse::Error& error) {
   return error.status();
 }
 
-/// `traverse check ...` becomes traverse-check, which is beside the installed program, or in the folder scripts beside
-/// the build folder. Throws FileError if it cannot be started; returns for all other words.
-void start_norm_check(int argc, char** argv) {
-  if (argc < 2 || std::string_view(argv[1]) != "check") return;
+/// A first word of the command line that starts a script in place of the program.
+struct Verb {
+  std::string_view name;
+  const char* script;  // beside the installed program, or in the folder scripts beside the build folder
+};
+constexpr Verb verbs[] = {{"check", "traverse-check"}};
+
+/// `traverse check ...` becomes traverse-check. Throws FileError if the script of a verb cannot be started; returns for
+/// all other words.
+void start_verb(int argc, char** argv) {
+  const auto* verb = argc < 2 ? std::end(verbs) : std::ranges::find(verbs, std::string_view(argv[1]), &Verb::name);
+  if (verb == std::end(verbs)) return;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe"), folder = program.parent_path();
   std::vector<char*> words(argv + 1, argv + argc);
   words.push_back(nullptr);
   setenv("TRAVERSE_BINARY", program.c_str(), 1);
-  for (const std::filesystem::path& script : {folder / "traverse-check", folder / "../scripts/traverse-check"}) {
+  for (const std::filesystem::path& script : {folder / verb->script, folder / "../scripts" / verb->script}) {
     words.front() = const_cast<char*>(script.c_str());
     execv(script.c_str(), words.data());
   }
-  throw traverse::FileError("traverse-check, which is installed beside the program, cannot be started: " +
-                            std::string(std::strerror(errno)));
+  throw traverse::FileError(std::string(verb->script) +
+                            ", which is installed beside the program, cannot be started: " + std::strerror(errno));
 }
 
 /// `traverse RESULTS.h5 ...` repeats the run that wrote the results file.
@@ -96,13 +107,14 @@ int after_output(int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  (void)H5dont_atexit();  // HDF5's exit handler may crash if a file could not be written
   traverse::app::guard_standard_output();
   traverse::app::install_handlers();
   traverse::app::set_cpu_limit_timer();
   traverse::app::print_signals(first_rank());
   traverse::app::start_lightly();
   try {
-    start_norm_check(argc, argv);
+    start_verb(argc, argv);
     traverse::options::Input input = read_input(argc, argv);
     if (input.help) {
       const std::string text = traverse::app::help_about(input.help_about);

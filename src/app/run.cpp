@@ -7,10 +7,12 @@
 #include "analyses.hpp"
 #include "base/notes.hpp"
 #include "check/check.hpp"
+#include "check/unusual.hpp"
 #include "error_control/trial_runs.hpp"
 #include "fit/fit.hpp"
 #include "prepare.hpp"
 #include "results/stage.hpp"
+#include "results/terminal.hpp"
 #include "run/active_ranks.hpp"
 #include "run/checkpoints.hpp"
 #include "run/rank_choice.hpp"
@@ -48,6 +50,16 @@ RankChoice ranks_for(MPI_Comm comm, const Scene& scene, const std::optional<resu
   return scene.analysis == Analysis::transient ? choose_ranks(comm, scene) : all;
 }
 
+/// Adds what is unusual in the scene to its notes and prints all of it, before the first computation.
+void say_unusual(Scene& scene) {
+  if (scene.screen) return;  // its stock is read later
+  for (std::string& line : unusual_in(scene)) {
+    scene.notes.push_back(line);
+    scene.unusual.push_back(std::move(line));
+  }
+  results::print_unusual(scene.unusual);
+}
+
 }  // namespace
 
 int run(MPI_Comm comm, const Scene& given) {
@@ -61,8 +73,9 @@ int run(MPI_Comm comm, const Scene& given) {
   Scene asked = given;
   const std::optional<results::Checkpoint> earlier = earlier_of(comm, asked);
   results::Place place = claim_outputs(comm, asked);
-  if (given.fit) return run_fit(comm, given, std::move(place));
-  if (given.study || given.sweep) return run_study(comm, given, std::move(place));
+  if (!earlier) say_unusual(asked);
+  if (asked.fit) return run_fit(comm, asked, std::move(place));
+  if (asked.study || asked.sweep) return run_study(comm, asked, std::move(place));
   // The number is selected before the trial runs, and again for the model that they select.
   const RankChoice at_first = ranks_for(comm, given, earlier);
   return run_on_first(comm, at_first.ranks, [&](MPI_Comm some) {

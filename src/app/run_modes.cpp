@@ -43,7 +43,7 @@ modes::DampedModes damped_by_ratios(const modes::Modes& modes) {
   modes::DampedModes damped;
   for (const auto& [lambda, i] : found) {
     damped.lambda.push_back(lambda);
-    damped.axial.push_back(0);
+    damped.axial.push_back(modes.axial[i]);
     damped.shape.emplace_back(modes.shape[i].begin(), modes.shape[i].end());
   }
   return damped;
@@ -61,16 +61,20 @@ int run_modes(Job job) {
   const auto [omega1, omega2] = *shared.omega;
   const beam::Rayleigh ab = shared.rayleigh;
   print_notes(comm, scene, notes);
+  const bool of_each_mode = !scene.damping_of_modes.empty() && beam.dampers() == nullptr;
   const beam::ShapePoints points(beam.mesh());
   const modes::Modes found = [&] {
     const results::Stage stage("computation of the natural modes");
     if (scene.by_given_modes()) return given_modes(beam, scene.mode_count, points);
-    return modes::natural_modes(beam, scene.mode_count, points);
+    modes::Modes natural = modes::natural_modes(beam, scene.mode_count, points);
+    if (of_each_mode) natural.ratio.assign(natural.omega.size(), scene.damping_of_modes.front());
+    if (of_each_mode) natural.beam_ratio = natural.ratio;
+    return natural;
   }();
-  const bool damping = scene.by_given_modes() || modes::damped(beam);
+  const bool damping = scene.by_given_modes() || of_each_mode || modes::damped(beam);
   const modes::DampedModes damped = [&] {
     const results::Stage stage("computation of the damped modes");
-    if (scene.by_given_modes()) return damped_by_ratios(found);
+    if (scene.by_given_modes() || of_each_mode) return damped_by_ratios(found);
     return damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
   }();
   results::Layout layout;

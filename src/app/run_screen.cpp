@@ -1,9 +1,13 @@
 // The screen of a stock of bridges with a fleet of trains.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "analyses.hpp"
+#include "results/terminal.hpp"
 #include "run/process.hpp"
 #include "screen/screen.hpp"
+#include "screen/unusual.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
@@ -17,8 +21,10 @@ int check_screen(MPI_Comm comm, const Scene& scene) {
   for (const std::string& line : screen::description(problem)) fmt::print("  {}\n", line);
   fmt::print("cost, estimated\n  memory of a rank       {:.3g} MB\n", 1e-6 * screen::memory_of(problem));
   fmt::print("unusual input\n");
-  for (const std::string& note : scene.notes) fmt::print("  {}\n", note);
-  if (scene.notes.empty()) fmt::print("  nothing\n");
+  std::vector<std::string> unusual = scene.notes;
+  for (std::string& line : screen::unusual_in(problem)) unusual.push_back(std::move(line));
+  for (const std::string& line : unusual) fmt::print("  {}\n", line);
+  if (unusual.empty()) fmt::print("  nothing\n");
   return 0;
 }
 
@@ -27,7 +33,10 @@ int run_screen(Job job) {
   for (const std::string& line : screen::description(problem)) job.notes.push_back(line);
   for (const std::string& note : options::notes_on_unused(options::in_force())) job.notes.push_back(note);
   if (job.scene.screen->pair.empty()) {
+    const std::vector<std::string> unusual = screen::unusual_in(problem);
+    results::print_unusual(unusual);
     print_notes(job.comm, job.scene, job.notes);
+    job.notes.insert(job.notes.end(), unusual.begin(), unusual.end());
     return screen::run(job.comm, std::move(job.place), problem, job.notes);
   }
   const std::string text = screen::pair_scene(problem);

@@ -49,7 +49,7 @@ StepByStep::StepByStep(const Scene& scene)
 
 void StepByStep::see(const integrate::Instant& instant) {
   watch_->sample(instant);
-  if (instant.purpose == integrate::Purpose::peaks) return;
+  if (!is_stored(instant.purpose)) return;
   time_ = instant.time;
   outputs_->fill(watch_->observed(), values_);
 }

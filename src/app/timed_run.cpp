@@ -12,7 +12,6 @@
 
 #include "error_control/multibody_step_search.hpp"
 #include "error_control/trial_runs.hpp"
-#include "modes/modes.hpp"
 #include "ready_run.hpp"
 #include "results/recorder.hpp"
 #include "results/stage.hpp"
@@ -30,20 +29,6 @@
 
 namespace traverse::app {
 namespace {
-
-/// Stores the natural frequencies of the run's modes, or the pair of frequencies from which damping was computed.
-void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
-  if (!shared.omega) return;
-  const auto [omega1, omega2] = *shared.omega;
-  modes::Modes modes;
-  modes.omega = {omega1, omega2};
-  if (shared.modal)
-    modes = modes::as_stored(*shared.beam, shared.modal->basis(), beam::ShapePoints(shared.beam->mesh()));
-  if (shared.modal && !shared.modal->dampers_couple())
-    for (std::size_t i = 0; i < shared.modal->modes(); ++i)
-      modes.ratio.push_back(shared.modal->sigma()[i] / shared.modal->omega()[i]);
-  recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
-}
 
 double total(MPI_Comm comm, double share) {
   MPI_Allreduce(MPI_IN_PLACE, &share, 1, MPI_DOUBLE, MPI_SUM, comm);
@@ -88,7 +73,7 @@ results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
                              ready.scene.options);
   recorder.of_scene(digest_of(ready.scene));
   record_model(ready.scene, job.notes, recorder);
-  store_modes(job.beam, recorder);
+  record_modes(job.beam, recorder);
   return recorder;
 }
 

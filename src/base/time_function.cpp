@@ -1,10 +1,12 @@
-// Tables over time as natural cubic splines, as piecewise linear functions or as integrals of piecewise linear rates,
-// with first and second derivatives.
+// Tables over time as cubic splines, as piecewise linear functions or as integrals of piecewise linear functions: each
+// is a polynomial between two rows, with another one before the first and after the last row.
 #include "traverse/base/time_function.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -31,146 +33,186 @@ void check_table(const std::vector<double>& times, const std::vector<double>& va
   }
 }
 
-/// Second derivatives of the natural cubic spline: a tridiagonal, diagonally dominant system, eliminated downwards.
-std::vector<double> natural_curvatures(const std::vector<double>& t, const std::vector<double>& y) {
-  const std::size_t n = t.size();
-  std::vector<double> curvature(n, 0.0);
-  std::vector<double> above(n, 0.0);  // the upper diagonal after elimination
-  for (std::size_t i = 1; i + 1 < n; ++i) {
+/// Second derivatives of the spline: a tridiagonal, diagonally dominant system, eliminated downwards. rests: whether
+/// the first and the last end have no rate, instead of no curvature.
+std::vector<double> spline_curvatures(const std::vector<double>& t, const std::vector<double>& y,
+                                      const std::array<bool, 2>& rests) {
+  const std::size_t last = t.size() - 1;
+  const auto chord = [&](std::size_t i) { return (y[i + 1] - y[i]) / (t[i + 1] - t[i]); };
+  std::vector<double> curvature(last + 1, 0.0);
+  std::vector<double> above(last + 1, 0.0);  // the upper diagonal after elimination
+  if (rests[0]) {
+    above[0] = 0.5;
+    curvature[0] = 3.0 * chord(0) / (t[1] - t[0]);
+  }
+  for (std::size_t i = 1; i < last; ++i) {
     const double left = t[i] - t[i - 1];
     const double right = t[i + 1] - t[i];
-    const double slope_change = (y[i + 1] - y[i]) / right - (y[i] - y[i - 1]) / left;
     const double pivot = 2.0 * (left + right) - left * above[i - 1];
     above[i] = right / pivot;
-    curvature[i] = (6.0 * slope_change - left * curvature[i - 1]) / pivot;
+    curvature[i] = (6.0 * (chord(i) - chord(i - 1)) - left * curvature[i - 1]) / pivot;
   }
-  for (std::size_t i = n - 1; i-- > 1;) curvature[i] -= above[i] * curvature[i + 1];
+  if (rests[1])
+    curvature[last] =
+        (-6.0 * chord(last - 1) / (t[last] - t[last - 1]) - curvature[last - 1]) / (2.0 - above[last - 1]);
+  for (std::size_t i = last; i-- > 0;) curvature[i] -= above[i] * curvature[i + 1];
   return curvature;
 }
 
-/// The index k of the interval [k, k+1] of `times` that contains t.
-std::size_t interval(const std::vector<double>& times, double t) {
-  const auto next = std::upper_bound(times.begin() + 1, times.end() - 1, t);
-  return static_cast<std::size_t>(next - times.begin()) - 1;
-}
+constexpr double rounding = 1e-12;     // relative to the terms of a rate
+constexpr double least_rate = 0.01;    // of a moving end, relative to the greatest rate
+constexpr double max_overshoot = 0.3;  // of a spline beyond two rows, relative to the range of all rows
 
 }  // namespace
 
-TimeFunction::TimeFunction(std::vector<double> times, std::vector<double> values)
-    : times_(std::move(times)), values_(std::move(values)) {
-  check_table(times_, values_);
-  curvatures_ = natural_curvatures(times_, values_);
+// A table without pieces: its times, all of which are kinks.
+TimeFunction TimeFunction::table(std::vector<double> times) {
+  TimeFunction f;
+  f.kinks_ = times;
+  f.times_ = std::move(times);
+  f.last_ = f.times_.size();
+  f.pieces_.reserve(f.times_.size() + 1);
+  return f;
+}
+
+TimeFunction::TimeFunction(std::vector<double> times, std::vector<double> values) {
+  check_table(times, values);
+  *this = table(std::move(times));
+  const std::size_t last = times_.size() - 1;
+  set_spline(values, {});
+  const double first_rate = pieces_[1].rate, last_rate = pieces_[last].rate_at(times_[last]);
+  double greatest = std::max(std::abs(first_rate), std::abs(last_rate));
+  for (const Piece& piece : pieces_) greatest = std::max(greatest, std::abs(piece.rate));
+  const std::array<bool, 2> rests = {values[0] == values[1] || std::abs(first_rate) < least_rate * greatest,
+                                     values[last - 1] == values[last] || std::abs(last_rate) < least_rate * greatest};
+  if (rests[0] || rests[1]) set_spline(values, rests);
+  find_kinks_at_ends();
+  check_overshoot();
+}
+
+// Sets the pieces of the spline; rests: whether it has no rate at its first and at its last end.
+void TimeFunction::set_spline(const std::vector<double>& values, const std::array<bool, 2>& rests) {
+  const std::vector<double> curvatures = spline_curvatures(times_, values, rests);
+  pieces_.assign(1, {times_.front(), values.front()});
+  for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
+    const double h = times_[k + 1] - times_[k];
+    pieces_.push_back({times_[k], values[k],
+                       (values[k + 1] - values[k]) / h - h * (2.0 * curvatures[k] + curvatures[k + 1]) / 6.0,
+                       curvatures[k], (curvatures[k + 1] - curvatures[k]) / h});
+  }
+  pieces_.push_back({times_.back(), values.back()});
+  if (rests[0]) pieces_[1].rate = 0.0;
+}
+
+// Each piece is a cubic between two rows, whose extremes are at the roots of its rate.
+void TimeFunction::check_overshoot() const {
+  const auto [low, high] = std::minmax_element(pieces_.begin(), pieces_.end(),
+                                               [](const Piece& a, const Piece& b) { return a.value < b.value; });
+  for (std::size_t k = 1; k < times_.size(); ++k) {
+    const Piece& p = pieces_[k];
+    const auto [from, to] = std::minmax(p.value, pieces_[k + 1].value);
+    const double root = std::sqrt(std::max(p.acceleration * p.acceleration - 2.0 * p.rate * p.jerk, 0.0));
+    const double q = -(p.acceleration + std::copysign(root, p.acceleration));
+    for (const double s : {q / p.jerk, 2.0 * p.rate / q}) {
+      if (!(s > 0.0 && s < times_[k] - p.from)) continue;
+      const double extreme = p.value_at(p.from + s);
+      if (!(std::max(from - extreme, extreme - to) > max_overshoot * (high->value - low->value))) continue;
+      std::ostringstream text;
+      text.precision(4);
+      text << "the cubic spline between the rows " << k << " and " << k + 1 << " reaches " << extreme << " at "
+           << p.from + s << " s, far beyond the rows, which are between " << low->value << " and " << high->value
+           << "; allowed: rows at more even times, or more of them";
+      throw InputError(text.str());
+    }
+  }
 }
 
 TimeFunction TimeFunction::piecewise_linear(std::vector<double> times, std::vector<double> values) {
-  TimeFunction f(std::move(times), std::move(values));
-  f.curvatures_.clear();
+  check_table(times, values);
+  TimeFunction f = table(std::move(times));
+  f.pieces_.push_back({f.times_.front(), values.front()});
+  for (std::size_t k = 0; k + 1 < f.times_.size(); ++k)
+    f.pieces_.push_back({f.times_[k], values[k], (values[k + 1] - values[k]) / (f.times_[k + 1] - f.times_[k])});
+  f.pieces_.push_back({f.times_.back(), values.back()});
   return f;
 }
 
 TimeFunction TimeFunction::integral(double value, std::vector<double> times, std::vector<double> rates) {
-  TimeFunction f;
   check_table(times, rates);
-  f.times_ = std::move(times);
-  f.rates_ = std::move(rates);
-  f.values_.assign(f.times_.size(), 0.0);
-  for (std::size_t i = 1; i < f.times_.size(); ++i)
-    f.values_[i] = f.values_[i - 1] + 0.5 * (f.rates_[i - 1] + f.rates_[i]) * (f.times_[i] - f.times_[i - 1]);
+  TimeFunction f = table(std::move(times));
+  f.pieces_.push_back({f.times_.front(), 0.0, rates.front()});
+  for (std::size_t k = 0; k + 1 < f.times_.size(); ++k) {
+    const double acceleration = (rates[k + 1] - rates[k]) / (f.times_[k + 1] - f.times_[k]);
+    f.pieces_.push_back({f.times_[k], f.pieces_.back().value_at(f.times_[k]), rates[k], acceleration});
+  }
+  f.pieces_.push_back({f.times_.back(), f.pieces_.back().value_at(f.times_.back()), rates.back()});
   f.shift(value - f.value(0.0));
   return f;
 }
 
-// A cubic with the given second derivatives between two rows, from the value and the rate at the first of them.
 TimeFunction TimeFunction::second_integral(std::vector<double> times, std::vector<double> accelerations) {
   check_table(times, accelerations);
-  std::vector<double> values(times.size(), 0.0);
-  double rate = 0.0;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    const double h = times[i] - times[i - 1];
-    values[i] = values[i - 1] + h * (rate + h * (2.0 * accelerations[i - 1] + accelerations[i]) / 6.0);
-    rate += 0.5 * h * (accelerations[i - 1] + accelerations[i]);
+  TimeFunction f = table(std::move(times));
+  f.pieces_.push_back({f.times_.front()});
+  for (std::size_t k = 0; k + 1 < f.times_.size(); ++k) {
+    const Piece& before = f.pieces_.back();
+    const double t = f.times_[k], jerk = (accelerations[k + 1] - accelerations[k]) / (f.times_[k + 1] - t);
+    f.pieces_.push_back({t, before.value_at(t), before.rate_at(t), accelerations[k], jerk});
   }
-  TimeFunction f(std::move(times), std::move(values));
-  f.curvatures_ = std::move(accelerations);
+  const double end = f.times_.back();
+  f.pieces_.push_back({end, f.pieces_.back().value_at(end), f.pieces_.back().rate_at(end)});
+  f.find_kinks_at_ends();
   return f;
 }
 
-// Piece k of an integral ends at time k; the last piece begins at the last time.
-int TimeFunction::piece_at(double t) const {
-  return static_cast<int>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin());
+// Piece k ends at row k; the last piece begins at the last row.
+std::size_t TimeFunction::piece_at(double t) const {
+  return static_cast<std::size_t>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin());
 }
 
-bool TimeFunction::select_piece(double t) { return std::exchange(piece_, piece_at(t)) != piece_; }
-
-TimeFunction::Piece TimeFunction::piece(double t) const {
-  const int number = piece_ < 0 ? piece_at(t) : piece_;
-  const std::size_t k = number == 0 ? 0 : static_cast<std::size_t>(number) - 1;
-  const bool inside = number > 0 && k + 1 < times_.size();
-  const double acceleration = inside ? (rates_[k + 1] - rates_[k]) / (times_[k + 1] - times_[k]) : 0.0;
-  return {times_[k], values_[k], rates_[k], acceleration};
+double TimeFunction::jump_of_rate(std::size_t row) const {
+  const Piece& before = pieces_[row];
+  const double duration = times_[row] - before.from, jump = pieces_[row + 1].rate - before.rate_at(times_[row]);
+  const double terms =
+      std::abs(before.rate) + duration * (std::abs(before.acceleration) + duration * std::abs(before.jerk));
+  return std::abs(jump) > rounding * terms ? jump : 0.0;
 }
 
-double TimeFunction::value(double t) const {
-  if (times_.empty()) return value_ + rate_ * t;
-  if (jumps()) {
-    const Piece p = piece(t);
-    const double since = t - p.from;
-    return p.value + since * (p.rate + 0.5 * p.acceleration * since);
-  }
-  if (curvatures_.empty()) {
-    t = std::clamp(t, times_.front(), times_.back());
-    const std::size_t k = interval(times_, t);
-    return values_[k] + (values_[k + 1] - values_[k]) * ((t - times_[k]) / (times_[k + 1] - times_[k]));
-  }
-  if (t < times_.front()) return values_.front() + rate(times_.front()) * (t - times_.front());
-  if (t > times_.back()) return values_.back() + rate(times_.back()) * (t - times_.back());
-  const std::size_t k = interval(times_, t);
-  const double h = times_[k + 1] - times_[k];
-  const double a = (times_[k + 1] - t) / h;
-  const double b = (t - times_[k]) / h;
-  return a * values_[k] + b * values_[k + 1] +
-         (a * (a * a - 1.0) * curvatures_[k] + b * (b * b - 1.0) * curvatures_[k + 1]) * h * h / 6.0;
+bool TimeFunction::jumps_at(std::size_t row) const {
+  return jump_of_rate(row) != 0.0 || pieces_[row + 1].acceleration != pieces_[row].acceleration_at(times_[row]);
 }
 
-double TimeFunction::rate(double t) const {
-  if (times_.empty()) return rate_;
-  if (jumps()) {
-    const Piece p = piece(t);
-    return p.rate + p.acceleration * (t - p.from);
-  }
-  if (curvatures_.empty() && (t < times_.front() || t >= times_.back())) return 0.0;
-  t = std::clamp(t, times_.front(), times_.back());
-  const std::size_t k = interval(times_, t);
-  const double h = times_[k + 1] - times_[k];
-  const double a = (times_[k + 1] - t) / h;
-  const double b = (t - times_[k]) / h;
-  const double chord = (values_[k + 1] - values_[k]) / h;
-  if (curvatures_.empty()) return chord;
-  return chord + ((1.0 - 3.0 * a * a) * curvatures_[k] + (3.0 * b * b - 1.0) * curvatures_[k + 1]) * h / 6.0;
+// For functions that are smooth between their ends.
+void TimeFunction::find_kinks_at_ends() {
+  kinks_.clear();
+  for (const std::size_t end : {std::size_t{0}, times_.size() - 1})
+    if (jumps_at(end)) kinks_.push_back(times_[end]);
 }
 
-double TimeFunction::acceleration(double t) const {
-  if (jumps()) return piece(t).acceleration;
-  if (curvatures_.empty() || t <= times_.front() || t >= times_.back()) return 0.0;
-  const std::size_t k = interval(times_, t);
-  const double b = (t - times_[k]) / (times_[k + 1] - times_[k]);
-  return (1.0 - b) * curvatures_[k] + b * curvatures_[k + 1];
+bool TimeFunction::select_side(double t) {
+  if (kinks_.empty()) return false;
+  const auto next = std::upper_bound(kinks_.begin(), kinks_.end(), t);
+  const std::size_t before = std::exchange(first_, next == kinks_.begin() ? 0 : piece_at(*(next - 1)));
+  last_ = next == kinks_.end() ? times_.size() : piece_at(*next) - 1;
+  return first_ != before;
 }
 
 void TimeFunction::reverse() {
   value_ = -value_;
   rate_ = -rate_;
-  for (std::vector<double>* numbers : {&values_, &curvatures_, &rates_})
-    for (double& number : *numbers) number = -number;
+  for (Piece& p : pieces_)
+    for (double* number : {&p.value, &p.rate, &p.acceleration, &p.jerk}) *number = -*number;
 }
 
 void TimeFunction::delay(double time) {
-  for (double& t : times_) t += time;
+  for (std::vector<double>* times : {&times_, &kinks_})
+    for (double& t : *times) t += time;
+  for (Piece& p : pieces_) p.from += time;
 }
 
 void TimeFunction::shift(double offset) {
   value_ += offset;
-  for (double& value : values_) value += offset;
+  for (Piece& p : pieces_) p.value += offset;
 }
 
 }  // namespace traverse::base

@@ -1,16 +1,23 @@
-// Finds the motions of a beam that nothing resists. A part between its ends and separate joints is a chain of rigid
-// pieces between hinges; the deflections of the pieces' ends describe its motion.
+// Finds the motions of a beam that nothing, or only a spring, resists. A part between its ends and separate joints is a
+// chain of rigid pieces between hinges; the deflections of the pieces' ends describe its motion.
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <set>
 #include <string>
+#include <utility>
 
+#include "traverse/base/error.hpp"
 #include "traverse/beam/model.hpp"
 
 namespace traverse::beam {
 namespace {
 
+constexpr double rounding = 10.0 * std::numeric_limits<double>::epsilon();  // of a sum of elements' stiffnesses
 constexpr double rank_tolerance = 1e-10;  // relative to the largest pivot: below it conditions are linearly dependent
 
 /// Neighbouring pieces that are one body or a chain of bodies.
@@ -34,10 +41,12 @@ std::vector<Part> parts_of(const BeamModel& model) {
   return parts;
 }
 
-/// The foundations that are included: those in the matrices, or all that may push.
-enum class Springs { linear, all };
+/// The foundations that are included: none, those in the matrices, or all that may push.
+enum class Springs { none, linear, all };
 
-bool is_included(const FoundationLaw& law, Springs springs) { return springs == Springs::all || !law.nonlinear(); }
+bool is_included(const FoundationLaw& law, Springs springs) {
+  return springs == Springs::all || (springs == Springs::linear && !law.nonlinear());
+}
 
 /// Whether a point of the foundation is an included spring of this part.
 bool is_spring_of(const PointFoundation& p, const Part& part, const BeamModel& model, Springs springs) {
@@ -155,6 +164,10 @@ std::vector<RigidMotion> bending_motions(const Part& part, const Conditions& con
   return motions;
 }
 
+RigidMotion along_x(const Part& part) {
+  return {part.left(), part.right(), true, {part.left(), part.right()}, {1.0, 1.0}};
+}
+
 std::vector<double> ends_of(const BeamModel& model) {
   std::vector<double> ends{model.start};
   for (double span : model.spans) ends.push_back(ends.back() + span);
@@ -190,13 +203,92 @@ std::vector<RigidMotion> motions_of(const BeamModel& model, Springs springs) {
       motions.push_back(std::move(m));
     // With several parts, one that nothing holds along x has a bearing.
     const bool has_bearing = parts.size() > 1 && !supported_axially(model, part, Springs::all);
-    if (model.axial && !has_bearing && !supported_axially(model, part, springs))
-      motions.push_back({part.left(), part.right(), true, {part.left(), part.right()}, {1.0, 1.0}});
+    if (model.axial && !has_bearing && !supported_axially(model, part, springs)) motions.push_back(along_x(part));
   }
   return motions;
 }
 
+/// Calls use(kind, spring, x, from_left, k in N/m or N m/rad) for all linear springs of a part; a bed is three springs
+/// in each range, by Simpson's rule.
+template <class Use>
+void for_springs(const BeamModel& model, const Part& part, Use use) {
+  for_points(model.foundation, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
+    for (const PointFoundation& p : points)
+      if (is_spring_of(p, part, model, Springs::linear)) use(kind, p, p.x, p.from_left, p.k);
+  });
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    for (const auto& [left, right] : bed_ranges(bed, part, Springs::linear)) {
+      const double middle = 0.5 * (left + right), sixth = (right - left) / 6.0;
+      for (const auto& [x, weight] : {std::pair(left, 1.0), {middle, 4.0}, {right, 1.0}})
+        use(kind, bed, x, x == right, weight * sixth * bed.k.at(x, middle));
+    }
+  });
+}
+
+/// The motions of a part without springs, `all`, of which springs resist all but `free`.
+struct HeldMotions {
+  std::vector<RigidMotion> all;
+  std::size_t free = 0;
+};
+
+/// The least stiffness by which springs resist a held motion, N/m at its largest displacement.
+double least_stiffness(const BeamModel& model, const Part& part, const HeldMotions& held) {
+  const auto n = static_cast<Eigen::Index>(held.all.size());
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+  for_springs(model, part, [&](const FoundationKind& kind, const auto&, double x, bool from_left, double k) {
+    Eigen::VectorXd displacement = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const RigidMotion& motion = held.all[static_cast<std::size_t>(i)];
+      if (motion.axial != (kind.direction == Direction::longitudinal)) continue;
+      displacement[i] = kind.direction == Direction::rotational ? motion.slope(x, from_left) : motion.value(x);
+    }
+    K += k * displacement * displacement.transpose();
+  });
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly)
+      .eigenvalues()[static_cast<Eigen::Index>(held.free)];
+}
+
+/// Throws InputError if rounding of the elements' stiffness, N/m, hides the springs that hold these motions.
+void check_held(const BeamModel& model, const Part& part, const HeldMotions& held, double element) {
+  if (held.all.size() <= held.free) return;
+  const double stiffness = least_stiffness(model, part, held), least = rounding * element;
+  if (stiffness >= least) return;
+  std::set<std::string> options;
+  for_springs(model, part, [&](const FoundationKind& kind, const auto& spring, double, bool, double) {
+    if (held.all.front().axial == (kind.direction == Direction::longitudinal))
+      options.insert(stiffness_option(kind, spring));
+  });
+  throw InputError(fmt::format(
+      "{}: the beam is held by {:.3g} N/m only, which rounding hides beside the {:.3g} N/m of its elements; allowed: "
+      "above {:.2g} N/m, a support (support_types), or fewer beam_elements_per_span",
+      fmt::join(options, ", "), stiffness, element, least));
+}
+
+/// The length of the shortest element by beam_elements_per_span, m.
+double shortest_element(const BeamModel& model) {
+  double shortest = model.length();
+  for (std::size_t i = 0; i < model.spans.size(); ++i)
+    shortest = std::min(shortest, model.spans[i] / std::max(1, model.elements[i]));
+  return shortest;
+}
+
 }  // namespace
+
+void check_springs(const BeamModel& model) {
+  if (model.track) return;
+  const double h = shortest_element(model), shear = model.GA ? h / model.GA->maximum() : 0.0;
+  const double bending = 1.0 / (std::pow(h, 3) / (12.0 * model.EI.maximum()) + shear);
+  const auto span_ends = ends_of(model);
+  for (const Part& part : parts_of(model)) {
+    const auto bending_of = [&](Springs springs) {
+      return bending_motions(part, bending_conditions(model, part, span_ends, springs));
+    };
+    check_held(model, part, {bending_of(Springs::none), bending_of(Springs::linear).size()}, bending);
+    if (model.axial && supported_axially(model, part, Springs::linear) &&
+        !supported_axially(model, part, Springs::none))
+      check_held(model, part, {{along_x(part)}, 0}, model.EA.maximum() / h);
+  }
+}
 
 double RigidMotion::slope(double station, bool from_left) const {
   const std::size_t i = segment_of(*this, station, from_left);

@@ -44,8 +44,14 @@ class SectionForms {
   std::array<double, 2> axial_force_{};
 };
 
+/// The largest distance between a load and a section at the same place, relative to the element's length. Rounding must
+/// not determine on which side of a section a load is.
+inline constexpr double section_tolerance = 1e-7;
+
 /// Whether a load at xi is left of a section.
-inline bool is_left(double xi, double section) { return xi < section || (xi == section && section < 1.0); }
+inline bool is_left(double xi, double section) {
+  return xi < section - section_tolerance || (xi <= section + section_tolerance && section < 1.0 - section_tolerance);
+}
 
 /// Deflection at xi of an element clamped at both ends under a unit force at `load`, m/N. shear: 12 EI/(GA h^2).
 double fixed_end_by_force(double xi, double load, double h, double EI, double shear = 0.0);

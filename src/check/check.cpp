@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "base/notes.hpp"
 #include "cost.hpp"
@@ -100,6 +101,7 @@ void print_bridge(const Page& page, const FirstRun& run) {
   std::string frequencies;
   for (const double one : run.frequencies) frequencies += fmt::format("{}{:.4g}", frequencies.empty() ? "" : ", ", one);
   page.line("first frequencies", frequencies.empty() ? "none" : frequencies + " Hz");
+  if (const std::string ratios = run.shared->damping_text(); !ratios.empty()) page.line("damping ratios", ratios);
 }
 
 void print_vehicles(const Page& page, const FirstRun& run, const std::vector<Axle>& axles) {
@@ -213,9 +215,9 @@ void print_cost(const Page& page, const Scene& given, const FirstRun& run) {
   page.line("memory", "about " + bytes_text(cost.memory) + " a rank");
   if (given.output.file.empty()) return page.line("results", "none are stored");
   const std::string size = cost.stored > 0.0 ? ", about " + bytes_text(cost.stored) : "";
-  page.line("results",
-            given.output.file + size +
-                (std::filesystem::exists(given.output.file) ? "; the file exists and will be replaced" : ""));
+  std::error_code ignored;
+  const bool exists = std::filesystem::exists(given.output.file, ignored);
+  page.line("results", given.output.file + size + (exists ? "; the file exists and will be replaced" : ""));
 }
 
 void print_page(const Scene& given, const FirstRun& run, const std::vector<std::string>& unusual,
@@ -242,10 +244,14 @@ int run_check(MPI_Comm comm, const Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const FirstRun run(given);  // not collective; every rank computes the same
-  const std::vector<Axle> axles = axles_of(run);
+  const SceneAtRest rest(given);
+  const std::vector<Axle> axles = axles_of(rest);
   StaticResponse response;
-  if (run.scene.beam) response = static_response(run);
-  const std::vector<std::string> unusual = unusual_in(run, axles, response);
+  if (run.scene.beam) response = static_response(rest, true);
+  std::vector<std::string> unusual = run.whole.unusual;
+  for (const std::string& note : run.whole.notes)
+    if (note.find(" has no effect") != std::string::npos) unusual.push_back(note);
+  for (std::string& line : unusual_in(given, rest, axles, response)) unusual.push_back(std::move(line));
   if (rank != 0) return 0;
   if (!given.quiet) {
     print_page(given, run, unusual, axles, response);

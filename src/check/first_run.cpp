@@ -9,33 +9,27 @@
 
 #include "error_control/accuracy.hpp"
 #include "error_control/initial_guess.hpp"
+#include "error_control/modes_for_damping.hpp"
 #include "error_control/multibody_step_search.hpp"
 #include "error_control/sweep_model.hpp"
 #include "error_control/trial_runs.hpp"
 #include "error_control/trial_window.hpp"
 #include "modes/modes.hpp"
+#include "scene_at_rest.hpp"
 #include "study/study_scenes.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
 namespace {
 
-constexpr double placeholder_step = 1e-6;  // s: placeholder before a step is chosen
 constexpr std::size_t frequency_count = 3;
 
-Scene first_scene(const Scene& given) {
+/// Checks all input of a study.
+Scene checked_scene(const Scene& given) {
   if (!given.study) return given;
   const StudyScenes scenes(given);
-  for (const std::size_t base : scenes.extreme_bases()) (void)scenes.base(base);  // checks all input
+  for (const std::size_t base : scenes.extreme_bases()) (void)scenes.base(base);
   return scenes.base(0);
-}
-
-Scene one_run(const Scene& whole) {
-  if (!whole.sweep) return whole;
-  const std::vector<double>& speeds = whole.sweep->speeds;
-  return at_speed(whole, !speeds.empty()          ? speeds.front()
-                         : whole.vehicles.empty() ? whole.load.speed
-                                                  : whole.train.speed);
 }
 
 std::size_t runs_of(const Scene& given) {
@@ -46,7 +40,11 @@ std::size_t runs_of(const Scene& given) {
 
 }  // namespace
 
-FirstRun::FirstRun(const Scene& given) : whole(first_scene(given)), scene(one_run(whole)), runs(runs_of(given)) {
+FirstRun::FirstRun(const Scene& given) : whole(checked_scene(given)), scene(first_run(whole)), runs(runs_of(given)) {
+  if (takes_modes_for_damping(scene)) {
+    whole = with(whole, modes_for_damping(PETSC_COMM_SELF, scene, notes).model);
+    scene = first_run(whole);
+  }
   has_trial_runs = chooses(scene) && adaptive_step_option() == nullptr;
   if (has_trial_runs) set_first_mesh(scene);
   shared = std::make_unique<SharedBeam>(PETSC_COMM_SELF, scene, notes);
@@ -80,10 +78,8 @@ void FirstRun::choose_mesh_and_step() {
       choice.push_back(fmt::format("no trial runs for accuracy {:g}: {}", scene.accuracy, option->given()));
     return;
   }
-  Scene timed = scene;
-  if (!timed.model.step) timed.model.step = placeholder_step;
   std::vector<std::string> ignored;
-  const double end = Passage(timed, *shared, ignored).plan().end_time;
+  const double end = Passage(scene, *shared, ignored).plan().end_time;
   trial_window = initial_window(scene, end);
   const FirstSteps steps = first_steps(scene, shared->omega ? shared->omega->first : 0.0, trial_window);
   const std::string mesh = scene.by_given_modes() ? "given modes"

@@ -28,8 +28,6 @@ struct FirstRun {
   std::size_t runs = 1;              // number of runs of a sweep or a study
 
   const beam::Beam* bridge() const { return shared->bridge(); }
-  /// Static wheel loads, then moving forces.
-  const std::vector<coupling::StaticLoad>& weights() const { return passage->system().weights().all(); }
   /// s; 0 without motion.
   double end_time() const { return passage ? passage->plan().end_time : 0.0; }
 

@@ -20,13 +20,13 @@ constexpr double joint_offset = 1e-9;  // m: distance of a station from a joint,
 constexpr int points_per_piece = 4;    // for the integral of the bridge's own weight
 
 /// The passing trains with their static wheel loads.
-std::vector<norm::LoadModel> passing_trains(const FirstRun& run) {
+std::vector<norm::LoadModel> passing_trains(const SceneAtRest& rest) {
   std::vector<norm::LoadModel> trains;
-  if (run.whole.sweep && !run.whole.sweep->loads.empty()) {
-    for (const MovingLoad& load : run.whole.sweep->loads)
+  if (rest.whole.sweep && !rest.whole.sweep->loads.empty()) {
+    for (const MovingLoad& load : rest.whole.sweep->loads)
       trains.push_back(norm::train_of("train", load.forces, load.positions));
-  } else if (!run.weights().empty()) {
-    trains.push_back(static_train("train", run.weights()));
+  } else if (!rest.weights().empty()) {
+    trains.push_back(static_train("train", rest.weights()));
   }
   return trains;
 }
@@ -85,13 +85,22 @@ void compute_steps(norm::StaticBridge& bridge, const beam::BeamModel& beam, cons
   }
 }
 
+void compute_reactions(norm::StaticBridge& bridge, double gravity, const std::vector<norm::LoadModel>& trains,
+                       StaticResponse& response) {
+  for (const norm::StaticBridge::Bearing& bearing : bridge.bearings()) {
+    const norm::InfluenceLine line = bridge.reaction(bearing);
+    response.supports.push_back({bearing.x, bearing.span_end < 0, dead_load_effect(line, bridge.model(), gravity),
+                                 -greatest_of(line.times(-1.0), trains), greatest_of(line, trains)});
+  }
+}
+
 }  // namespace
 
-std::vector<Axle> axles_of(const FirstRun& run) {
+std::vector<Axle> axles_of(const SceneAtRest& rest) {
   std::vector<Axle> axles;
-  if (!run.passage) return axles;
-  const train::Fleet& fleet = run.passage->system().fleet();
-  const std::vector<coupling::StaticLoad>& weights = run.weights();
+  if (!rest.system) return axles;
+  const train::Fleet& fleet = rest.system->fleet();
+  const std::vector<coupling::StaticLoad>& weights = rest.weights();
   for (std::size_t i = 0; i < weights.size(); ++i) {
     Axle axle;
     axle.x = weights[i].x;
@@ -99,7 +108,7 @@ std::vector<Axle> axles_of(const FirstRun& run) {
     if (i < fleet.wheels.size()) {
       if (fleet.wheels[i].is_further) continue;
       axle.vehicle = static_cast<std::size_t>(fleet.member(static_cast<int>(i)));
-      axle.type = run.scene.train.vehicles[axle.vehicle];
+      axle.type = rest.scene.train.vehicles[axle.vehicle];
       axle.name = fleet.wheel(fleet.wheels[i]).name;
     } else {
       axle.name = fmt::format("force {}", i - fleet.wheels.size());
@@ -109,10 +118,10 @@ std::vector<Axle> axles_of(const FirstRun& run) {
   return axles;
 }
 
-StaticResponse static_response(const FirstRun& run) {
+StaticResponse static_response(const SceneAtRest& rest, bool with_reactions) {
   StaticResponse response;
-  const beam::BeamModel& beam = *run.scene.beam;
-  if (!run.passage)
+  const beam::BeamModel& beam = *rest.scene.beam;
+  if (!rest.system)
     response.why_not = "the analysis has no loads";
   else if (beam.given)
     response.why_not = "given modes contain no supports";
@@ -120,22 +129,17 @@ StaticResponse static_response(const FirstRun& run) {
     response.why_not = "the foundation is nonlinear; the run computes its forces";
   else if (beam.spans.size() > norm::StaticBridge::most_spans)
     response.why_not = fmt::format("not computed for bridges of more than {} spans", norm::StaticBridge::most_spans);
-  else if (static_cast<double>(run.weights().size()) > max_forces)
+  else if (static_cast<double>(rest.weights().size()) > max_forces)
     response.why_not = fmt::format("not computed for trains of more than {:g} wheels", max_forces);
-  else if (!only_axle_loads(run.scene.load))
+  else if (!only_axle_loads(rest.scene.load))
     response.why_not = "computed for constant concentrated forces only";
-  else if (run.scene.train.courses.size() + run.scene.load.courses.size() > 1)
+  else if (rest.scene.train.courses.size() + rest.scene.load.courses.size() > 1)
     response.why_not = "not computed for several trains or loads, whose distances change";
   if (!response.why_not.empty()) return response;
   const results::Stage stage("influence lines");
   norm::StaticBridge bridge(beam);
-  const std::vector<norm::LoadModel> trains = passing_trains(run);
-  for (const norm::StaticBridge::Bearing& bearing : bridge.bearings()) {
-    const norm::InfluenceLine line = bridge.reaction(bearing);
-    response.supports.push_back({bearing.x, bearing.span_end < 0,
-                                 dead_load_effect(line, bridge.model(), run.scene.gravity),
-                                 -greatest_of(line.times(-1.0), trains), greatest_of(line, trains)});
-  }
+  const std::vector<norm::LoadModel> trains = passing_trains(rest);
+  if (with_reactions) compute_reactions(bridge, rest.scene.gravity, trains, response);
   compute_deflection(bridge, trains, response);
   if (!beam.track) compute_steps(bridge, beam, trains, response);
   return response;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "first_run.hpp"
+#include "scene_at_rest.hpp"
 
 namespace traverse::app {
 
@@ -16,7 +16,7 @@ struct Axle {
   int type = -1;            // type of its vehicle; -1: a force, or a unit of several vehicles
   std::size_t vehicle = 0;  // its number in the train
 };
-std::vector<Axle> axles_of(const FirstRun& run);
+std::vector<Axle> axles_of(const SceneAtRest& rest);
 
 /// The force of a support or a vertical spring on the bridge, N, upward.
 struct SupportForce {
@@ -38,6 +38,7 @@ struct StaticResponse {
   double span = 0.0;                  // m, length of this span
   std::string why_not;                // the reason if nothing was computed, in words
 };
-StaticResponse static_response(const FirstRun& run);
+/// with_reactions: also the forces of supports and springs.
+StaticResponse static_response(const SceneAtRest& rest, bool with_reactions);
 
 }  // namespace traverse::app

@@ -6,26 +6,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <set>
+#include <utility>
 
 #include "norm/en1991.hpp"
+#include "norm/usual_ranges.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::app {
 namespace {
 
 using Lines = std::vector<std::string>;
 
-constexpr double fast_speed = 150.0, reported_speed = 160.0;   // m/s; above the latter the scene's reader reports it
-constexpr double heaviest_axle = 40e3, lightest_axle = 100.0;  // kg
-constexpr double min_bridge_span = 4.0;                        // m: shortest span of a bridge
-constexpr double lightest_bridge = 50.0;                       // kg/m, of a bridge
-constexpr double unit_ratio = 31.6227766;  // ratio of frequencies for a factor of 1000 in EI or mass
-constexpr double bounds_margin = 2.0;      // factor of the bounds
-constexpr double high_damping = 0.1;
-constexpr double large_deflection = 1.0 / 300.0;   // relative to the span
-constexpr double reported_step = 1e-4;             // m: jump of the running surface
-constexpr double earth = 9.81, near_earth = 0.05;  // m/s2
-constexpr double min_time_share = 0.99;            // relative to the time until the train has left
-constexpr double min_load_share = 1e-3;            // relative to the mean: smallest wheel load
+constexpr double large_deflection = 1.0 / 300.0;  // relative to the span
+constexpr double reported_step = 1e-4;            // m: jump of the running surface
+constexpr double near_earth = 0.05;               // m/s2
+constexpr double min_time_share = 0.99;           // relative to the time until the train has left
+constexpr double min_load_share = 1e-3;           // relative to the mean: smallest wheel load
+constexpr double heaviest_walker = 5e3;           // N: heaviest load on a footbridge
+constexpr double far_from_place = 1.0;            // m
+constexpr double soft_contact = 0.7;              // of the stiffness of the springs above
 
 /// Whether the beam has supported spans, as in figure 6.10 of EN 1991-2.
 bool is_bridge(const beam::BeamModel& beam) {
@@ -34,45 +35,54 @@ bool is_bridge(const beam::BeamModel& beam) {
          beam.cracks.empty();
 }
 
-bool between(double value, const std::pair<double, double>& bounds, double slack) {
-  return value >= bounds.first / slack && value <= bounds.second * slack;
+void say(const std::string& line, Lines& lines) {
+  if (!line.empty()) lines.push_back(line);
 }
 
-void check_frequency(const FirstRun& run, Lines& lines) {
-  const beam::BeamModel& beam = *run.scene.beam;
-  if (run.frequencies.empty() || !is_bridge(beam)) return;
+double greatest_force(const std::vector<Axle>& axles) {
+  double greatest = 0.0;
+  for (const Axle& axle : axles) greatest = std::max(greatest, axle.force);
+  return greatest;
+}
+
+/// Whether people cross the bridge: figure 6.10 is for railway bridges.
+bool is_footbridge(const std::vector<Axle>& axles) {
+  const double force = greatest_force(axles);
+  return force < heaviest_walker && !norm::is_possibly_in_kilonewtons(force) && !axles.empty();
+}
+
+void check_frequency(const beam::BeamModel& beam, double n0, Lines& lines) {
   const std::vector<double> lengths = norm::determinant_lengths(beam);
-  const double length = *std::max_element(lengths.begin(), lengths.end()), n0 = run.frequencies.front();
-  const auto bounds = norm::frequency_bounds(length);
-  if (!bounds || between(n0, *bounds, 1.0)) return;
-  std::string line = fmt::format(
-      "the first frequency, {:.3g} Hz, is {} the range of railway bridges of {:.3g} m: {:.3g} to {:.3g} Hz "
-      "(EN 1991-2, figure 6.10)",
-      n0, n0 < bounds->first ? "below" : "above", length, bounds->first, bounds->second);
-  if (!between(n0, *bounds, bounds_margin) && between(n0 * unit_ratio, *bounds, bounds_margin))
-    line += "; beam_EI is possibly given in kN m2; its unit is N m2";
-  else if (!between(n0, *bounds, bounds_margin) && between(n0 / unit_ratio, *bounds, bounds_margin))
-    line += "; beam_mass is possibly given in t/m; its unit is kg/m";
-  lines.push_back(line);
+  say(norm::unusual_frequency(n0, *std::max_element(lengths.begin(), lengths.end()), "beam_EI", "beam_mass"), lines);
 }
 
-void check_mass(const FirstRun& run, Lines& lines) {
-  const beam::BeamModel& beam = *run.scene.beam;
+void check_mass(const beam::BeamModel& beam, Lines& lines) {
   const double span = *std::min_element(beam.spans.begin(), beam.spans.end());
-  if (is_bridge(beam) && span >= min_bridge_span && beam.mass.maximum() < lightest_bridge)
-    lines.push_back(fmt::format("beam_mass: {:g} kg/m is small for spans of {:g} m; it is possibly given in t/m",
-                                beam.mass.maximum(), span));
+  say(norm::unusual_bridge_mass(beam.mass.maximum(), span, "beam_mass"), lines);
 }
 
-void check_damping(const FirstRun& run, Lines& lines) {
-  const Damping& damping = run.scene.damping;
-  double ratio = damping.ratios ? std::max(damping.ratios->first, damping.ratios->second) : 0.0;
-  for (const double one : run.scene.damping_of_modes) ratio = std::max(ratio, one);
-  if (run.scene.by_given_modes())
-    for (const double one : run.scene.beam->given->ratio) ratio = std::max(ratio, one);
-  if (ratio > high_damping)
-    lines.push_back(fmt::format("a damping ratio of {:g} is {:g} % of critical damping, bridges have 0.5 to 3 %", ratio,
-                                100.0 * ratio));
+/// The greatest damping ratio of the first mode, as far as the scene gives it. n0: its frequency, Hz.
+double damping_ratio(const Scene& scene, double n0) {
+  const auto greatest = [](const std::vector<double>& ratios) {
+    return ratios.empty() ? 0.0 : *std::max_element(ratios.begin(), ratios.end());
+  };
+  const Damping& damping = scene.damping;
+  double ratio = greatest(scene.damping_of_modes);
+  if (scene.by_given_modes()) ratio = std::max(ratio, greatest(scene.beam->given->ratio));
+  if (damping.ratios) ratio = std::max({ratio, damping.ratios->first, damping.ratios->second});
+  const double omega = 2.0 * std::numbers::pi * n0;
+  if (damping.rayleigh && omega > 0.0)
+    ratio = std::max(ratio, 0.5 * (damping.rayleigh->first / omega + damping.rayleigh->second * omega));
+  return ratio;
+}
+
+void check_bridge(const SceneAtRest& rest, const std::vector<Axle>& axles, Lines& lines) {
+  const beam::BeamModel& beam = *rest.scene.beam;
+  const bool bridge = is_bridge(beam);
+  const double n0 = bridge || rest.scene.damping.rayleigh ? rest.first_frequency() : 0.0;
+  if (bridge && !is_footbridge(axles)) check_frequency(beam, n0, lines);
+  if (bridge) check_mass(beam, lines);
+  say(norm::unusual_damping(damping_ratio(rest.whole, n0)), lines);
 }
 
 void check_deflection(const StaticResponse& response, Lines& lines) {
@@ -83,8 +93,8 @@ void check_deflection(const StaticResponse& response, Lines& lines) {
         response.deflection, response.at, response.span / response.deflection));
 }
 
-void check_surface_steps(const FirstRun& run, const StaticResponse& response, Lines& lines) {
-  if (run.passage == nullptr || run.passage->system().fleet().wheels.empty()) return;
+void check_surface_steps(const SceneAtRest& rest, const StaticResponse& response, Lines& lines) {
+  if (!rest.system || rest.system->fleet().wheels.empty()) return;
   for (const SurfaceStep& step : response.steps)
     if (step.height > reported_step)
       lines.push_back(fmt::format(
@@ -93,17 +103,17 @@ void check_surface_steps(const FirstRun& run, const StaticResponse& response, Li
           1e3 * step.height, step.x));
 }
 
-void check_axles(const FirstRun& run, const std::vector<Axle>& axles, Lines& lines) {
-  if (axles.empty() || !(run.scene.gravity > 0.0)) return;
+void check_axles(const Scene& scene, const std::vector<Axle>& axles, Lines& lines) {
+  if (axles.empty() || !(scene.gravity > 0.0)) return;
   const auto by_force = [](const Axle& a, const Axle& b) { return a.force < b.force; };
   const auto [least, most] = std::minmax_element(axles.begin(), axles.end(), by_force);
-  if (most->force > heaviest_axle * earth)
+  if (most->force > norm::heaviest_axle * norm::earth)
     lines.push_back(fmt::format("{}: {:.4g} kN, {:.3g} t, on one axle; the heaviest on rails carry 40 t", most->name,
-                                1e-3 * most->force, 1e-3 * most->force / earth));
+                                1e-3 * most->force, 1e-3 * most->force / norm::earth));
   const bool heavy_bridge =
-      run.scene.beam && is_bridge(*run.scene.beam) && run.scene.beam->mass.minimum() >= lightest_bridge &&
-      *std::min_element(run.scene.beam->spans.begin(), run.scene.beam->spans.end()) >= min_bridge_span;
-  if (heavy_bridge && most->force < lightest_axle * earth)
+      scene.beam && scene.beam->mass.minimum() >= norm::lightest_bridge &&
+      *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end()) >= norm::min_bridge_span;
+  if (heavy_bridge && norm::is_possibly_in_kilonewtons(most->force))
     lines.push_back(fmt::format("{}: the largest load of a wheel or force is {:.3g} N; {} are possibly given in {}",
                                 most->name, most->force, most->type < 0 ? "forces" : "masses",
                                 most->type < 0 ? "kN; the unit is N" : "t; the unit is kg"));
@@ -115,58 +125,108 @@ void check_axles(const FirstRun& run, const std::vector<Axle>& axles, Lines& lin
                                 1e-3 * sum / static_cast<double>(axles.size())));
 }
 
-void check_speed(const FirstRun& run, Lines& lines) {
-  const bool swept = run.whole.sweep && !run.whole.sweep->speeds.empty();
-  const double speed = swept ? run.whole.sweep->speeds.back() : greatest_speed(run.scene);
-  if (speed > fast_speed && speed <= reported_speed)
-    lines.push_back(
-        fmt::format("{:g} m/s is {:g} km/h, faster than any train in service; speeds are in m/s", speed, 3.6 * speed));
+/// The readers of scenes check the speeds of all but studies.
+void check_speed_of_study(const Scene& given, const Scene& whole, Lines& lines) {
+  if (given.study && whole.sweep && !whole.sweep->speeds.empty())
+    say(norm::unusual_speed("study_vary", whole.sweep->speeds.back()), lines);
 }
 
-void check_position(const FirstRun& run, const std::vector<Axle>& axles, Lines& lines) {
-  if (!run.scene.beam || axles.empty()) return;
+void check_position(const SceneAtRest& rest, const std::vector<Axle>& axles, Lines& lines) {
+  const Scene& scene = rest.scene;
+  if (!scene.beam || axles.empty()) return;
   const auto by_place = [](const Axle& a, const Axle& b) { return a.x < b.x; };
   const auto [last, first] = std::minmax_element(axles.begin(), axles.end(), by_place);
-  const bool moves = run.scene.analysis == Analysis::transient;
-  const bool at_rest = !moves || greatest_speed(run.scene) == 0.0;
-  const double start = run.scene.beam->start - (run.scene.beam->track ? run.scene.beam->track->approach : 0.0);
-  if (at_rest && run.scene.analysis != Analysis::static_envelope && first->x < start)
+  const bool moves = scene.analysis == Analysis::transient;
+  const bool at_rest = !moves || greatest_speed(scene) == 0.0;
+  const double start = scene.beam->start - (scene.beam->track ? scene.beam->track->approach : 0.0);
+  if (at_rest && scene.analysis != Analysis::static_envelope && first->x < start)
     lines.push_back(fmt::format("the train does not reach the bridge: it stands {:g} m before it", start - first->x));
-  const double leaves = run.passage->system().leaving_time();
-  if (moves && !at_rest && std::isfinite(leaves) && run.end_time() < leaves * min_time_share &&
-      first->x + greatest_speed(run.scene) * run.end_time() > start)
+  const double leaves = rest.system->leaving_time();
+  if (moves && !at_rest && std::isfinite(leaves) && scene.end_time && *scene.end_time < leaves * min_time_share &&
+      first->x + greatest_speed(scene) * *scene.end_time > start)
     lines.push_back(
         fmt::format("the run ends at {:.4g} s, before the last {} has left the bridge at {:.4g} s (ts_max_time)",
-                    run.end_time(), last->type < 0 ? "force" : "wheel", leaves));
+                    *scene.end_time, last->type < 0 ? "force" : "wheel", leaves));
 }
 
-void check_gravity(const FirstRun& run, Lines& lines) {
-  const bool has_wheels = run.passage && !run.passage->system().fleet().wheels.empty();
+void check_gravity(const SceneAtRest& rest, Lines& lines) {
+  const bool has_wheels = rest.system && !rest.system->fleet().wheels.empty();
   // Across an inclined beam gravity has a component only.
-  const double gravity = run.scene.gravity * (run.scene.beam ? std::hypot(1.0, run.scene.beam->gradient) : 1.0);
-  if (has_wheels && std::abs(gravity - earth) > near_earth)
+  const double gravity = rest.scene.gravity * (rest.scene.beam ? std::hypot(1.0, rest.scene.beam->gradient) : 1.0);
+  if (has_wheels && std::abs(gravity - norm::earth) > near_earth)
     lines.push_back(fmt::format("gravity: {:g} m/s2, on earth it is 9.81 m/s2", gravity));
+}
+
+/// The stiffness of the springs of a body across the track, N/m.
+double vertical_stiffness(const multibody::MechanismModel& model, int body) {
+  double sum = 0.0;
+  for (const multibody::Spring& spring : model.springs) {
+    if (spring.bodies[0] != body && spring.bodies[1] != body) continue;
+    const Eigen::Vector2d axis = (spring.to - spring.from).stableNormalized();
+    sum += spring.stiffness * axis.y() * axis.y();
+  }
+  return sum;
+}
+
+/// A wheel is stiffer than the springs above it, by a factor of ten for tyres and of a thousand for steel.
+void check_contacts(const SceneAtRest& rest, Lines& lines) {
+  if (!rest.system) return;
+  const train::Fleet& fleet = rest.system->fleet();
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < fleet.wheels.size() && i < rest.weights().size(); ++i) {
+    const train::WheelContact& c = fleet.wheels[i];
+    const train::Wheel& wheel = fleet.wheel(c);
+    const double force = rest.weights()[i].force;
+    if (c.is_further || !(force > 0.0) || !seen.insert(wheel.name).second) continue;
+    const contact::Kinematics pressed{contact::static_penetration(wheel.law, force), 0.0, 0.0};
+    const double contact = contact::force(wheel.law, pressed, 0.0).normal_by_penetration,
+                 springs = vertical_stiffness(fleet.vehicles[c.vehicle].mechanism.model(), c.body);
+    if (contact < soft_contact * springs)
+      lines.push_back(fmt::format(
+          "{}: its contact is softer, {:.3g} N/m under its static load, than the springs above it, {:.3g} N/m; "
+          "stiffnesses are in N/m, of a Hertz contact in N/m^1.5",
+          wheel.name, contact, springs));
+  }
+}
+
+void check_places(const SceneAtRest::Displaced& displaced, Lines& lines) {
+  if (displaced.distance > far_from_place)
+    lines.push_back(
+        fmt::format("vehicle {}: at rest the body {} is {:.3g} m {} its position in the input; stiffnesses, masses, "
+                    "radii or positions are possibly in other units",
+                    displaced.vehicle, displaced.body, displaced.distance,
+                    std::abs(displaced.up) < 0.5 * displaced.distance ? "beside"
+                    : displaced.up < 0.0                              ? "below"
+                                                                      : "above"));
 }
 
 }  // namespace
 
-std::vector<std::string> unusual_in(const FirstRun& run, const std::vector<Axle>& axles,
+std::vector<std::string> unusual_in(const Scene& given, const SceneAtRest& rest, const std::vector<Axle>& axles,
                                     const StaticResponse& response) {
-  Lines lines = run.whole.unusual;
-  for (const std::string& note : run.whole.notes)
-    if (note.find(" has no effect") != std::string::npos) lines.push_back(note);
-  if (run.scene.beam) {
-    check_frequency(run, lines);
-    check_mass(run, lines);
-    check_damping(run, lines);
+  Lines lines;
+  if (rest.scene.beam) {
+    check_bridge(rest, axles, lines);
     check_deflection(response, lines);
-    check_surface_steps(run, response, lines);
+    check_surface_steps(rest, response, lines);
   }
-  check_gravity(run, lines);
-  check_axles(run, axles, lines);
-  check_speed(run, lines);
-  check_position(run, axles, lines);
+  check_gravity(rest, lines);
+  check_axles(rest.scene, axles, lines);
+  check_contacts(rest, lines);
+  check_places(rest.displaced, lines);
+  check_speed_of_study(given, rest.whole, lines);
+  check_position(rest, axles, lines);
   return lines;
+}
+
+std::vector<std::string> unusual_in(const Scene& given) {
+  try {
+    const SceneAtRest rest(given);
+    const std::vector<Axle> axles = axles_of(rest);
+    return unusual_in(given, rest, axles, rest.scene.beam ? static_response(rest, false) : StaticResponse());
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 }  // namespace traverse::app

@@ -5,13 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "first_run.hpp"
+#include "scene_at_rest.hpp"
 #include "static_response.hpp"
 
 namespace traverse::app {
 
-/// One line for each finding.
-std::vector<std::string> unusual_in(const FirstRun& run, const std::vector<Axle>& axles,
+/// One line for each finding for the first run of a scene.
+std::vector<std::string> unusual_in(const Scene& given, const SceneAtRest& rest, const std::vector<Axle>& axles,
                                     const StaticResponse& response);
+
+/// Not collective; the same on every rank. No findings if the first run has no state of rest, of which the run itself
+/// gives the reason.
+std::vector<std::string> unusual_in(const Scene& given);
 
 }  // namespace traverse::app

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#pragma GCC diagnostic error "-Wswitch"  // each switch over contact::LawKind has a case for every kind
+
 namespace traverse::contact {
 namespace {
 
@@ -14,8 +16,6 @@ constexpr double tolerance = 1e-16;
 constexpr int most_doublings = 60, most_halvings = 100;
 constexpr double min_approach_speed = 1e-3;  // m/s: lower limit of the approach speed in the damping
 
-bool is_linear(const Law& law) { return law.kind == LawKind::linear || law.kind == LawKind::two_sided; }
-
 /// k*alpha^n and its derivative at alpha > 0.
 struct Elastic {
   double force = 0.0;  // N
@@ -23,10 +23,16 @@ struct Elastic {
 };
 
 Elastic surface_force(const Law& law, double alpha) {
-  if (law.kind == LawKind::other) return {law.elastic->force(alpha), law.elastic->stiffness(alpha)};
-  if (is_linear(law)) return {law.stiffness * alpha, law.stiffness};
-  const double root = std::sqrt(alpha);
-  return {law.stiffness * alpha * root, 1.5 * law.stiffness * root};
+  switch (law.kind) {
+    case LawKind::hertz:
+      return {law.stiffness * alpha * std::sqrt(alpha), 1.5 * law.stiffness * std::sqrt(alpha)};
+    case LawKind::linear:
+    case LawKind::two_sided:
+      return {law.stiffness * alpha, law.stiffness};
+    case LawKind::other:
+      break;
+  }
+  return {law.elastic->force(alpha), law.elastic->stiffness(alpha)};
 }
 
 /// The penetration at which an increasing function of it has a value, by bisection, m.
@@ -70,7 +76,7 @@ Force unlimited_force(const Law& law, const Kinematics& k, double approach_speed
   f.normal = force;
   f.normal_by_penetration = slope;
   if (!law.hysteresis) {
-    const double share = law.kind == LawKind::two_sided ? 1.0 : std::clamp(k.penetration / damper_ramp, 0.0, 1.0);
+    const double share = pulls(law.kind) ? 1.0 : std::clamp(k.penetration / damper_ramp, 0.0, 1.0);
     f.normal += share * law.damping * k.penetration_rate;
     f.normal_by_rate = share * law.damping;
     if (share < 1.0) f.normal_by_penetration += law.damping * k.penetration_rate / damper_ramp;
@@ -87,7 +93,7 @@ Force unlimited_force(const Law& law, const Kinematics& k, double approach_speed
 }  // namespace
 
 Force force(const Law& law, const Kinematics& kinematics, double approach_speed) {
-  if (law.kind == LawKind::two_sided) return unlimited_force(law, kinematics, 0.0);
+  if (pulls(law.kind)) return unlimited_force(law, kinematics, 0.0);
   if (!(kinematics.penetration > 0.0)) return {};
   Force f = unlimited_force(law, kinematics, approach_speed);
   if (!(f.normal > 0.0)) return {};  // no adhesion
@@ -106,9 +112,16 @@ double unlimited_normal_force(const Law& law, const Kinematics& kinematics, doub
 }
 
 double impact_duration(const Law& law, double mass, double speed) {
-  if (law.kind == LawKind::other) return duration_of_impact(*law.elastic, mass, speed);
-  if (is_linear(law)) return std::numbers::pi * std::sqrt(mass / law.stiffness);
-  return 2.9432750 * std::pow(1.25 * mass * speed * speed / law.stiffness, 0.4) / speed;
+  switch (law.kind) {
+    case LawKind::hertz:
+      return 2.9432750 * std::pow(1.25 * mass * speed * speed / law.stiffness, 0.4) / speed;
+    case LawKind::linear:
+    case LawKind::two_sided:
+      return std::numbers::pi * std::sqrt(mass / law.stiffness);
+    case LawKind::other:
+      break;
+  }
+  return duration_of_impact(*law.elastic, mass, speed);
 }
 
 Force operator-(const Force& f) {
@@ -121,16 +134,11 @@ Force operator-(const Force& f) {
           -f.tangential_by_sliding};
 }
 
+namespace {
+
 // Newton's method for r in r^2 + s*k*r^3 = penetration, s the local compliance. The function is convex, so that the
 // iteration from the right converges monotonically.
-double surface_penetration(const Law& law, double penetration) {
-  if (law.local_compliance == 0.0 || (law.kind != LawKind::two_sided && !(penetration > 0.0))) return penetration;
-  const double compliance_factor = law.local_compliance * law.stiffness;
-  if (law.kind == LawKind::other)
-    return std::min(penetration, penetration_of(penetration, [&](double alpha) {
-                      return alpha + law.local_compliance * law.elastic->force(alpha);
-                    }));
-  if (is_linear(law)) return penetration / (1.0 + compliance_factor);
+double surface_penetration_of_hertz(double compliance_factor, double penetration) {
   double root = std::sqrt(penetration);
   for (int i = 0; i < max_iterations; ++i) {
     const double excess = root * root * (1.0 + compliance_factor * root) - penetration;
@@ -141,22 +149,54 @@ double surface_penetration(const Law& law, double penetration) {
   return root * root;
 }
 
+}  // namespace
+
+double surface_penetration(const Law& law, double penetration) {
+  if (law.local_compliance == 0.0 || (!pulls(law.kind) && !(penetration > 0.0))) return penetration;
+  const double compliance_factor = law.local_compliance * law.stiffness;
+  switch (law.kind) {
+    case LawKind::hertz:
+      return surface_penetration_of_hertz(compliance_factor, penetration);
+    case LawKind::linear:
+    case LawKind::two_sided:
+      return penetration / (1.0 + compliance_factor);
+    case LawKind::other:
+      break;
+  }
+  return std::min(penetration, penetration_of(penetration, [&](double alpha) {
+                    return alpha + law.local_compliance * law.elastic->force(alpha);
+                  }));
+}
+
 double potential(const Law& law, double penetration) {
-  if (law.kind != LawKind::two_sided && !(penetration > 0.0)) return 0.0;
-  const double alpha = surface_penetration(law, penetration);
-  const double force = surface_force(law, alpha).force;
-  if (law.kind == LawKind::other) return law.elastic->energy(alpha) + 0.5 * law.local_compliance * force * force;
-  return (is_linear(law) ? 0.5 : 0.4) * force * alpha + 0.5 * law.local_compliance * force * force;
+  if (!pulls(law.kind) && !(penetration > 0.0)) return 0.0;
+  const double alpha = surface_penetration(law, penetration), force = surface_force(law, alpha).force,
+               of_compliance = 0.5 * law.local_compliance * force * force;
+  switch (law.kind) {
+    case LawKind::hertz:
+      return 0.4 * force * alpha + of_compliance;
+    case LawKind::linear:
+    case LawKind::two_sided:
+      return 0.5 * force * alpha + of_compliance;
+    case LawKind::other:
+      break;
+  }
+  return law.elastic->energy(alpha) + of_compliance;
 }
 
 double static_penetration(const Law& law, double normal) {
   if (!(normal > 0.0)) return 0.0;
-  if (law.kind == LawKind::other)
-    return penetration_of(normal, [&](double alpha) { return law.elastic->force(alpha); });
   const double ratio = normal / law.stiffness;
-  if (is_linear(law)) return ratio;
-  const double root = std::cbrt(ratio);
-  return root * root;
+  switch (law.kind) {
+    case LawKind::hertz:
+      return std::cbrt(ratio) * std::cbrt(ratio);
+    case LawKind::linear:
+    case LawKind::two_sided:
+      return ratio;
+    case LawKind::other:
+      break;
+  }
+  return penetration_of(normal, [&](double alpha) { return law.elastic->force(alpha); });
 }
 
 double hertz_stiffness(double radius, double young_i, double poisson_i, double young_j, double poisson_j) {

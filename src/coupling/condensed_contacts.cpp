@@ -223,8 +223,7 @@ double CondensedContacts::update_contacts(double shift) {
       c.kinematics.penetration_rate = c.touch.kinematics.penetration_rate + shift * delta_[i];
       const bool has_friction = i + 1 < size() && !rows_[i + 1].normal;
       c.kinematics.sliding_speed = c.touch.kinematics.sliding_speed + (has_friction ? shift * delta_[i + 1] : 0.0);
-      c.force = contact::force(c.law, c.kinematics, c.approach_speed);
-      if (c.sign < 0.0) c.force = -c.force;
+      c.force = train::force_of(c);
     }
     deviation_[i] = force_of(rows_[i]) - reference_[i] - change_[i];
     largest = std::max(largest, std::abs(deviation_[i]) / rows_[i].scale);

@@ -19,7 +19,12 @@ ContactEventLocator::ContactEventLocator(const System& system, const train::Chan
       tolerance_(tolerance),
       time_tolerance_(system.contacts().tolerance_of(change.contact, tolerance)),
       end_(to) {
-  if (!change.gain && !change.hidden && to - change.time <= time_tolerance_) found_ = true;
+  ends_before_ = change.gain || (leaves() && change.time - from > time_tolerance_);
+  if (!ends_before_ && !change.hidden && to - change.time <= time_tolerance_) found_ = true;
+}
+
+bool ContactEventLocator::leaves() const {
+  return !change_.gain && system_.fleet().contact(change_.contact).law.kind == contact::LawKind::two_sided;
 }
 
 contact::Kinematics ContactEventLocator::current_kinematics() const {
@@ -29,14 +34,14 @@ contact::Kinematics ContactEventLocator::current_kinematics() const {
 double ContactEventLocator::trial() {
   const double width = high_ - low_;
   const double margin = std::min(0.3 * time_tolerance_, 0.1 * width);
-  trial_ = std::clamp(change_.time + (change_.gain ? -margin : margin), low_ + margin, high_ - margin);
+  trial_ = std::clamp(change_.time + (ends_before_ ? -margin : margin), low_ + margin, high_ - margin);
   return trial_;
 }
 
 double ContactEventLocator::end() const { return found_ ? end_ : nearest(); }
 
-// The end just before a closing or just after an opening; the step must have a positive length.
-double ContactEventLocator::nearest() const { return change_.gain && low_ > from_ ? low_ : high_; }
+// The end just before or just after the change; the step must have a positive length.
+double ContactEventLocator::nearest() const { return ends_before_ && low_ > from_ ? low_ : high_; }
 
 void ContactEventLocator::end_at(double end) {
   found_ = true;
@@ -52,9 +57,10 @@ void ContactEventLocator::update(double at, const std::optional<train::Change>& 
     change_ = *change;
     time_tolerance_ = system_.contacts().tolerance_of(change_.contact, tolerance_);
     high_kinematics_ = current_kinematics();
+    if (other_contact) ends_before_ = change_.gain || (leaves() && change_.time - from_ > time_tolerance_);
     if (other_contact) low_ = system_.contacts().separations().time();
     if (other_contact) low_kinematics_ = system_.contacts().separations().kinematics(change_.contact);
-    if (!change_.gain && !change_.hidden && at - change_.time <= time_tolerance_) return end_at(at);
+    if (!ends_before_ && !change_.hidden && at - change_.time <= time_tolerance_) return end_at(at);
     // The penetration after an impact does not determine the time of the closing: the next trial bisects the interval.
     const bool converges_slowly = high_ - low_ > 0.5 * width;
     if (change_.gain && (converges_slowly || change_.hidden || was_hidden)) change_.time = 0.5 * (low_ + high_);
@@ -64,15 +70,15 @@ void ContactEventLocator::update(double at, const std::optional<train::Change>& 
     low_ = at;
     low_kinematics_ = current_kinematics();
     if (shortened) return end_at(at);
-    if (!change_.gain) {
+    if (!ends_before_) {
       if (change_.hidden) return end_at(full_end_);  // the shorter step does not confirm the opening
       change_.time = system_.contacts().separations().change_between(system_.fleet(), change_.contact, low_,
                                                                      low_kinematics_, high_, high_kinematics_);
     } else {
-      const bool approaches = low_kinematics_.penetration_rate > 0.0;
+      const double rate = low_kinematics_.penetration_rate;
+      const bool approaches = change_.gain ? rate > 0.0 : rate < 0.0;
       if (!approaches && change_.hidden && !change_.touched_in_stage) return end_at(full_end_);
-      const double remaining =
-          approaches ? -low_kinematics_.penetration / low_kinematics_.penetration_rate : 0.5 * (high_ - low_);
+      const double remaining = approaches ? -low_kinematics_.penetration / rate : 0.5 * (high_ - low_);
       if (approaches && remaining <= time_tolerance_) return end_at(at);
       change_.time = std::min(low_ + remaining, high_);
     }

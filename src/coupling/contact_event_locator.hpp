@@ -1,4 +1,5 @@
-// Locates the end of a step in which a contact opens or closes: just after an opening, just before a closing.
+// Locates the end of a step in which a contact opens or closes: just after an opening, just before a closing. A guided
+// wheel leaves the beam while its force acts: a step ends just before that, and a very short one just after it.
 #pragma once
 
 #include <optional>
@@ -22,6 +23,7 @@ class ContactEventLocator {
 
  private:
   contact::Kinematics current_kinematics() const;
+  bool leaves() const;
   double nearest() const;
   void end_at(double end);
 
@@ -31,7 +33,8 @@ class ContactEventLocator {
   double low_, high_;                                     // no change before low_, a change before high_
   contact::Kinematics low_kinematics_, high_kinematics_;  // kinematics of the contact at these times
   double tolerance_;
-  double time_tolerance_;  // s, of this contact
+  double time_tolerance_;     // s, of this contact
+  bool ends_before_ = false;  // whether the step ends just before the change
   bool found_ = false;
   double trial_ = 0.0;
   double end_;

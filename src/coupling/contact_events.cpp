@@ -27,7 +27,6 @@ double refinement(const train::Separations& separations, int contact, const cont
 // again or are no longer compressed, J.
 double ContactEvents::record_released() {
   double lost = 0.0;
-  left_guide_ = false;
   for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
     if (fleet_.has_points(i)) continue;
     train::Contact& c = fleet_.contact(i);
@@ -35,7 +34,6 @@ double ContactEvents::record_released() {
     const double stored = contact::potential(c.law, c.kinematics.penetration);
     if (separations_.touching(i) && !touches) {
       c.released = true;
-      left_guide_ = left_guide_ || c.law.kind == contact::LawKind::two_sided;
       lost += stored;
     } else if (c.released && (touches || stored == 0.0)) {
       c.released = false;
@@ -59,7 +57,7 @@ void ContactEvents::record_impacts(double t) {
   bool any = false;
   for (int i = 0; i < fleet_.contacts(); ++i) {
     train::Contact& c = fleet_.contact(i);
-    if (c.law.kind == contact::LawKind::two_sided) continue;  // it has no impacts
+    if (contact::pulls(c.law.kind)) continue;  // it has no impacts
     if (separations_.touching(i) && !separations_.just_closed(i)) continue;
     c.approach_speed = std::max(c.kinematics.penetration_rate, 0.0);
     impacts_[i] = {};
@@ -83,6 +81,15 @@ void ContactEvents::record_impacts(double t) {
 std::optional<train::Change> ContactEvents::change(double t, double tolerance) const {
   return separations_.change(fleet_, t,
                              [&](int i) { return separations_.time_to_touch(i) <= 2.0 * tolerance_of(i, tolerance); });
+}
+
+bool ContactEvents::leaves_guide(double tolerance) const {
+  for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
+    if (fleet_.contact(i).law.kind != contact::LawKind::two_sided || !separations_.touching(i)) continue;
+    const contact::Kinematics& to_end = separations_.kinematics(i);
+    if (to_end.penetration_rate < 0.0 && -to_end.penetration >= tolerance * to_end.penetration_rate) return true;
+  }
+  return false;
 }
 
 // A damper force begins with a jump, which must be at the end of a step; an elastic force begins at zero.

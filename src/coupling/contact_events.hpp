@@ -24,8 +24,9 @@ class ContactEvents {
   /// begin or are expected. Returns the elastic energy that is lost because damped contacts open while they are
   /// compressed, J.
   double accept(double t);
-  /// Whether a guided wheel has left the beam at the last accepted instant.
-  bool left_guide() const { return left_guide_; }
+  /// Whether a guided wheel is within the tolerance (s) of the end of the beam that it is about to leave, at the last
+  /// accepted instant.
+  bool leaves_guide(double tolerance) const;
 
   /// The first opening or closing in the step that ends at t, which the fleet is set to. Closings that were expected
   /// within the tolerance (s) are excluded.
@@ -54,7 +55,6 @@ class ContactEvents {
   train::Separations separations_;
   std::vector<Impact> impacts_;  // one per contact
   std::vector<double> impact_durations_;
-  bool left_guide_ = false;
 };
 
 }  // namespace traverse::coupling

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "coupling/edge_shares.hpp"
+
 namespace traverse::coupling {
 namespace {
 
 constexpr int most_iterations = 40;
+constexpr int most_static_iterations = 400;   // which include those for the shares of edges
 constexpr int reuse_iterations = 4;           // limit of iterations of a stage with reused matrices
 constexpr int most_tangents = 20;             // iterations on the contact laws in one iteration
 constexpr double smooth_tolerance = 1e-10;    // remaining error of forces, relative to the weight
@@ -55,10 +58,12 @@ bool ContactNewton::iterate(train::Fleet& fleet, const StageData& s, double* x) 
   fleet.contact_forces();
   const bool statics = s.shift2 == 0.0;
   bool reused = true;
-  for (int i = 0; i < most_iterations; ++i) {
+  EdgeShares edges(fleet);
+  for (int i = 0; i < (edges.any() ? most_static_iterations : most_iterations); ++i) {
     const Loads loads = i > 0 ? Loads::found : statics ? Loads::none : Loads::expected;
     const bool evaluated = evaluate(fleet, s, x, loads);
     if (i == 0) contacts_.list(fleet);
+    if (i == 0 && statics) edges.hold();
     const unsigned flags =
         share_contacts(s, fleet, evaluated ? condense_own(fleet, s, i) : unsigned{train::VehicleShare::failed});
     if ((flags & train::VehicleShare::failed) != 0) return false;
@@ -80,7 +85,7 @@ bool ContactNewton::iterate(train::Fleet& fleet, const StageData& s, double* x) 
       continue;
     }
     if (i == 1) second_.record(reused ? loaded_contacts(fleet) : not_comparable, before, change_);
-    if (has_converged(statics, reused && i == 1, before, deviation)) return true;
+    if (has_converged(statics, reused && i == 1, before, deviation) && edges.settle()) return true;
     for (std::size_t k = 0; k < work_.size(); ++k)
       fleet.vehicles[k].converged = !statics && work_[k].change * contraction_ <= tolerance_;
   }

@@ -56,7 +56,7 @@ std::array<double, 2> KinkEvents::turning_times(const Kink& kink, double t, cons
     state[x] = fleet_.coordinates(c).x();
     state[speed] = fleet_.velocities(c).x();
     const double penetration = fleet_.kinematics(kink.wheel).penetration;
-    const bool in_contact = penetration > 0.0 || c.law.kind == contact::LawKind::two_sided;
+    const bool in_contact = penetration > 0.0 || contact::pulls(c.law.kind);
     state[radius] = in_contact ? fleet_.wheel(c).radius - penetration : 0.0;
   }
   MPI_Allreduce(MPI_IN_PLACE, state.data(), state_size, MPI_DOUBLE, MPI_SUM, comm_);

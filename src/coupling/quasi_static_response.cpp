@@ -95,13 +95,14 @@ QuasiStaticResponse::InfluenceLine QuasiStaticResponse::influence_line(double st
   return line;
 }
 
-// The deflection of a station under the dead load, the beam's strains and settlements.
+// The deflection of a station relative to the line through the supports, under the dead load, the beam's strains and
+// settlements.
 double QuasiStaticResponse::permanent_deflection(double station) {
   const std::vector<double> permanent = structure_->displacements_without_traffic(), zeros(permanent.size(), 0.0);
   beam::Recovery recovery(structure_->beam(), {station}, gravity_);
   std::vector<beam::Response> responses;
   recovery.evaluate(permanent.data(), zeros.data(), zeros.data(), {}, responses);
-  return responses.front().deflection;
+  return responses.front().relative_deflection;
 }
 
 bool QuasiStaticResponse::pass_together(const train::WheelPaths& paths) const {

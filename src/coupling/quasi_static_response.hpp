@@ -37,9 +37,10 @@ class QuasiStaticResponse {
 
   /// Whether the distances between the weights are constant.
   bool pass_together(const train::WheelPaths& paths) const;
-  /// Collective. Largest magnitude of the static deflection at a station under all weights, including the structure's
-  /// own weight if it acts. If the distances are constant, the weights are in the most unfavourable position, otherwise
-  /// in their positions along `paths` until `end`, s. 0 if the foundation is not linear.
+  /// Collective. Largest magnitude of the static deflection at a station, relative to the line through the supports,
+  /// under all weights, including the structure's own weight if it acts. If the distances are constant, the weights are
+  /// in the most unfavourable position, otherwise in their positions along `paths` until `end`, s. 0 if the foundation
+  /// is not linear.
   double static_peak(double station, const train::WheelPaths& paths, double end);
   /// Collective. The work of a single load at the station that causes the largest deflection under the weights, J; 0
   /// without a deflection.

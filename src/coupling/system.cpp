@@ -52,6 +52,7 @@ System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, S
   fleet_.partition(0.0);
   fleet_.start_rolling();
   on_beam_.assign(input_.load.forces.size(), 0);
+  middle_.assign(input_.load.forces.size(), 0.0);
   begin_step(0.0, 0.0);
   if (structure_) set_reference_loads();
 }
@@ -59,16 +60,25 @@ System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, S
 System::~System() = default;
 
 void System::set_reference_loads() {
-  double load = 0.0, greatest = 0.0;
-  for (double weight : structure_->dead_load()) load += std::abs(weight);
-  MPI_Allreduce(MPI_IN_PLACE, &load, 1, MPI_DOUBLE, MPI_SUM, comm_);
+  double greatest = 0.0;
+  for (double weight : structure_->dead_load()) force_sum_ += std::abs(weight);
+  MPI_Allreduce(MPI_IN_PLACE, &force_sum_, 1, MPI_DOUBLE, MPI_SUM, comm_);
   const auto add = [&](double force) {
-    load += force;
+    force_sum_ += force;
     greatest = std::max(greatest, force);
   };
   for (const train::MovingVehicle& vehicle : fleet_.vehicles) add(vehicle.weight);
   for (double force : input_.load.forces) add(std::abs(force));
-  structure_->set_reference_loads(load, greatest);
+  for (std::size_t i = 0; i < input_.load.forces.size(); ++i) moment_sum_ += std::abs(train::moment_of(input_.load, i));
+  structure_->set_reference_loads(force_sum_, greatest);
+}
+
+structure::Extent System::extent(const double* y) const {
+  if (!structure_) return {};
+  const structure::Extent own = structure_->extent(y);
+  double largest[2] = {own.displacement, own.rotation};
+  MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, comm_);
+  return {largest[0], largest[1]};
 }
 
 // Height of the beam's surface above its axis; the surface of a rail is its axis.
@@ -127,6 +137,7 @@ void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
   move_supports(t);
   evaluated_time_ = t;
+  is_evaluated_ = false;
   const bool set = fleet_.set(t, p_.data(), p_.data() + fleet_.freedom());
   if ((share_.wheel_positions(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
     throw StepTooLong("at t = " + std::to_string(t) + " s " + failure_reason());
@@ -156,6 +167,7 @@ void System::evaluate_fleet(double t, const double* y) {
   share_.states(fleet_);
   share_.coordinates(fleet_, pdd_);
   record_touched();
+  is_evaluated_ = true;
 }
 
 // Rates of D and W for the last state of fleet and structure.
@@ -251,6 +263,7 @@ bool System::stage_of_fleet(const StageTime& at) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   const auto [first, past] = fleet_.own_coordinates();
   evaluated_time_ = at.t;
+  is_evaluated_ = false;
   pd_.resize(f);
   pdd_.resize(f);
   p_.resize(2 * f);

@@ -72,6 +72,8 @@ enum class Terms { all, beam, contact };
 struct Energy {
   double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0;
   double structure = 0.0;  // kinetic and strain energy of the structure alone
+  // The magnitudes of all loads times the largest displacement and rotation: the work of loads that do not cancel.
+  double largest_work = 0.0;
 };
 
 /// An accepted instant, complete on every rank except for the nodal values.
@@ -114,6 +116,8 @@ class System {
   int local_size() const;                        // entries of y on this rank
   int structure_unknowns() const { return n_; }  // on this rank: v at y, w behind it
   int freedom() const { return fleet_.freedom(); }
+  /// Collective. The extent of the structure at a state; none without a structure.
+  structure::Extent extent(const double* y) const;
 
   /// Computes the initial state: static equilibrium at t = 0 with the drives at rest (the beam deflected under the
   /// train), then the train's speed; or the given positions and velocities, made consistent with the constraints.
@@ -150,8 +154,9 @@ class System {
   void begin_motion(const structure::Method& method);
   /// Whether reject_step may follow a step.
   void store_steps(bool store) { store_steps_ = store; }
-  /// Collective. Call before the first step from a state, and after a change of the state from outside.
-  void restart_motion(double t, double* y);
+  /// Collective. Call before the first step from a state, and after a change of the state from outside, with the length
+  /// h of the next step.
+  void restart_motion(double t, double h, double* y);
   /// Collective. One step of h from t. If a stage has no solution, y is unchanged and the result is false. Spans that
   /// do not touch those under the loads are computed in accept(). `good_enough` is called after all stages are solved;
   /// if it returns false, the step is treated as not solved.
@@ -198,9 +203,10 @@ class System {
   /// Collective. The reason why the last stage could not be solved, with advice.
   std::string failure_reason() const;
 
-  /// Times in (0, end) at which a force enters or leaves the beam, an actuator's table has a kink or a prescribed
-  /// acceleration jumps. With `kinks`, for a prescribed speed, also the times at which a wheel or force passes a kink
-  /// of the running surface, or a wheel's flat begins or ends to touch.
+  /// Times in (0, end) at which a force, a moment or an end of a line load enters or leaves the beam, a table of loads
+  /// or of the supports' motion has a row, or a prescribed motion jumps in rate or acceleration. With `kinks`, for a
+  /// prescribed speed, also the times at which a wheel or load passes a kink of the running surface, a moment a node,
+  /// or at which a wheel's flat begins or ends to touch.
   std::vector<double> known_events(double end, bool kinks = true) const;
   /// Ascending stations at which the running surface may have a kink: kinks of the profile, and span ends.
   std::vector<double> surface_kinks() const { return surface_kinks(input_.profile); }
@@ -298,6 +304,7 @@ class System {
   void finish_step(double* y);
   double structure_error(const double* y);
   void load_structure(double t);
+  beam::Station station_in_step(double x, double middle) const;
   void load_line(std::size_t i, double t);
   double gradient() const;
   void record_braking();
@@ -312,6 +319,7 @@ class System {
   Powers fleet_powers();
   void move_supports(double t);
   Energy energy(const double* y);
+  double force_sum_ = 0.0, moment_sum_ = 0.0;  // magnitudes of all loads, N and N m
 
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
@@ -332,12 +340,14 @@ class System {
   std::map<double, double> applied_;                    // N by station, m: the forces of apply_to_beam
   bool applied_changed_ = false;                        // since the last step
   std::vector<char> on_beam_;                           // whether each moving force is on the beam during the step
+  std::vector<double> middle_;                          // m, x of each moving force in the middle of the step
   std::string unsupported_;                             // known reason why there is no static equilibrium
   std::vector<double> p_, c_p_, pdd_;                   // p, p' and their c, p'', the same on all ranks
   std::vector<double> pd_;                              // initial p' of a stage's Newton iteration
   std::vector<double> p_predicted_, pd_predicted_, x_;  // p and p' at zero acceleration, and the stage's change of p
   std::vector<double> evaluated_;                       // p of the last state of the fleet
   double evaluated_time_ = 0.0;
+  bool is_evaluated_ = false;  // evaluate_fleet() has set the fleet to this time, and no stage has changed it since
   unsigned flags_ = 0;         // flags of VehicleShare for that state or for the end of a step
   std::vector<double> v_, w_;  // displacements and rates of elements, 2*per_node each
   std::vector<double> element_loads_;

@@ -43,6 +43,7 @@ bool System::accept(double t, double* y) {
       share_.distributed() ? (flags_ & train::VehicleShare::badly_conditioned) != 0 : fleet_.badly_conditioned();
   if (badly_conditioned) evaluate_fleet(t, y);
   bool renewed = fleet_.accept();
+  if (renewed) is_evaluated_ = false;
   if (badly_conditioned && share_.distributed()) {
     renewed = share_.exchange(renewed ? train::VehicleShare::renewed : 0U) != 0;
     if (renewed) share_.partitions(fleet_);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "coupling/system.hpp"
+#include "train/on_line.hpp"
 
 namespace traverse::coupling {
 
@@ -14,21 +15,32 @@ void System::load_structure(double t) {
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
     if (train::length_of(input_.load, i) > 0.0) load_line(i, t);
     if (on_beam_[i] == 0) continue;
-    const beam::Station s = line_->mesh.locate(train::place_of(input_.load, i, t));
+    const beam::Station s = station_in_step(train::place_of(input_.load, i, t), middle_[i]);
     loads_.push_back({s.element, s.xi, 0.0, -train::force_at(input_.load, i, t), train::moment_of(input_.load, i),
-                      train::speed_of(input_.load, i, t)});
+                      train::speed_of(input_.load, i, t), 0.0, static_cast<int>(i)});
   }
   for (std::size_t i = 0; i < braking_force_.size(); ++i) {
     if (braking_force_[i] == 0.0) continue;
     const double x = braking_[i].x + braking_[i].law.distance(t), along = braking_force_[i];
     const beam::Station s = line_->mesh.locate(x);
-    loads_.push_back({s.element, s.xi, along, 0.0, -surface_height() * along, braking_[i].law.speed(t)});
+    loads_.push_back({s.element, s.xi, along, 0.0, -surface_height() * along, braking_[i].law.speed(t), 0.0,
+                      static_cast<int>(input_.load.forces.size() + i)});
   }
   for (const auto& [x, force] : applied_) {
     const beam::Station s = line_->mesh.locate(x);
     loads_.push_back({s.element, s.xi, 0.0, force, 0.0, 0.0});
   }
   structure_->load(loads_);
+}
+
+// The station x in the element on the side of `middle`, where a load is in the middle of the step: at a joint, the
+// loads of a step act on the side that it comes from, or that it goes to.
+beam::Station System::station_in_step(double x, double middle) const {
+  constexpr double same_side = 1e-9;  // far above the rounding errors of places, relative to the step
+  beam::Station s = line_->mesh.locate(x + same_side * (middle - x));
+  const beam::Element& element = line_->mesh.element(s.element);
+  s.xi = (std::clamp(x, line_->mesh.start(), line_->mesh.end()) - element.x) / element.length;
+  return s;
 }
 
 // The supports of the beam, and the ground beside it, which moves with the first and the last support.
@@ -116,7 +128,7 @@ bool System::update_braking(double t) {
   for (std::size_t i = 0; i < braking_.size(); ++i) {
     const BrakingWheel& wheel = braking_[i];
     const double x = wheel.x + wheel.law.distance(t);
-    const bool on = x >= line_->mesh.start() && x <= line_->mesh.end();
+    const bool on = train::is_on_line(line_->mesh.start(), line_->mesh.end(), x, wheel.law.speed(t));
     const double force = on ? -wheel.mass * (wheel.law.acceleration(t) + gradient() * input_.gravity) : 0.0;
     changed = changed || force != braking_force_[i];
     braking_force_[i] = force;
@@ -125,14 +137,18 @@ bool System::update_braking(double t) {
 }
 
 bool System::begin_step(double from, double to) {
+  const double middle = 0.5 * (from + to);
   bool changed = std::exchange(applied_changed_, false);
-  changed = fleet_.begin_step(0.5 * (from + to)) || changed;
+  changed = fleet_.begin_step(middle) || changed;
   if (line_ == nullptr) return changed;
-  changed = update_braking(0.5 * (from + to)) || changed;
+  if (structure::SupportMotion* supports = structure_->support_motion())
+    changed = supports->select_sides(middle) || changed;
+  changed = update_braking(middle) || changed;
   for (std::size_t i = 0; i < on_beam_.size(); ++i) {
-    const double x = train::place_of(input_.load, i, 0.5 * (from + to));
+    const double x = train::place_of(input_.load, i, middle), speed = train::speed_of(input_.load, i, middle);
     const bool point = train::length_of(input_.load, i) == 0.0;
-    const char on = point && x >= line_->mesh.start() && x <= line_->mesh.end() ? 1 : 0;
+    const char on = point && train::is_on_line(line_->mesh.start(), line_->mesh.end(), x, speed) ? 1 : 0;
+    middle_[i] = x;
     changed = changed || on != on_beam_[i];
     on_beam_[i] = on;
   }

@@ -57,8 +57,9 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
   return reaches_;
 }
 
-void System::restart_motion(double t, double* y) {
+void System::restart_motion(double t, double h, double* y) {
   Motion& m = *motion_;
+  if (std::abs(h - m.length) > same_length * m.length) set_step(h);
   m.rate.resize(static_cast<std::size_t>(local_size()));
   rate(t, y, m.rate.data(), Terms::all);
   const int f = fleet_.freedom();
@@ -104,7 +105,10 @@ bool System::step_motion(double t, double h, double* y, const std::function<bool
   if (!solved && !solve_stages(t, y, y + n_)) return false;
   if (good_enough && !good_enough()) return false;
   finish_step(y);
-  if (by_passes_) evaluated_time_ = t + h;  // the state that the fleet's contacts have
+  if (by_passes_) {  // the state that the fleet's contacts have
+    evaluated_time_ = t + h;
+    is_evaluated_ = false;
+  }
   return true;
 }
 

@@ -15,17 +15,21 @@ bool System::contacts_are_known(double t) const {
 void System::observe(double t, const double* y, const double* a, Observation& out, bool all) {
   const bool known = contacts_are_known(t), residual_grows = known && train_->residual_may_grow();
   const bool from_passes = known && !all && !residual_grows;
-  if (!from_passes) evaluate_fleet(t, y);
+  // Without passes, accept() has set vehicles and contacts to this instant, except for accelerations and reactions.
+  const bool sufficient = from_passes || (t == evaluated_time_ && (is_evaluated_ || (!all && !by_passes_)));
+  if (!sufficient) evaluate_fleet(t, y);
   out.loads.clear();
   out.bridge_loads.clear();
   if (structure_) {
     load_structure(t);
     out.loads = loads_;
+    int source = static_cast<int>(input_.load.forces.size() + braking_.size());  // after those of load_structure()
     for (const train::WheelContact& c : fleet_.wheels) {
+      const int wheel = source++;
       if (c.slot() < 0 || c.force.normal == 0.0) continue;
       const Eigen::Vector3d f = c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
-      out.loads.push_back(
-          {c.patches[c.active].element, c.touch.xi, f.x(), f.y(), moment_about_axis(c), fleet_.velocities(c).x()});
+      out.loads.push_back({c.patches[c.active].element, c.touch.xi, f.x(), f.y(), moment_about_axis(c),
+                           fleet_.velocities(c).x(), 0.0, wheel});
     }
     const structure::ElementLoads contacts =
         from_passes ? structure::ElementLoads{train_->elements(), structure_->pass_loads()} : contact_loads();
@@ -34,7 +38,7 @@ void System::observe(double t, const double* y, const double* a, Observation& ou
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
     out.bridge_loads.insert(out.bridge_loads.end(), out.beam.foundation_loads.begin(), out.beam.foundation_loads.end());
   }
-  if (!from_passes) out.energy = energy(y);
+  if (all) out.energy = energy(y);
 }
 
 /// The moment of a wheel's force on the beam about the point of the axis at its station, from the work of the force in
@@ -65,6 +69,8 @@ Energy System::energy(const double* y) {
   double sums[5] = {s.kinetic, s.strain, s.potential, s.dissipated, s.work};
   MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, comm_);
   Energy e{sums[0], sums[1], sums[2], sums[3], sums[4], sums[0] + sums[1]};
+  const structure::Extent largest = extent(y);
+  e.largest_work = force_sum_ * largest.displacement + moment_sum_ * largest.rotation;
   const multibody::MechanismEnergy vehicles = fleet_.energy();
   e.kinetic += vehicles.kinetic;
   e.strain += vehicles.strain;

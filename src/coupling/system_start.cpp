@@ -112,18 +112,26 @@ std::vector<double> System::known_events(double end, bool all_kinks) const {
     add(fleet_.coordinates(c).x(), law, surface_kinks(fleet_.profile(c)));
     add_flats(c, law, end, events);
   }
-  std::vector<double> kinks;
-  if (all_kinks)
+  std::vector<double> kinks, nodes;
+  if (line_ != nullptr) kinks = nodes = {line_->mesh.start(), line_->mesh.end()};
+  if (all_kinks && line_ != nullptr) {
     kinks = surface_kinks();
-  else if (line_ != nullptr)
-    kinks = {line_->mesh.start(), line_->mesh.end()};
-  for (std::size_t i = 0; i < input_.load.positions.size(); ++i)
-    if (train::length_of(input_.load, i) == 0.0) add(input_.load.positions[i], train::law_of(input_.load, i), kinks);
+    for (int e = 0; e < line_->mesh.elements(); ++e) nodes.push_back(line_->mesh.element(e).x);
+  }
+  for (std::size_t i = 0; i < input_.load.positions.size(); ++i) {
+    // The ends of a line load; a moment acts on rotations, whose shapes have kinks at the nodes.
+    const double reach = 0.5 * train::length_of(input_.load, i);
+    const std::vector<double>& at = train::moment_of(input_.load, i) == 0.0 ? kinks : nodes;
+    for (const double side : reach > 0.0 ? std::vector<double>{-reach, reach} : std::vector<double>{0.0})
+      add(input_.load.positions[i] + side, train::law_of(input_.load, i), at);
+  }
   for (const train::Course& course : input_.load.courses) {
     for (double t : course.speed.kinks()) record(t);
     for (double t : course.variation.kinks()) record(t);
   }
   for (double t : fleet_.kinks_of_actions()) record(t);
+  if (structure_ && structure_->support_motion() != nullptr)
+    for (double t : structure_->support_motion()->rows()) record(t);
   std::sort(events.begin(), events.end());
   return events;
 }

@@ -98,7 +98,7 @@ struct BatchPlan {
 
 struct BatchResult : base::PassagePeaks {
   RunFailure failure = none;
-  std::vector<double> samples;                 // [instant][stored response][probe]
+  std::vector<double> samples;  // [instant][stored response][probe]; deflections relative to the line of the supports
   std::vector<double> coordinates_at_largest;  // for each vehicle the coordinates at its largest linearisation residual
 };
 

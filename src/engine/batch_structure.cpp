@@ -164,7 +164,7 @@ void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t stati
   }
   p.acceleration = kept(forms.acceleration);
   p.nodal_moment = kept(forms.nodal_moment);
-  std::vector<double> constant = {forms.constant_deflection, forms.constant_moment};
+  std::vector<double> constant = {forms.constant_deflection - forms.support_line, forms.constant_moment};
   lists_.push_back(forms.unknown);
   if (modal_ != nullptr) {
     for (std::size_t k = 0; k < forms.unknown.size(); ++k)

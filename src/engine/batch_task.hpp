@@ -26,7 +26,8 @@ struct ProbeForms {
   const double* acceleration = nullptr;  // m/s2: coefficients of a
   const double* nodal_moment = nullptr;  // N m: coefficients of v
   const double* moment[3] = {};          // N m: other parts of the moment, coefficients of v, w and a
-  const double* constant = nullptr;      // deflection and moment due to self-weight and temperature
+  const double* constant = nullptr;      // due to self-weight and temperature: deflection relative to the line through
+                                         // the supports, moment
   double from = 1.0, to = 0.0, x = 0.0;  // m: ends of the element, if wheels run on it; station
   /// The contributions of a force or a moment at xi of the element, left and right of the station, to deflection and
   /// moment: coefficients of the powers of xi, [side][force, moment][deflection, moment][power].

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace traverse::engine {
 
@@ -10,6 +11,7 @@ inline constexpr double classes_an_octave =
     4.0;  // classes of speeds; time steps are at most a fifth shorter than requested
 
 inline int speed_class(double speed) {
+  if (!(speed > 0.0)) return std::numeric_limits<int>::min();  // at rest
   return static_cast<int>(std::floor(classes_an_octave * std::log2(speed) + 1e-9));
 }
 

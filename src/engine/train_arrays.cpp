@@ -10,6 +10,8 @@
 
 #include "train/linear_dynamics.hpp"
 
+#pragma GCC diagnostic error "-Wswitch"  // each switch over contact::LawKind has a case for every kind
+
 namespace traverse::engine {
 namespace {
 
@@ -67,6 +69,20 @@ struct Instants {
   }
 };
 
+/// Why the kernels, which know k a^1.5 and k a, do not compute a contact law; null if they do.
+const char* obstacle_of(contact::LawKind kind) {
+  switch (kind) {
+    case contact::LawKind::hertz:
+    case contact::LawKind::linear:
+      break;
+    case contact::LawKind::two_sided:
+      return "has a two-sided contact";
+    case contact::LawKind::other:
+      return "has a contact law of its own";
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::string TrainArrays::obstacle(const train::Fleet& fleet) {
@@ -85,8 +101,7 @@ std::string TrainArrays::obstacle(const train::Fleet& fleet) {
         return vehicle_obstacle(fmt::format("its wheel '{}' {}", wheel.name, why));
       };
       if (wheel.law.damping != 0.0 || wheel.law.hysteresis) return wheel_obstacle("has a contact with damping");
-      if (wheel.law.kind == contact::LawKind::other) return wheel_obstacle("has a contact law of its own");
-      if (wheel.law.kind == contact::LawKind::two_sided) return wheel_obstacle("has a two-sided contact");
+      if (const char* why = obstacle_of(wheel.law.kind); why != nullptr) return wheel_obstacle(why);
       if (wheel.law.friction != 0.0) return wheel_obstacle("has a contact with friction");
       if (!wheel.shape.round()) return wheel_obstacle("is out of round");
     }

@@ -11,6 +11,7 @@ std::string batch_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (scene.beam->gradient != 0.0) return "the track is inclined";
   if (scene.supports_move()) return "the supports move";
   if (scene.vehicles.empty()) return "the scene has no vehicles";
+  if (!(scene.train.speed > 0.0)) return "the train stands";
   if (!scene.load.forces.empty()) return "forces move in addition to the vehicles";
   if (scene.model.vehicles != VehicleModel::linear) return "vehicles are mechanisms, not linear";
   if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";

@@ -33,9 +33,10 @@ constexpr double seconds_per_sample = 1e-7;  // s, for the check of limits at on
 CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam,
                        bool checks)
     : scene_(scene), speeds_(scene.sweep->speeds), loads_(scene.sweep->loads), beam_(std::move(beam)) {
-  if (speeds_.empty()) speeds_ = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
+  if (speeds_.empty()) speeds_ = {moving_speed(scene)};
   if (loads_.empty()) loads_ = {scene.load};
-  for (const double x : wheels_at_start(scene)) last_wheel_ = std::min(last_wheel_, x);
+  if (scene.train.speed > 0.0)
+    for (const double x : wheels_at_start(scene)) last_wheel_ = std::min(last_wheel_, x);
   if (beam_ == nullptr) {
     beam_ = std::make_shared<SharedBeam>(PETSC_COMM_SELF, scene_, notes);
     beam_->damp(scene_, !scene_.model.step || scene_.model.modes > 0, notes);
@@ -156,8 +157,7 @@ CaseResult CaseRunner::result_of(const engine::BatchResult& crossing, std::size_
 const Scene& CaseRunner::scene_of(std::size_t train, const CaseRun& run) {
   scene_.load.forces = loads_[train].forces;
   scene_.load.positions = loads_[train].positions;
-  if (scene_.load.courses.empty()) scene_.load.speed = scene_.load.forces.empty() ? 0.0 : run.speed;
-  if (scene_.train.courses.empty()) scene_.train.speed = scene_.vehicles.empty() ? 0.0 : run.speed;
+  set_speed(scene_, run.speed);
   if (run.seed) scene_.profile = scene_.roughness->profile(*run.seed);
   return scene_;
 }
@@ -165,7 +165,8 @@ const Scene& CaseRunner::scene_of(std::size_t train, const CaseRun& run) {
 double CaseRunner::duration(std::size_t train, double speed) const {
   if (scene_.end_time) return *scene_.end_time;
   double last = last_wheel_;
-  for (const double x : loads_[train].positions) last = std::min(last, x);
+  if (scene_.load.speed > 0.0)
+    for (const double x : loads_[train].positions) last = std::min(last, x);
   return (scene_.beam->length() - last) / speed + scene_.tail.value_or(0.0);
 }
 

@@ -10,6 +10,7 @@
 
 #include "error_control/initial_guess.hpp"
 #include "error_control/model_search.hpp"
+#include "error_control/modes_for_damping.hpp"
 #include "error_control/multibody_step_search.hpp"
 #include "error_control/search_constants.hpp"
 #include "error_control/trial_runs.hpp"
@@ -22,7 +23,6 @@
 namespace traverse::app {
 namespace {
 
-constexpr double placeholder_step = 1e-6;          // s: placeholder before a step is chosen
 constexpr std::size_t min_continuous_spans = 200;  // from this number of continuous spans the active window is used
 
 void limit_to_active_window(const Scene& scene, NumericalModel& model) {
@@ -129,6 +129,8 @@ bool damps_all_modes(const Scene& scene) {
 
 Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
   Choice none{scene.model, {}, {}};
+  if (takes_modes_for_damping(scene))
+    if (const Choice by_modes = modes_for_damping(comm, scene, notes); by_modes.model.modes > 0) return by_modes;
   const bool without_bridge = chooses_multibody_step(scene);
   if (!without_bridge && !chooses(scene)) return none;
   if (const options::Entry* option = adaptive_step_option()) {
@@ -150,9 +152,7 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   known.damping.ratios.reset();
   known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
   set_low_pass(comm, known, ignored);
-  Scene timed = known;
-  if (!timed.model.step) timed.model.step = placeholder_step;
-  const double end = Passage(timed, shared, ignored).plan().end_time;
+  const double end = Passage(known, shared, ignored).plan().end_time;
   std::optional<ModelSearch> search(std::in_place, comm, known, shared, end);
   try {
     search->run();

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/one_step_methods.hpp"
 #include "error_control/accuracy.hpp"
 #include "error_control/initial_guess.hpp"
 #include "error_control/search_constants.hpp"
@@ -93,7 +94,7 @@ PeakErrors BatchChoice::check_wholes(BatchSearch& search) {
   Errors errors{};
   for (int i = 0; i <= max_refinements; ++i) {
     NumericalModel other = search.on_finer_mesh(model_);
-    other.method = "esdirk4";
+    other.method = structure::methods().front().name;
     *other.step *= 0.5;
     whole_passages_->run_at_once(std::array{other, model_});
     errors = difference(scene_, whole_passages_->run(model_), whole_passages_->run(other));

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
+#include <vector>
 
+#include "base/one_step_methods.hpp"
 #include "error_control/accuracy.hpp"
 #include "error_control/initial_guess.hpp"
 #include "error_control/search_constants.hpp"
@@ -14,7 +15,6 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::array methods = {"genalpha", "esdirk4"};
 constexpr double min_refinement = 1.25, max_refinement = 2.0;  // limits of the ratio of elements of successive meshes
 
 PeakErrors change(BatchTrialRuns& trials, const NumericalModel& from, const NumericalModel& to, double factor = 1.0) {
@@ -55,7 +55,7 @@ NumericalModel BatchSearch::first(double duration) {
   NumericalModel model = scene.model;
   model.elements = scene.mesh_open ? aligned_mesh(scene, first_mesh(scene)) : mesh_of(scene);
   model.modes = 0;
-  model.method = "esdirk4";
+  model.method = structure::methods().front().name;
   model.vehicles = VehicleModel::linear;
   model.step = 1.0;  // placeholder, until the first frequency is known
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
@@ -76,18 +76,23 @@ NumericalModel BatchSearch::on_finer_mesh(NumericalModel model) const {
   return model;
 }
 
-/// Determines the step with the first mesh, to be confirmed on the final mesh, and whether methods with one solve in
+/// Determines the step with the first mesh, to be confirmed on the final mesh, and which methods with fewer solves in
 /// each step are worth a trial.
 bool BatchSearch::predict_step(NumericalModel& model) {
   for (int i = 0; i < search::max_halvings; ++i, *model.step *= 0.5) {
     measure_steps(model);
     const bool accurate = error_ratio(steps_) <= 1.0;
     if (!accurate && error_ratio(halved_) > search::surely_within) continue;
-    // With one solve in each step wheel forces have errors where the step length changes.
-    const NumericalModel one_solve =
-        with_step(model, accurate ? search::batch_steps.front() : 0.5 * search::batch_steps.front(), methods.front());
-    one_solve_ = !controls_forces_only(trials_.scene()) &&
-                 !unreachable(error_ratio(errors_of(one_solve, model)), row_of(one_solve), search::batch_steps.front());
+    cheaper_methods_.clear();
+    for (const structure::MethodRow& method : structure::methods().subspan(1)) {
+      if (method.solves() >= structure::methods().front().solves()) continue;
+      const NumericalModel other =
+          with_step(model, accurate ? search::batch_steps.front() : 0.5 * search::batch_steps.front(), method.name);
+      // With one solve in each step wheel forces have errors where the step length changes.
+      if (method.solves() == 1.0 && controls_forces_only(trials_.scene())) continue;
+      if (!unreachable(error_ratio(errors_of(other, model)), method, search::batch_steps.front()))
+        cheaper_methods_.push_back(method.name);
+    }
     if (!accurate) *model.step *= 0.5;
     return true;
   }
@@ -130,11 +135,13 @@ bool BatchSearch::refine_mesh(NumericalModel& model) {
   return false;
 }
 
-/// A longer step, or the method with one solve in each step, if that costs less.
+/// A longer step, or a method with fewer solves in each step, if that costs less.
 NumericalModel BatchSearch::find_cheaper(const NumericalModel& model) {
   NumericalModel best = model;
   const double ratio_of_model = error_ratio(steps_);
-  for (const char* method : std::span(methods).subspan(one_solve_ ? 0 : 1)) {
+  std::vector<const char*> methods = cheaper_methods_;
+  methods.push_back(structure::methods().front().name);
+  for (const char* method : methods) {
     double ratio_of_longer = 0.0;
     for (const double factor : search::batch_steps) {
       const NumericalModel candidate = with_step(model, factor, method);

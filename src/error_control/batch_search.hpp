@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "error_control/batch_trial_runs.hpp"
 
@@ -34,8 +35,8 @@ class BatchSearch {
 
   BatchTrialRuns &trials_, &mixed_;
   double accuracy_;
-  double longest_ = 0.0;    // s: largest allowed step
-  bool one_solve_ = false;  // methods with one solve in each step are tried
+  double longest_ = 0.0;                      // s: largest allowed step
+  std::vector<const char*> cheaper_methods_;  // methods other than the default that are tried
   PeakErrors mesh_{}, steps_{};
   PeakErrors halved_{};  // the error of half the step
 };

@@ -22,7 +22,7 @@ namespace {
 void filter_stored(BatchResult& result, std::size_t probes, double frequency, double interval) {
   if (result.failure != engine::none) return;
   const std::size_t settled = filter(result.samples, probes, frequency, interval);
-  ResponseExtremes peaks(std::vector<std::vector<double>>(probes), 0);
+  ResponseExtremes peaks(probes, 0);
   peaks.add_low_passed(std::span<const double>(result.samples).first(settled * probes), interval);
   for (std::size_t p = 0; p < probes; ++p) {
     const Extreme& peak = peaks.largest_of_each(low_passed)[p];

@@ -15,6 +15,8 @@
 #include "run/plan.hpp"
 #include "traverse/base/error.hpp"
 
+#pragma GCC diagnostic error "-Wswitch"  // each switch over contact::LawKind has a case for every kind
+
 namespace traverse::app {
 namespace {
 
@@ -44,21 +46,24 @@ bool contact_unexcited(const Scene& scene) {
   return scene.beam->track && (scene.accuracy >= coarse_accuracy || std::isinf(shortest_wave(scene)));
 }
 
-/// The fastest decay of bending on the beam's beds, 1/m, and the kind of foundation that causes it. Vertical point
-/// springs count as a bed.
+/// The fastest decay of bending on the beam's beds, 1/m, and the option that causes it. Vertical point springs count as
+/// a bed whose decay is at most one over their spacing: between the springs the beam is straight or bends freely.
 struct Decay {
   double rate = 0.0;
-  std::string_view kind = "vertical";
+  std::string option;
 };
 Decay decay_of(const beam::BeamModel& beam) {
+  using beam::Direction;
   const double EI = beam.EI.minimum();
   double springs = 0.0;
   for (const beam::PointFoundation& point : beam.foundation.vertical) springs += point.k / beam.length();
-  Decay fastest{bending_decay_rate(beam::Direction::vertical, springs, EI)};
+  const double spacing = beam.length() / std::max<double>(1.0, static_cast<double>(beam.foundation.vertical.size()));
+  springs = std::min(springs, 4.0 * EI / std::pow(spacing, 4));
+  Decay fastest{bending_decay_rate(Direction::vertical, springs, EI), {}};
   for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
-    const bool vertical = kind.direction == beam::Direction::vertical;
-    const double rate = bending_decay_rate(kind.direction, bed.k.maximum() + (vertical ? springs : 0.0), EI);
-    if (rate > fastest.rate) fastest = {rate, vertical ? "vertical" : kind.name};
+    const double more = kind.direction == Direction::vertical ? springs : 0.0;
+    const double rate = bending_decay_rate(kind.direction, bed.k.maximum() + more, EI);
+    if (rate > fastest.rate) fastest = {rate, stiffness_option(kind, bed)};
   });
   return fastest;
 }
@@ -77,10 +82,16 @@ void for_all_wheels(const Scene& scene, Visit visit) {
 
 /// The contact stiffness under the wheel's share of the weight, N/m.
 double contact_stiffness(const Wheel& wheel, double weight) {
-  if (wheel.law.kind == contact::LawKind::other)
-    return wheel.law.elastic->stiffness(contact::static_penetration(wheel.law, weight));
-  return wheel.law.kind == contact::LawKind::hertz ? 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2))
-                                                   : wheel.law.stiffness;
+  switch (wheel.law.kind) {
+    case contact::LawKind::hertz:
+      return 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2));
+    case contact::LawKind::linear:
+    case contact::LawKind::two_sided:
+      return wheel.law.stiffness;
+    case contact::LawKind::other:
+      break;
+  }
+  return wheel.law.elastic->stiffness(contact::static_penetration(wheel.law, weight));
 }
 
 double mass_of(const Vehicle& vehicle, const Wheel& wheel) {
@@ -93,15 +104,14 @@ int first_mesh(const Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   if (beam.track) return first_bay;
   const int wanted = scene.accuracy >= 3e-3 ? 8 : scene.accuracy >= 3e-4 ? 16 : 32;
-  const auto [decay, kind] = decay_of(beam);
+  const auto [decay, option] = decay_of(beam);
   if (decay == 0.0) return wanted;
   const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
   if (elements_per_wave * longest * decay > max_in_a_span)
     throw InputError(fmt::format(
-        "foundation_{}: the beam bends on its bed within {:.3g} m, which {:g} elements in the span of {:g} m do "
-        "not resolve; allowed: a softer foundation, a stiffer beam_EI, a shorter span, or a given "
-        "beam_elements_per_span",
-        kind, 1.0 / decay, static_cast<double>(max_in_a_span), longest));
+        "{}: it bends the beam within {:.3g} m, which {:g} elements in the span of {:g} m do not resolve; allowed: a "
+        "smaller value, a stiffer beam_EI, a shorter span, or a given beam_elements_per_span",
+        option, 1.0 / decay, static_cast<double>(max_in_a_span), longest));
   return std::max(wanted, 4 * base::whole(std::ceil(0.25 * elements_per_wave * longest * decay), max_in_a_span / 4));
 }
 

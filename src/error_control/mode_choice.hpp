@@ -12,11 +12,12 @@ namespace traverse::app {
 
 struct ModesChoice {
   int modes = 0;       // 0: the elements remain
-  double error = 0.0;  // largest relative change of the peaks by these modes in the sample runs
+  double error = 0.0;  // largest relative change of the peaks of sample runs by as many modes more
 };
 
-/// If the scene leaves the modes open and the errors of mesh and step are within the accuracy: computes sample runs by
-/// elements, then by more and more modes until these are accurate enough. Appends the choice to `notes`.
+/// If the scene leaves the modes open and the errors of mesh and step are within the accuracy (except for unfiltered
+/// accelerations, whose convergence with the step is slow): computes sample runs by more and more modes until these are
+/// accurate enough, and two by elements. Appends the choice to `notes`.
 ModesChoice choose_mode_count(const Scene& scene, const Accuracy& accuracy, std::vector<std::string>& notes);
 
 struct QuickerModes {

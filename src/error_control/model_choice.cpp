@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/one_step_methods.hpp"
 #include "base/whole.hpp"
 
 namespace traverse::app {
@@ -51,7 +52,7 @@ NumericalModel finer(const NumericalModel& one, const NumericalModel& other) {
                                                  : 0;  // otherwise 0: elements, which are valid for both models
   model.elements = std::max(one.elements, other.elements);
   if (other.step && (!one.step || *other.step < *one.step)) model.step = other.step;
-  if (other.method != one.method) model.method = "esdirk4";
+  if (other.method != one.method) model.method = structure::methods().front().name;
   if (other.vehicles == VehicleModel::full) model.vehicles = VehicleModel::full;
   model.residual_limit = std::min(one.residual_limit, other.residual_limit);
   model.trial_distance = std::min(one.trial_distance, other.trial_distance);

@@ -62,8 +62,10 @@ ModelSearch::ModelSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
   step_of_period_ = open_step_ ? steps.of_period : 0.0;
   step_reason_ = open_step_ ? steps.why : "the step is given";
   first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.model.step;
+  const auto ratios = shared.damping_ratios();
   const double decay = scene.by_given_modes() ? scene.beam->given->ratio.front() * omega
-                                              : 0.5 * (shared.rayleigh.a + shared.rayleigh.b * omega * omega);
+                       : ratios.empty()       ? 0.0
+                                              : (ratios.front().beam + ratios.front().dampers) * omega;
   const double remaining = end - trimmed_time();
   growth_ = std::clamp(std::min(remaining, decay > 0.0 ? 1.0 / decay : remaining) / window_, 1.0, search::max_growth);
   for (std::size_t q = 0; q < quantities; ++q)

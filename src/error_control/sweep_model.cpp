@@ -11,6 +11,7 @@
 #include "error_control/accuracy.hpp"
 #include "error_control/batch_model.hpp"
 #include "error_control/mode_choice.hpp"
+#include "error_control/modes_for_damping.hpp"
 #include "error_control/trial_runs.hpp"
 #include "run/deck_acceleration.hpp"
 
@@ -35,7 +36,7 @@ void describe(const Scene& scene, const Accuracy& all, std::vector<std::string>&
 /// The finest model of three speeds; empty if mesh and step are not open.
 std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::string>& notes) {
   std::vector<double> speeds = given.sweep->speeds;
-  if (speeds.empty()) speeds = {given.vehicles.empty() ? given.load.speed : given.train.speed};
+  if (speeds.empty()) speeds = {moving_speed(given)};
   std::optional<Choice> all;
   for (const double speed : std::set{speeds.front(), speeds[speeds.size() / 2], speeds.back()}) {
     std::vector<std::string> own;
@@ -43,7 +44,7 @@ std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::stri
     if (!one.accuracy.measured) return std::nullopt;
     notes.push_back(fmt::format("at {:g} m/s:", speed));
     notes.insert(notes.end(), own.begin(), own.end());
-    one.model.trial_distance = one.accuracy.covered_until * speed;
+    one.model.trial_distance = one.accuracy.covered_until * (speed > 0.0 ? speed : 1.0);
     one.model.trials_lost_contact = one.accuracy.lost_contact;
     if (all) one.accuracy.merge(all->accuracy);
     all = Choice{all ? finer(all->model, one.model) : one.model, one.accuracy, {}};
@@ -82,18 +83,24 @@ Scene trial_scene(const Scene& given, std::vector<std::string>& notes) {
 
 Scene at_speed(const Scene& sweep, double speed) {
   Scene scene = sweep;
-  if (!sweep.sweep->loads.empty()) scene.load = sweep.sweep->loads.front();
-  if (scene.train.courses.empty()) scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
-  if (scene.load.courses.empty()) scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
+  if (!sweep.sweep->loads.empty()) {
+    scene.load = sweep.sweep->loads.front();
+    scene.load.speed = sweep.load.speed;
+  }
+  set_speed(scene, speed);
   return scene;
 }
 
 std::optional<Choice> choose_batched(const Scene& given, std::vector<std::string>& notes) {
-  if (given.vehicles.empty()) return {};
+  if (given.vehicles.empty() || takes_modes_for_damping(given)) return {};
   return choose_batch_model(trial_scene(given, notes), notes);
 }
 
 Choice choose_unbatched(const Scene& given, std::vector<std::string>& notes) {
+  if (takes_modes_for_damping(given)) {
+    const Choice by_modes = modes_for_damping(PETSC_COMM_SELF, given, notes);
+    if (by_modes.model.modes > 0) return by_modes;
+  }
   const Scene scene_of_trials = trial_scene(given, notes);
   std::optional<Choice> all = choose_at_speeds(scene_of_trials, notes);
   if (!all && given.model.modes > 0 && !given.by_given_modes())

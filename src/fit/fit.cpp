@@ -15,7 +15,9 @@
 #include "fit/evaluator.hpp"
 #include "fit/fit_file.hpp"
 #include "fit/minimise.hpp"
+#include "fit/record_check.hpp"
 #include "results/stage.hpp"
+#include "results/terminal.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
 #include "traverse/options/input.hpp"
@@ -138,6 +140,18 @@ void describe(const options::Fit& fit, const ForwardModel& model, std::vector<st
     if (!note.starts_with("tao_")) notes.push_back(note);
 }
 
+/// The failure of a fit whose best minimum is none within the bounds.
+RunFailure failure_of(const Residuals& residuals, const FitCourse& course) {
+  std::string held;
+  for (std::size_t j = 0; j < course.estimates.of.size(); ++j)
+    if (course.estimates.of[j].at_bound) held += (held.empty() ? "" : ", ") + residuals.unknowns()[j].name;
+  if (held.empty()) return {};
+  return {0, SolverError("").status(),
+          fmt::format("the fit has no minimum within its bounds: {} at a bound, beyond which the misfit decreases; "
+                      "allowed: wider bounds (fit_vary), if unit, sign, clock and offset of the measurements are right",
+                      held)};
+}
+
 }  // namespace
 
 int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
@@ -150,7 +164,10 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   align_clocks(model, fit, residuals);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   describe(fit, model, notes);
+  const std::vector<std::string> doubts = doubts_about_records(fit, model, residuals);
+  results::print_unusual(doubts);
   print_notes(comm, scene, notes);
+  notes.insert(notes.end(), doubts.begin(), doubts.end());
   const DeferredSignals deferred;
   FitFile file(comm, std::move(place), scene, residuals, notes);
   Evaluator evaluator(comm, fit.parameters.size(), model.size(), model.width(),
@@ -186,6 +203,7 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
     leave_together(comm, error);
   }
   if (rank == 0) print_fit(fit, residuals, course, scene.output.file);
+  if (rank == 0 && !failure.failed() && signal == 0) failure = failure_of(residuals, course);
   failure = first_of(comm, std::move(failure));
   if (failure.failed()) throw Error(failure.message, failure.status);
   MPI_Bcast(&signal, 1, MPI_INT, 0, comm);

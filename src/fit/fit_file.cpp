@@ -143,9 +143,8 @@ FitFile::FitFile(MPI_Comm comm, results::Place place, const Scene& scene, const 
     else
       recorder_.attributes("/fit/series/" + s.name, {{"component", static_cast<long>(s.component)}});
   }
-  const std::vector<Dataset> sets = changing(fit_, residuals, {});
-  recorder_.datasets(sets);
-  recorder_.rewrite({sets.back()});  // on the disk, with all datasets above
+  recorder_.datasets(changing(fit_, residuals, {}));
+  recorder_.publish();
 }
 
 void FitFile::update(const Residuals& residuals, const FitCourse& course) {
@@ -154,6 +153,7 @@ void FitFile::update(const Residuals& residuals, const FitCourse& course) {
 
 void FitFile::finish(const FitCourse& course) {
   if (!recorder_.writes()) return;
+  recorder_.change_beside();
   std::vector<results::Attribute> summary;
   if (!course.minima.empty()) {
     summary.push_back({"misfit", course.minima[course.best].misfit()});

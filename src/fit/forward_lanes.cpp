@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "beam/support_line.hpp"
 #include "engine/processor.hpp"
 #include "ensemble/batch_obstacle.hpp"
 #include "ensemble/case_batch.hpp"
@@ -121,7 +122,10 @@ void ForwardModel::add_samples(const std::vector<double>& samples, const Scene& 
   for (std::size_t s = 0; s < stored_.size(); ++s) {
     const auto probe =
         static_cast<std::size_t>(std::find(probes.begin(), probes.end(), *fit_.series[s].x) - probes.begin());
-    for (std::size_t k = 0; k < count; ++k) of_series[k] = samples[k * row + s * probes.size() + probe];
+    const double ground = stored_[s] == engine::Response::deflection  // measured in space
+                              ? beam::support_line(*scene.beam, *fit_.series[s].x).height(scene.beam->settlement)
+                              : 0.0;
+    for (std::size_t k = 0; k < count; ++k) of_series[k] = samples[k * row + s * probes.size() + probe] + ground;
     const Spline spline(of_series, spacing / scene.train.speed);
     for (std::size_t k = 0; k < instants_; ++k) response.push_back(spline(static_cast<double>(k) * interval_));
   }

@@ -235,7 +235,7 @@ void ForwardModel::add_series(const std::vector<double>& values, std::vector<dou
   std::vector<double> row;
   const auto sample = [&](const integrate::Instant& instant) {
     observer.sample(instant);
-    if (instant.purpose == integrate::Purpose::peaks || k == instants_) return;
+    if (!is_stored(instant.purpose) || k == instants_) return;
     outputs.fill(observer.observed(), row);
     for (std::size_t s = 0; s < channels.size(); ++s) response[first + s * instants_ + k] = row[channels[s]];
     ++k;

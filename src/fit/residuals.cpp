@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -67,7 +66,7 @@ void Residuals::align(const std::vector<double>& response, double interval, doub
     if (!series.align) continue;
     const std::size_t instants = (response.size() - fit_.frequencies.size()) / fit_.series.size();
     const double half = 0.5 * interval * static_cast<double>(instants - 1);
-    const double first = least_misfit_shift(s, response, series.time.front() - half, series.time.back() - half);
+    const double first = best_alignment(s, response, series.time.front() - half, series.time.back() - half).shift;
     unknowns_.push_back({Unknown::Kind::shift, series.name + "_shift", "s", first - range, first + range, first, s});
   }
   for (std::size_t s = 0; s < fit_.series.size(); ++s) {
@@ -120,9 +119,13 @@ ComparedSeries Residuals::compared(std::size_t s, const std::vector<double>& res
     if (unknowns_[j].series != s) continue;
     (unknowns_[j].kind == Unknown::Kind::shift ? shift : offset) = unknowns_[j].value(u[static_cast<Eigen::Index>(j)]);
   }
-  ComparedSeries both{fit_.series[s].time, measured_[s], computed(s, response, shift)};
+  ComparedSeries both = compared(s, response, shift);
   for (double& value : both.computed) value += offset;
   return both;
+}
+
+ComparedSeries Residuals::compared(std::size_t s, const std::vector<double>& response, double shift) const {
+  return {fit_.series[s].time, measured_[s], computed(s, response, shift)};
 }
 
 Eigen::VectorXd Residuals::evaluate(const std::vector<double>& response, const Eigen::VectorXd& u) const {
@@ -137,17 +140,15 @@ Eigen::VectorXd Residuals::evaluate(const std::vector<double>& response, const E
   return r;
 }
 
-/// The shift with the least misfit if computed values may be multiplied by a factor and get an offset: the one with the
-/// largest correlation. At most most_shifts shifts are compared, by most_compared values each.
-double Residuals::least_misfit_shift(std::size_t s, const std::vector<double>& response, double low,
-                                     double high) const {
+/// At most most_shifts shifts are compared, by most_compared values each.
+Alignment Residuals::best_alignment(std::size_t s, const std::vector<double>& response, double low, double high) const {
   const options::MeasuredSeries& series = fit_.series[s];
   const std::size_t count = (response.size() - fit_.frequencies.size()) / fit_.series.size();
   const Spline spline(std::span<const double>(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
   const std::size_t stride = series.time.size() / most_compared + 1;
   const auto shifts = static_cast<std::size_t>(
       std::clamp((high - low) / interval_of(series.time), 1.0, static_cast<double>(most_shifts)));
-  double best = -std::numeric_limits<double>::infinity(), found = 0.5 * (low + high);
+  Alignment best{0.5 * (low + high)};
   for (std::size_t i = 0; i <= shifts; ++i) {
     const double shift = low + (high - low) * static_cast<double>(i) / static_cast<double>(shifts);
     double n = 0.0, a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
@@ -157,9 +158,9 @@ double Residuals::least_misfit_shift(std::size_t s, const std::vector<double>& r
     }
     const double spread = std::sqrt(std::max((aa - a * a / n) * (bb - b * b / n), 0.0));
     const double correlation = spread > 0.0 ? (ab - a * b / n) / spread : -1.0;
-    if (correlation > best) best = correlation, found = shift;
+    if (correlation > best.correlation) best = {shift, correlation};
   }
-  return found;
+  return best;
 }
 
 void Residuals::set_starts(const std::vector<double>& response, Eigen::VectorXd& u) const {
@@ -167,7 +168,7 @@ void Residuals::set_starts(const std::vector<double>& response, Eigen::VectorXd&
     const Unknown& unknown = unknowns_[j];
     double& own = u[static_cast<Eigen::Index>(j)];
     if (unknown.kind == Unknown::Kind::shift) {
-      own = unknown.u(least_misfit_shift(unknown.series, response, unknown.low, unknown.high));
+      own = unknown.u(best_alignment(unknown.series, response, unknown.low, unknown.high).shift);
     } else {
       own = unknown.u(0.0);
       const ComparedSeries both = compared(unknown.series, response, u);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,13 @@ struct ComparedSeries {
   std::vector<double> time, measured, computed;
 };
 
+/// A shift of a series' clock with the correlation of its measured and its computed values; -1 if one of
+/// them is constant.
+struct Alignment {
+  double shift = 0.0;  // s
+  double correlation = -std::numeric_limits<double>::infinity();
+};
+
 class Residuals {
  public:
   /// Series without a standard deviation get one for the first iterations, a small part of their variation.
@@ -51,10 +59,15 @@ class Residuals {
   Eigen::VectorXd start() const;
   std::vector<double> values(const Eigen::VectorXd& u) const;  // of the options
   std::size_t size() const { return size_; }
+  /// The shift from `low` to `high` (s) with the least misfit if computed values may be multiplied by a factor above 0
+  /// and get an offset: the one with the largest correlation.
+  Alignment best_alignment(std::size_t series, const std::vector<double>& response, double low, double high) const;
   /// All residuals; response: see ForwardModel::run.
   Eigen::VectorXd evaluate(const std::vector<double>& response, const Eigen::VectorXd& u) const;
   /// A series and its computed counterpart.
   ComparedSeries compared(std::size_t series, const std::vector<double>& response, const Eigen::VectorXd& u) const;
+  /// The same with a given shift (s) and without an offset.
+  ComparedSeries compared(std::size_t series, const std::vector<double>& response, double shift) const;
 
   /// The number of independent values of a series: a filter makes neighbours depend on each other.
   double independent(std::size_t series) const;
@@ -74,7 +87,6 @@ class Residuals {
 
  private:
   std::vector<double> computed(std::size_t series, const std::vector<double>& response, double shift) const;
-  double least_misfit_shift(std::size_t series, const std::vector<double>& response, double low, double high) const;
 
   const options::Fit& fit_;
   std::vector<std::string> units_;

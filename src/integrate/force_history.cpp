@@ -3,7 +3,10 @@
 #include "integrate/force_history.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+
+#include "train/on_line.hpp"
 
 namespace traverse::integrate {
 namespace {
@@ -43,6 +46,10 @@ ForceHistory::ForceHistory(const structure::PiecewiseCubic& influence, const tra
   start.erase(
       std::unique(start.begin(), start.end(), [&](double a, double b) { return b - a <= same_distance * length; }),
       start.end());
+  // What arrives at the first instant is not on the bridge yet: the first interval ends at once.
+  const auto arrives = [&](double x) { return std::abs(x - breaks.front()) <= same_distance * length; };
+  if (load.speed != 0.0 && std::any_of(load.positions.begin(), load.positions.end(), arrives))
+    start.insert(start.begin(), 0.0);
   coefficients.assign(4 * channels * start.size(), 0.0);
   const auto middle = [&](std::size_t i) {
     if (load.speed == 0.0) return start[i];
@@ -55,8 +62,8 @@ ForceHistory::ForceHistory(const structure::PiecewiseCubic& influence, const tra
     for (auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(entered - start.begin() - 1, 0)); i < start.size();
          ++i) {
       const double x = position + middle(i);
-      if (x < breaks.front()) continue;
-      if (x >= breaks.back() && !(load.speed == 0.0 && x == breaks.back())) break;
+      if (x > breaks.back()) break;
+      if (!train::is_on_line(breaks.front(), breaks.back(), x, load.speed)) continue;
       const auto next = std::upper_bound(breaks.begin(), breaks.end() - 1, x);
       add(influence, static_cast<std::size_t>(next - breaks.begin()) - 1, load.forces[j], position + start[i],
           &coefficients[4 * channels * i]);

@@ -9,7 +9,8 @@
 namespace traverse::integrate {
 
 /// Sums of the influence of all forces: cubic polynomials of the distance, between the distances at which a force
-/// passes a break. The last interval has no end.
+/// passes a break. The last interval has no end. The first one has the forces that are on the bridge at the start; it
+/// has no length if others arrive at once.
 struct ForceHistory {
   /// InputError if it does not fit into memory.
   ForceHistory(const structure::PiecewiseCubic& influence, const train::MovingLoad& load);

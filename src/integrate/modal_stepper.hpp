@@ -1,4 +1,4 @@
-// A run of a bridge by modes: the exact motion at every stored sample, as nodal vectors of the whole structure.
+// A run of a bridge by modes: the exact motion at every sample, as nodal vectors of the whole structure.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,8 @@ class ModalStepper {
 
   /// Like Stepper::begin.
   void begin(const std::function<void(const Instant&)>& sample);
-  /// Like Stepper::run; a step is the interval between two samples. The nodal displacements are the displacements by
+  /// Like Stepper::run; a step is the interval between two samples, which has further instants for peaks where the
+  /// fastest mode needs them. The nodal displacements are the displacements by
   /// the modes plus the static deflections of all other modes, so that K* v balances the forces P exactly. Velocities
   /// and accelerations are by the modes only.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
@@ -32,6 +33,7 @@ class ModalStepper {
 
  private:
   void call_monitors();
+  void advance(double t);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void nodal_loads(double* nodal) const;
 

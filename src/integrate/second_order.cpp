@@ -66,7 +66,7 @@ double shorter_step(TS ts, const Verdict& verdict) {
 }
 
 void take_step(TS ts, Data& data, double* y) {
-  if (!data.started || ts->steprestart == PETSC_TRUE) data.system->restart_motion(ts->ptime, y);
+  if (!data.started || ts->steprestart == PETSC_TRUE) data.system->restart_motion(ts->ptime, ts->time_step, y);
   data.started = true;
   for (int rejections = 0;; ++rejections) {
     Verdict verdict{ts};

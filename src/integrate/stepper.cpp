@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 
 #include "arrays.hpp"
@@ -26,6 +27,7 @@ constexpr double near_event = 1e-3;        // fraction of a step: closer events 
 constexpr double restart_growth = 2.0;     // largest growth of steps of a method that reuses accelerations
 constexpr long steps_between_checks = 16;  // between two checks that the motion is bounded
 constexpr double reused_step = 1e-7;       // relative difference of step lengths that need no new factorisation
+constexpr double full_turn = 2.0 * std::numbers::pi;  // rad
 
 bool has_type(TS ts, const char* type) {
   PetscBool same = PETSC_FALSE;
@@ -183,15 +185,13 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       if (steps_ % steps_between_checks == 0) check_bounds(t, y.data);
       call_monitors(t);
       running = step(t, steps_) && !stopped_at_limit();
-      if (system_.contacts().left_guide() && t < progress.target) sample_now(sample, Purpose::peaks);
+      if (system_.contacts().leaves_guide(settings_.contact_tolerance)) sample_now(sample, Purpose::exit);
+      if (t != progress.next_sample) sample_now(sample, Purpose::peaks);
     }
     progress.under_way = t < progress.target;
     if (t == progress.next_sample) {
       const bool stored = ++progress.samples % settings_.stored == 0 && !progress.ends_between_samples;
       sample_now(sample, stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::peaks);
-    } else if (progress.crossing < settings_.crossing_times.size() &&
-               t == settings_.crossing_times[progress.crossing]) {
-      sample_now(sample, Purpose::peaks);
     }
   }
   return t;
@@ -286,23 +286,23 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purp
   if (!known) rate(t, y_, rate_, Terms::all);
   ReadArray y(y_);
   ReadArray ydot(rate_);
-  if (purpose != Purpose::peaks) check_bounds(t, y.data);
+  if (is_stored(purpose)) check_bounds(t, y.data);
   sample({t, y.data, known ? system_.acceleration() : ydot.data + system_.structure_unknowns(), nullptr, purpose});
 }
 
-// Throws SolverError if the motion is not finite, or if the beam deflects by more than its length.
+// Throws SolverError if the motion is not finite, or if the beam deflects by more than its length or turns over.
 void Stepper::check_bounds(double t, const double* y) const {
-  const auto abs = [](const double* x, int size) { return Eigen::Map<const Eigen::ArrayXd>(x, size).abs(); };
-  const int n = system_.local_size(), unknowns = system_.structure_unknowns();
-  double bounds[2] = {abs(y, n).sum(),
-                      unknowns > 0 ? abs(y, unknowns).maxCoeff() : 0.0};  // sum of all magnitudes, largest displacement
-  MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, system_.comm());
-  const bool deflects_too_much = system_.beam() != nullptr && bounds[1] > system_.beam()->model().length();
+  double sum = Eigen::Map<const Eigen::ArrayXd>(y, system_.local_size()).abs().sum();
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_MAX, system_.comm());
+  const structure::Extent extent = system_.extent(y);
+  const bool deflects_too_much = system_.beam() != nullptr && (extent.displacement > system_.beam()->model().length() ||
+                                                               extent.rotation > full_turn);
   if (t == 0.0 && deflects_too_much)
     throw SolverError(
-        "at rest the beam deflects by more than its length: what holds it is far too soft for its loads; look at the "
+        "at rest the beam deflects by more than its length or turns over: what holds it is far too soft for its loads; "
+        "look at the "
         "units of beam_EI, the foundation's k and the loads");
-  if (!std::isfinite(bounds[0]) || deflects_too_much)
+  if (!std::isfinite(sum) || deflects_too_much)
     throw StepTooLong("the motion has grown beyond all bounds by t = " + std::to_string(t) +
                       " s: the step is too long for this integrator; use a smaller -ts_dt or an implicit -ts_type");
 }

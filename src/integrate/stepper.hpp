@@ -22,16 +22,18 @@ struct Settings {
   double interval = 0.0;           // s between samples
   std::vector<double> events{};    // ascending times at which a step has to end
   double contact_tolerance = 0.0;  // s, for the ends of steps at contact events; 0: events are not located
-  /// Ascending times at which loads cross probes. Steps end there, with a sample that is not stored.
+  /// Ascending times at which loads cross probes. Steps end there.
   std::vector<double> crossing_times{};
   bool kinks = false;  // steps end where wheels turn about kinks of the bridge's surface
   long stored = 1;     // one sample out of this number is stored
   std::string type{};  // chosen by accuracy; empty: from the options
 };
 
-/// The purpose of an instant: one of the equidistant samples, a sample for peaks between them, or the end of the run if
-/// that is not a multiple of the interval between samples.
-enum class Purpose { sample, peaks, end };
+/// The purpose of an instant: one of the equidistant samples, the end of a step between them, for peaks only, the end
+/// of the run if that is not a multiple of the interval between samples, or the motion of the tip just before a guided
+/// wheel leaves.
+enum class Purpose { sample, peaks, end, exit };
+inline bool is_stored(Purpose purpose) { return purpose == Purpose::sample || purpose == Purpose::end; }
 
 /// An accepted instant of this rank: y, and w' of the structure.
 struct Instant {
@@ -53,10 +55,10 @@ class Stepper {
 
   /// Collective. Samples t = 0 unless that is done; run() calls it too.
   void begin(const std::function<void(const Instant&)>& sample);
-  /// Collective. Runs to the end, from the time at which an earlier call stopped. `sample` is called at t = 0, at every
-  /// multiple of the interval, at crossing times and at the end; `step` after every step: if it returns false the run
-  /// stops. Throws SolverError with advice if a step cannot be solved. Returns the final time. `between` is called
-  /// before every step, after all calls for earlier steps.
+  /// Collective. Runs to the end, from the time at which an earlier call stopped. `sample` is called at t = 0 and
+  /// after every step, also at every multiple of the interval and at the end; `step` before that after every step: if
+  /// it returns false the run stops. Throws SolverError with advice if a step cannot be solved. Returns the final time.
+  /// `between` is called before every step, after all calls for earlier steps.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
              const std::function<void(double)>& between = {});
 

@@ -296,7 +296,7 @@ class ForcedModes : Lanes<W> {
   double parts_ = 1.0;                 // number of parts of the longest sampling interval
   double long_phase_per_metre_ = 0.0;  // largest phase of the fastest mode in any lane
   Lane *q_stored_ = nullptr, *r_stored_ = nullptr, *a_stored_ = nullptr;
-  double step_ = 0.0;             // m: sampling interval
+  double step_ = -1.0;            // m: sampling interval
   Advance* regular_ = nullptr;    // for one sampling interval
   Advance* by_length_ = nullptr;  // for a part of a move of each length: [length][mode]
   double* parts_of_length_ = nullptr;

@@ -78,6 +78,18 @@ Eigenpair pair_of(EPS eps, Mat K, PetscInt i, double (*eigenvalue)(double, doubl
   return pair;
 }
 
+/// Solves the eigenvalue problem. A failure of the factorisation is due to the matrices, which come from the input.
+void solve(EPS eps) {
+  try {
+    check(EPSSolve(eps));
+  } catch (const SolverError&) {
+    throw SolverError(
+        "modes: the natural frequencies cannot be computed, because stiffnesses or masses differ so much that rounding "
+        "hides the smaller ones; compare beam_EI, beam_mass, beam_GA, beam_rotary_inertia, beam_cracks_k, support_ and "
+        "foundation_ values, also their units");
+  }
+}
+
 /// All elastic modes, by LAPACK. By the inverted problem M x = mu (K - shift M) x the lowest frequencies are the most
 /// accurate, not the highest.
 std::vector<Eigenpair> all_elastic(const Segment& s, double shift) {
@@ -89,7 +101,7 @@ std::vector<Eigenpair> all_elastic(const Segment& s, double shift) {
   check(EPSSetProblemType(eps, EPS_GHEP));
   check(EPSSetType(eps, EPSLAPACK));
   check(EPSSetWhichEigenpairs(eps, EPS_LARGEST_REAL));
-  check(EPSSolve(eps));
+  solve(eps);
   std::vector<Eigenpair> modes;
   for (auto i = static_cast<PetscInt>(s.rigid.size()); i < s.size(); ++i) {  // rigid modes are the first ones
     modes.push_back(pair_of(
@@ -113,7 +125,7 @@ class Solver {
     if (count <= 0) return;
     base::Handle<EPS> eps;
     set_up(eps, shift, count, std::min(remaining, std::max(2 * count, count + 15)));
-    check(EPSSolve(eps));
+    solve(eps);
     PetscInt converged = 0;
     check(EPSGetConverged(eps, &converged));
     if (converged < count) {

@@ -1,12 +1,9 @@
-// Merges the modes of all segments in ascending order, scales and orthonormalises their shapes, and computes Rayleigh
-// coefficients from two distinct frequencies (equation 20 of the paper).
+// Merges the modes of all segments in ascending order, scales and orthonormalises their shapes, and computes the terms
+// of each mode that the beam's own damping does not contain.
 #include "modes/modes.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <tuple>
 
@@ -21,8 +18,6 @@ constexpr double distinct = 1e-6;  // relative difference of two frequencies
 // The tolerance between spans that are not coupled: frequencies are proportional to the inverse square of a span; two
 // spans of one drawing may be built 20 mm longer and shorter (EN 13670, 10.4), which is this difference at 8 m.
 constexpr double distinct_spans = 0.01;
-constexpr double ratio_tolerance =
-    1e-5;  // relative tolerance of a damping ratio: a limit copied from a message is accepted
 
 struct Mode {
   double omega = 0.0;
@@ -47,16 +42,41 @@ std::vector<Mode> lowest(const std::vector<Segment>& segments, int count) {
   return modes;
 }
 
+/// A frequency of one segment, with the shapes of all its copies.
+struct Distinct {
+  double omega = 0.0;
+  std::size_t segment = 0;
+  std::vector<std::vector<double>> shapes;
+};
+
 /// The lowest distinct non-zero frequencies of one segment: `wanted`, or as many as it has.
-std::vector<double> distinct_of(const Segment& s, std::size_t wanted) {
+std::vector<Distinct> distinct_of(const Segment& s, std::size_t index, std::size_t wanted) {
   for (int count = static_cast<int>(wanted + s.rigid.size());; count *= 2) {
-    std::vector<double> found;
+    std::vector<Distinct> found;
     for (const Eigenpair& pair : lowest_modes(s, count)) {
-      const bool repeated = !found.empty() && pair.omega <= found.back() * (1.0 + distinct);
-      if (pair.omega > 0.0 && !repeated) found.push_back(pair.omega);
+      if (pair.omega <= 0.0) continue;
+      if (found.empty() || pair.omega > found.back().omega * (1.0 + distinct)) found.push_back({pair.omega, index, {}});
+      found.back().shapes.push_back(pair.shape);
     }
     if (found.size() >= wanted || count >= s.size()) return found;
   }
+}
+
+/// The lowest distinct frequencies of all segments.
+std::vector<Distinct> distinct_of(const std::vector<Segment>& segments, std::size_t count) {
+  std::vector<Distinct> all, found;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    for (Distinct& one : distinct_of(segments[i], i, count)) all.push_back(std::move(one));
+  std::stable_sort(all.begin(), all.end(), [](const Distinct& a, const Distinct& b) { return a.omega < b.omega; });
+  for (Distinct& candidate : all) {
+    const auto is_copy = [&](const Distinct& other) {
+      const double limit = candidate.segment == other.segment ? distinct : distinct_spans;
+      return candidate.omega <= other.omega * (1.0 + limit);
+    };
+    if (found.size() < count && std::none_of(found.begin(), found.end(), is_copy))
+      found.push_back(std::move(candidate));
+  }
+  return found;
 }
 
 std::vector<double> product(const Band& A, const std::vector<double>& x) {
@@ -69,7 +89,9 @@ double dot(const std::vector<double>& x, const std::vector<double>& y) {
   return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
 }
 
-double modal_mass(const Mode& mode) { return dot(mode.shape, product(mode.segment->M, mode.shape)); }
+double form(const Band& A, const std::vector<double>& x) { return dot(x, product(A, x)); }
+
+double modal_mass(const Mode& mode) { return form(mode.segment->M, mode.shape); }
 
 /// Scales to phi^T M phi = 1 by Gram-Schmidt, because computed copies of a frequency are not exactly orthogonal.
 void orthonormalise(std::vector<Mode>& modes) {
@@ -116,13 +138,32 @@ void add_ratios(const beam::Beam& beam, Modes& modes) {
     modes.ratio.push_back(omega > 0.0 ? (ab.a + ab.b * omega * omega) / (2.0 * omega) : 0.0);
 }
 
+/// The damping ratios phi^T C* phi/(2 omega) of modes, divided into the beam's own and those by dampers.
+void add_terms(const beam::Beam& beam, const std::vector<Segment>& segments, const std::vector<Mode>& found,
+               Modes& modes) {
+  modes.beam_ratio.assign(found.size(), 0.0);
+  modes.damper_ratio.assign(found.size(), 0.0);
+  for (const Segment& s : segments) {
+    if (std::none_of(found.begin(), found.end(), [&](const Mode& mode) { return mode.segment == &s; })) continue;
+    const Band all = part_of(beam.damping(), s), dampers = part_of(beam.dampers(), s);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (found[i].segment != &s || !(found[i].omega > 0.0)) continue;
+      const double scale = 0.5 / (modal_mass(found[i]) * found[i].omega);
+      modes.damper_ratio[i] = scale * form(dampers, found[i].shape);
+      modes.beam_ratio[i] = scale * form(all, found[i].shape) - modes.damper_ratio[i];
+    }
+  }
+}
+
 Modes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* points) {
   auto segments = transverse_segments(beam);
   for (Segment& s : axial_segments(beam)) segments.push_back(std::move(s));
   const bool smooth = points != nullptr && without_kinks(beam);
   Modes result;
   if (points != nullptr) result.x = points->x();
-  for (const Mode& mode : lowest(segments, std::max(count, 0))) {
+  const std::vector<Mode> found = lowest(segments, std::max(count, 0));
+  if (points != nullptr && beam.damping() != nullptr) add_terms(beam, segments, found, result);
+  for (const Mode& mode : found) {
     result.omega.push_back(mode.omega);
     result.axial.push_back(mode.segment->axial ? 1 : 0);
     if (points == nullptr) continue;
@@ -194,48 +235,27 @@ Modes natural_modes(const beam::Beam& beam, int count, const beam::ShapePoints& 
 }
 
 std::vector<double> distinct_frequencies(const beam::Beam& beam, std::size_t count) {
-  using OfSegment = std::pair<double, std::size_t>;
-  const std::vector<Segment> segments = transverse_segments(beam);
-  std::vector<OfSegment> all, found;
-  for (std::size_t i = 0; i < segments.size(); ++i)
-    for (const double omega : distinct_of(segments[i], count)) all.emplace_back(omega, i);
-  std::sort(all.begin(), all.end());
-  for (const OfSegment& candidate : all) {
-    const auto is_copy = [&](const OfSegment& other) {
-      const double limit = candidate.second == other.second ? distinct : distinct_spans;
-      return candidate.first <= other.first * (1.0 + limit);
-    };
-    if (found.size() < count && std::none_of(found.begin(), found.end(), is_copy)) found.push_back(candidate);
-  }
   std::vector<double> omegas;
-  for (const OfSegment& candidate : found) omegas.push_back(candidate.first);
+  for (const Distinct& one : distinct_of(transverse_segments(beam), count)) omegas.push_back(one.omega);
   return omegas;
 }
 
-std::pair<double, double> distinct_pair(const beam::Beam& beam) {
-  const std::vector<double> found = distinct_frequencies(beam, 2);
-  if (found.size() < 2) {
-    throw InputError(
-        "beam_damping_ratios: the mesh has " + std::string(found.empty() ? "no" : "only one") +
-        " natural frequency of bending, and two distinct ones are needed; raise beam_elements_per_span, or "
-        "give beam_rayleigh instead");
+std::vector<BendingMode> distinct_modes(const beam::Beam& beam, std::size_t count, Mat own_mass) {
+  const std::vector<Segment> segments = transverse_segments(beam);
+  std::vector<BendingMode> modes;
+  for (const Distinct& one : distinct_of(segments, count)) {
+    const Segment& s = segments[one.segment];
+    const Band springs = part_of(beam.springs(), s), dampers = part_of(beam.dampers(), s),
+               own = own_mass == nullptr ? s.M : part_of(own_mass, s);
+    BendingMode& mode = modes.emplace_back(BendingMode{one.omega});
+    for (const std::vector<double>& shape : one.shapes) {
+      const double mass = form(s.M, shape), share = 1.0 / (mass * static_cast<double>(one.shapes.size()));
+      mode.springs += share * form(springs, shape);
+      mode.dampers += share * form(dampers, shape);
+      if (own_mass != nullptr) mode.other_mass += share * (mass - form(own, shape));
+    }
   }
-  return {found[0], found[1]};
-}
-
-beam::Rayleigh rayleigh(double omega1, double omega2, double zeta1, double zeta2) {
-  const auto [least, most] = std::minmax({zeta1 * omega1 / omega2, zeta1 * omega2 / omega1});
-  if (zeta2 < least * (1.0 - ratio_tolerance) || zeta2 > most * (1.0 + ratio_tolerance))
-    throw InputError(
-        fmt::format("beam_damping_ratios = {:g},{:g}: Rayleigh damping that has these at {:.6g} and {:.6g} Hz has a "
-                    "negative {}, which feeds energy into the beam; allowed beside {:g}: from {:.6g} to {:.6g}; "
-                    "beam_damping_frequencies names other frequencies",
-                    zeta1, zeta2, omega1 / (2.0 * std::numbers::pi), omega2 / (2.0 * std::numbers::pi),
-                    (zeta2 < least) == (omega1 < omega2) ? "b" : "a", zeta1, least, most));
-  zeta2 = std::clamp(zeta2, least, most);
-  // Eq. 20 divided by omega2 - omega1, so that no terms cancel: equal ratios result in their exact limit.
-  const double sum = omega1 + omega2, slope = omega1 * (zeta1 - zeta2) / (omega2 - omega1);
-  return {std::max(2.0 * omega1 * omega2 / sum * (zeta1 + slope), 0.0), std::max(2.0 / sum * (zeta2 - slope), 0.0)};
+  return modes;
 }
 
 }  // namespace traverse::modes

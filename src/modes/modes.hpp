@@ -1,6 +1,7 @@
 // Natural frequencies and mode shapes by SLEPc, without and with damping, and the Rayleigh coefficients of eqs. 19-20.
 #pragma once
 
+#include <algorithm>
 #include <complex>
 #include <utility>
 #include <vector>
@@ -21,6 +22,9 @@ struct Modes {
   std::vector<std::vector<double>> slope{};
   std::vector<double> mass{};
   std::vector<double> ratio{};  // damping ratio of each mode, if the modes are not coupled
+  /// The terms of phi^T C* phi/(2 omega), also of coupled modes: by the beam's own damping, by dampers; 0 for a rigid
+  /// mode. Empty before Beam::set_rayleigh and without shapes.
+  std::vector<double> beam_ratio{}, damper_ratio{};
 };
 
 /// Collective; the same result on every rank, to the last bit. The `count` lowest frequencies of M, K*. Uncoupled
@@ -85,18 +89,51 @@ DampedModes damped_modes(const beam::Beam& beam, int count, const beam::ShapePoi
 /// Whether C* has a non-zero entry. Collective, after Beam::set_rayleigh.
 bool damped(const beam::Beam& beam);
 
-/// The first `count` distinct non-zero natural frequencies of bending (rad/s), or as many as exist, with the
-/// distinction of distinct_pair.
+/// The first `count` distinct non-zero natural frequencies of bending (rad/s), or as many as exist. Distinct
+/// frequencies differ by more than 1e-6 of their value, or by more than 1 % if they belong to uncoupled spans. Motion
+/// along x is excluded, so that damping does not depend on whether it is modelled.
 std::vector<double> distinct_frequencies(const beam::Beam& beam, std::size_t count);
 
-/// The first two distinct non-zero natural frequencies of bending (rad/s). Distinct frequencies differ by more than
-/// 1e-6 of their value, or by more than 1 % if they belong to uncoupled spans. Motion along x is excluded, so that
-/// damping does not depend on whether it is modelled. Throws InputError if there are not two: with one or two free
-/// unknowns.
-std::pair<double, double> distinct_pair(const beam::Beam& beam);
+/// A natural mode of bending, phi^T M phi = 1, with its terms outside of the beam's own damping C = a M_C + b K_C:
+///
+///   phi^T M_C phi = 1 - other_mass        phi^T K_C phi = omega^2 - springs
+struct BendingMode {
+  double omega = 0.0;       // rad/s
+  double springs = 0.0;     // phi^T (K* - K_C) phi, 1/s2: foundation, cracks, tension
+  double other_mass = 0.0;  // phi^T (M - M_C) phi: mass that a layered track adds
+  double dampers = 0.0;     // phi^T (C* - C) phi, 1/s: dampers of the foundation
 
-/// Eq. 20 (with its exact limit if zeta1 = zeta2). omega1 != omega2. Throws InputError if zeta2/zeta1 is not between
-/// omega1/omega2 and omega2/omega1: a or b would be negative, and negative damping adds energy.
-beam::Rayleigh rayleigh(double omega1, double omega2, double zeta1, double zeta2);
+  double own_mass() const { return 1.0 - other_mass; }
+  double own_stiffness() const { return std::max(0.0, omega * omega - springs); }
+  /// Damping ratios by the beam's own damping, and by dampers.
+  double ratio(beam::Rayleigh ab) const { return 0.5 * (ab.a * own_mass() + ab.b * own_stiffness()) / omega; }
+  double damper_ratio() const { return 0.5 * dampers / omega; }
+};
+
+/// The modes of distinct_frequencies; for several modes of one frequency the means of their terms. `own_mass`: the
+/// matrix M_C, if it is not the mass of this beam.
+std::vector<BendingMode> distinct_modes(const beam::Beam& beam, std::size_t count, Mat own_mass = nullptr);
+
+/// The terms of a motion with the frequency omega between those of these modes, linear in omega^2: exact at the modes,
+/// on a bed, and without springs.
+BendingMode between(const std::vector<BendingMode>& modes, double omega);
+
+/// Eq. 20 for modes of the whole structure: a and b with 2 zeta omega = a phi^T M_C phi + b phi^T K_C phi for both
+/// modes, whose frequencies differ. (With the exact limit if zeta1 = zeta2.) Throws InputError if a or b would be
+/// negative: negative damping adds energy.
+beam::Rayleigh rayleigh(const BendingMode& one, const BendingMode& other, double zeta1, double zeta2);
+
+/// The frequencies of the first two of these distinct modes, rad/s. InputError if there are fewer.
+std::pair<double, double> first_two(const std::vector<BendingMode>& modes);
+
+struct RayleighPair {
+  beam::Rayleigh ab;
+  std::size_t second = 1;  // index of the second mode of the pair; the first is mode 0
+};
+
+/// a and b from the first two of these distinct modes. Where equal ratios of both would need a negative a or b, or
+/// would damp the next mode beyond its critical damping, because the second mode moves the springs rather than bends
+/// the beam, the next mode takes the place of the second. Throws InputError: fewer than two modes, or no such pair.
+RayleighPair rayleigh_pair(const std::vector<BendingMode>& modes, double zeta1, double zeta2);
 
 }  // namespace traverse::modes

@@ -217,6 +217,11 @@ class Splitter {
 
 }  // namespace
 
+Band part_of(Mat matrix, const Segment& segment) {
+  if (matrix == nullptr) return {segment.size(), 0};
+  return gathered(matrix, {segment.unknowns.begin(), segment.unknowns.end()});
+}
+
 std::vector<Segment> transverse_segments(const beam::Beam& beam, Damping damping) {
   return Splitter(beam, false, damping).split();
 }

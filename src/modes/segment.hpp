@@ -31,4 +31,7 @@ enum class Damping { ignored, included };
 std::vector<Segment> transverse_segments(const beam::Beam& beam, Damping damping = Damping::ignored);
 std::vector<Segment> axial_segments(const beam::Beam& beam, Damping damping = Damping::ignored);
 
+/// Collective. The segment's rows and columns of a matrix of the beam, on every rank; zero if there is no matrix.
+Band part_of(Mat matrix, const Segment& segment);
+
 }  // namespace traverse::modes

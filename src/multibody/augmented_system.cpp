@@ -132,6 +132,14 @@ void AugmentedSystem::add_mass(const Eigen::VectorXd& mass, double factor) {
   for (int i = 0; i < 3 * bodies_; ++i) entries_[diagonal_[place_[i]]] += factor * mass[i];
 }
 
+void AugmentedSystem::add_to_body(int body, double factor, const std::array<double, 3>& first,
+                                  const std::array<double, 3>& second) {
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      entries_[entry(place_[3 * body + static_cast<int>(i)], place_[3 * body + static_cast<int>(j)])] +=
+          factor * first[i] * second[j];
+}
+
 void AugmentedSystem::add_pair(int pair, const PairMatrix& matrix) {
   const std::array<int, 36>& entries = pair_entry_[pair];
   for (std::size_t i = 0; i < entries.size(); ++i)

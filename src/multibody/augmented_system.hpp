@@ -32,6 +32,8 @@ class AugmentedSystem {
   void set_zero();
   /// K += factor * diag(mass).
   void add_mass(const Eigen::VectorXd& mass, double factor);
+  /// K += factor * first * second^T in the coordinates of a body.
+  void add_to_body(int body, double factor, const std::array<double, 3>& first, const std::array<double, 3>& second);
   /// K += `matrix` of pair number `pair` of the pattern; parts of the ground are ignored.
   void add_pair(int pair, const PairMatrix& matrix);
   /// Sets Phi_q, of which the kept rows are `rows`.

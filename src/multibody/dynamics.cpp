@@ -159,11 +159,14 @@ double Mechanism::probed_sensitivity(MechanismState& s) const {
 /// B^T N B is factorised itself, or by the augmented system with K = N.
 void Mechanism::factor_mass(MechanismState& s) const {
   if (s.mass_factored) return;
-  if (!s.dependent_block.many_sensitivities())
+  if (!s.dependent_block.many_sensitivities()) {
     s.reduced_mass.factor(s.dependent_block, mass_);
-  else if (!factor_augmented(s, 1.0, 0.0, 0.0, 0.0, s.augmented_mass))
-    throw SolverError("vehicle '" + model_.name + "': its constraints are singular at t = " + std::to_string(s.time) +
-                      " s");
+  } else {
+    assemble_augmented(s, 1.0, 0.0, 0.0, 0.0, s.augmented_mass);
+    if (!s.augmented_mass.factor())
+      throw SolverError("vehicle '" + model_.name + "': its constraints are singular at t = " + std::to_string(s.time) +
+                        " s");
+  }
   s.mass_factored = true;
 }
 

@@ -91,7 +91,7 @@ SpringGeometry spring_geometry(const Spring& spring, const Frame& first, const F
   } else {
     s.preload = spring.preload.value_or(0.0);
   }
-  if (spring.winding) s.winding = std::make_shared<const base::TimeFunction>(*spring.winding);
+  if (spring.winding) s.winding = std::make_shared<base::TimeFunction>(*spring.winding);
   return s;
 }
 

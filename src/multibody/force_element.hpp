@@ -26,7 +26,7 @@ struct SpringGeometry {
   double preload = 0.0;                                  // N, at the reference length
   double reference_rate = 0.0;                           // m/s, of the reference length
   std::shared_ptr<const ForceLaw> law;                   // null: linear
-  std::shared_ptr<const base::TimeFunction> winding;     // null: the reference length is constant
+  std::shared_ptr<base::TimeFunction> winding;           // null: the reference length is constant
 };
 
 /// The spring with its reference length and its rate at time t.

@@ -115,8 +115,8 @@ AugmentedPattern Mechanism::augmented_pattern() const {
   return pattern;
 }
 
-bool Mechanism::factor_augmented(const MechanismState& s, double by_mass, double by_q, double by_qd, double by_lambda,
-                                 AugmentedSystem& system) const {
+void Mechanism::assemble_augmented(const MechanismState& s, double by_mass, double by_q, double by_qd, double by_lambda,
+                                   AugmentedSystem& system) const {
   system.set_zero();
   system.add_mass(mass_, by_mass);
   if (by_q != 0.0 || by_qd != 0.0 || by_lambda != 0.0) {
@@ -124,7 +124,6 @@ bool Mechanism::factor_augmented(const MechanismState& s, double by_mass, double
     each_tangent(s, by_q, by_qd, by_lambda, [&](int, int, const PairMatrix& K) { system.add_pair(pair++, K); });
   }
   system.set_constraints(s.Phi_q, partition_.rows);
-  return system.factor();
 }
 
 double Mechanism::spring_tension(const MechanismState& s, int k) const {

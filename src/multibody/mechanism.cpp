@@ -56,10 +56,11 @@ Mechanism::Mechanism(MechanismModel model) : model_(std::move(model)) {
 }
 
 int Mechanism::coordinates() const { return 3 * static_cast<int>(model_.bodies.size()); }
-bool Mechanism::select_pieces(double t) {
+bool Mechanism::select_sides(double t) {
   bool changed = false;
-  for (Driver& driver : model_.drivers)
-    if (driver.value.jumps()) changed = driver.value.select_piece(t) || changed;
+  for (Driver& driver : model_.drivers) changed = driver.value.select_side(t) || changed;
+  for (SpringGeometry& spring : springs_)
+    if (spring.winding) changed = spring.winding->select_side(t) || changed;
   return changed;
 }
 

@@ -123,8 +123,9 @@ class Mechanism {
   /// Applies a constant force (N, along x and y) at the centre of mass of a body and a moment (N m). They replace the
   /// force and moment of the last call for that body. Forces must be computed again afterwards.
   void apply(int body, const Eigen::Vector3d& action);
-  /// Selects the piece at t for drivers whose acceleration jumps. Returns whether a piece has changed.
-  bool select_pieces(double t);
+  /// Selects the side at t of jumps in the rates and accelerations of drivers and winches. Returns whether one has
+  /// changed.
+  bool select_sides(double t);
   int coordinates() const;  // n
   int constraints() const;  // rows of Phi, redundant ones included
   int freedom() const;      // f, after choose_partition
@@ -201,9 +202,9 @@ class Mechanism {
   /// The sparse form of the projected equations for the present partition.
   AugmentedPattern augmented_pattern() const;
   /// Sets a system with this pattern to by_mass N + by_q dg/dq + by_qd dg/dq' + by_lambda d(Phi_q^T lambda)/dq, without
-  /// friction, and to Phi_q, and factorises it. False if AugmentedSystem::factor fails.
-  bool factor_augmented(const MechanismState& s, double by_mass, double by_q, double by_qd, double by_lambda,
-                        AugmentedSystem& system) const;
+  /// friction, and to Phi_q.
+  void assemble_augmented(const MechanismState& s, double by_mass, double by_q, double by_qd, double by_lambda,
+                          AugmentedSystem& system) const;
 
   /// Reaction of joint j on its second body, including friction: fx, fy, moment about the joint's point on that body
   /// (for `distance`: about `to`). The reactions of redundant rows are zero.

@@ -39,10 +39,13 @@ double NormCheck::phi_at(const Place& place) const {
   return rules_.careful ? phi2(length_at(place)) : phi3(length_at(place));
 }
 
-/// Phi and alpha of a load model.
-double NormCheck::factor(std::size_t load, const Place& place) const {
-  return phi_at(place) * (classified(models_[load - trains_]) ? rules_.alpha : 1.0);
+/// The classification factor of a load; 1 for trains.
+double NormCheck::alpha(std::size_t load) const {
+  return load >= trains_ && options::load_model_row(models_[load - trains_])->classified ? rules_.alpha : 1.0;
 }
+
+/// Phi and alpha of a load model.
+double NormCheck::factor(std::size_t load, const Place& place) const { return phi_at(place) * alpha(load); }
 
 DynamicFactor NormCheck::dynamic_factor(const ComputedPeaks& computed, std::size_t train, Effect effect) const {
   const std::vector<Place>& places = effects_.places[static_cast<std::size_t>(effect)];
@@ -70,7 +73,7 @@ void NormCheck::compare(const ComputedPeaks& computed) {
   speed_ = *std::max_element(computed.speeds.begin(), computed.speeds.end());
   std::vector<std::size_t> models;
   for (std::size_t i = 0; i < models_.size(); ++i)
-    if (models_[i] != "sw2") models.push_back(trains_ + i);
+    if (options::load_model_row(models_[i])->compared) models.push_back(trains_ + i);
   for (std::size_t e = 0; e < effect_count; ++e) {
     Row row;
     row.effect = static_cast<Effect>(e);
@@ -113,7 +116,7 @@ results::EvaluatedQuantity NormCheck::of_lm71(Effect effect, bool over_span) con
     return quantity;
   }
   for (std::size_t load = trains_; load < effects_.loads.size(); ++load) {
-    if (models_[load - trains_] == "sw2") continue;
+    if (!options::load_model_row(models_[load - trains_])->compared) continue;
     const auto factor_at = [&](const Place& p) { return factor(load, p) / (over_span ? p.span : 1.0); };
     const std::size_t worst = effects_.worst(effect, load, factor_at);
     const Place& place = effects_.places[static_cast<std::size_t>(effect)][worst];

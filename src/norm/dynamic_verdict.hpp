@@ -60,6 +60,7 @@ class NormCheck {
  private:
   double length_at(const Place& place) const;
   double phi_at(const Place& place) const;
+  double alpha(std::size_t load) const;
   double factor(std::size_t load, const Place& place) const;
   DynamicFactor dynamic_factor(const ComputedPeaks& computed, std::size_t train, Effect effect) const;
   results::EvaluatedQuantity of_lm71(Effect effect, bool over_span) const;

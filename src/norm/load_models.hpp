@@ -9,10 +9,9 @@
 
 namespace traverse::norm {
 
-/// The load model with the user's name lm71, sw0 or sw2. Characteristic values, without alpha and Phi.
+/// The load model of a row of options::load_models. Characteristic values, without alpha and Phi. InputError for any
+/// other name.
 LoadModel load_model(std::string_view name);
-/// Whether the classification factor alpha applies to the load model: 6.3.2 (3).
-bool classified(std::string_view name);
 
 /// A train of forces (N, downward) at x, m.
 LoadModel train_of(std::string name, const std::vector<double>& forces, const std::vector<double>& x);

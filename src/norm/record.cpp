@@ -101,6 +101,9 @@ void NormCheck::record(results::Recorder& recorder) const {
     for (const double L : lengths_) phi.values.push_back(rules_.careful ? phi2(L) : phi3(L));
     sets.push_back(std::move(length));
     sets.push_back(std::move(phi));
+    Dataset factor{"/static/alpha", {loads.size()}, {}, "1"};
+    for (std::size_t load = 0; load < loads.size(); ++load) factor.values.push_back(alpha(load));
+    sets.push_back(std::move(factor));
     rules.push_back({"alpha", rules_.alpha});
     rules.push_back({"words", length_text()});
   }

@@ -6,6 +6,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -19,8 +20,18 @@ namespace {
 constexpr std::size_t longest_line = 4096, most_table_characters = std::size_t{1} << 30;
 constexpr int most_lines = 5'000'000;
 
+/// Whether a comma stands between two digits, as in 0,25.
+bool has_comma_in_number(std::string_view line) {
+  const auto digit = [&](std::size_t i) { return i < line.size() && line[i] >= '0' && line[i] <= '9'; };
+  for (std::size_t i = line.find(','); i != line.npos; i = line.find(',', i + 1))
+    if (i > 0 && digit(i - 1) && digit(i + 1)) return true;
+  return false;
+}
+
+/// The numbers of a row without its comment.
 std::vector<double> numbers_of(std::string line, const std::string& where) {
-  line.resize(std::min(line.find('#'), line.size()));
+  if (has_decimal_comma(line))
+    throw InputError(fmt::format("{}a comma between two digits, and another separator; {}", where, decimal_point));
   for (char& c : line) {
     if (c == ',' || c == ';') c = ' ';
   }
@@ -52,6 +63,18 @@ std::string next_line(std::string_view& text, const std::string& path) {
 
 }  // namespace
 
+bool has_decimal_comma(std::string_view line) {
+  constexpr std::string_view separators = " \t\r;";
+  int words = 0;
+  bool comma = false;
+  for (std::size_t i = line.find_first_not_of(separators); i < line.size(); ++words) {
+    const std::size_t end = std::min(line.find_first_of(separators, i), line.size());
+    comma = comma || has_comma_in_number(line.substr(i, end - i));
+    i = line.find_first_not_of(separators, end);
+  }
+  return comma && words > 1;
+}
+
 bool is_quantity(double number) {
   return number == 0.0 || (std::abs(number) >= least_quantity && std::abs(number) <= greatest_quantity);
 }
@@ -61,7 +84,9 @@ bool parse_number(const std::string& word, double& number) {
   const char* end = begin + word.size();
   if (begin != end && *begin == '+') ++begin;
   const auto [stop, code] = std::from_chars(begin, end, number);
-  return code == std::errc() && stop == end && begin != end && std::isfinite(number);
+  if (code == std::errc::result_out_of_range) number = std::strtod(begin, nullptr);
+  if (std::abs(number) < least_quantity) number = 0.0;  // the rounding error of a computed 0
+  return code != std::errc::invalid_argument && stop == end && begin != end && std::isfinite(number);
 }
 
 bool parse_speed(std::string word, double& number) {
@@ -83,7 +108,8 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
   std::vector<std::vector<double>> columns;
   int number = 0;
   for (std::string_view remaining = text; !remaining.empty();) {
-    const std::string line = next_line(remaining, path);
+    std::string line = next_line(remaining, path);
+    line.resize(std::min(line.find('#'), line.size()));
     const std::string where = fmt::format("{}:{}: ", path, ++number);
     if (number > most_lines)
       throw InputError(fmt::format("{}: has too many lines; allowed: at most {}", path, most_lines));
@@ -95,7 +121,8 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
                                    : columns.size() >= least && columns.size() <= most
                                        ? std::to_string(columns.size())
                                        : std::to_string(least) + " to " + std::to_string(most);
-      throw InputError(where + "has " + std::to_string(row.size()) + " numbers, expected " + expected);
+      throw InputError(fmt::format("{}has {} numbers, expected {}{}", where, row.size(), expected,
+                                   line.find(',') == line.npos ? "" : fmt::format("; {}", decimal_point)));
     }
     if (order == Order::rising && !columns[0].empty() && !(row[0] > columns[0].back())) {
       throw InputError(fmt::format("{}the first column must increase strictly: row {} has {:g} after {:g}", where,

@@ -1,50 +1,45 @@
 // Rows of the option table: options with a fixed name. See table.hpp for the columns.
-#include <array>
 #include <limits>
 #include <vector>
 
+#include "base/static_text.hpp"
 #include "derived_rows.hpp"
+#include "track/spectrum_names.hpp"
 #include "traverse/options/analyses.hpp"
+#include "traverse/options/norm_rules.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {
 namespace {
 
 using enum Kind;
+using base::add_joined, base::joined_names, base::StaticText;
 constexpr Range tolerance = {1e-10, 0.1}, tolerance_or_none = {0.0, 0.1};
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 // Values below these belong to no real beam: a steel wire of 0.1 mm has EI = 1e-6 N m2, EA = 1.6e3 N and 6e-5 kg/m.
 constexpr Range beam_length = {1e-3, 1e6, true}, beam_stiffness = {1e-7, unbounded, true},
                 beam_weight = {1e-7, unbounded, true};
 
-/// A text that is concatenated at compile time.
-struct StaticText {
-  std::array<char, 400> letters{};
-  std::size_t size = 0;
-  constexpr void add(std::string_view more) {
-    for (const char letter : more) letters[size++] = letter;
-  }
-  constexpr operator std::string_view() const { return {letters.data(), size}; }  // NOLINT: it is text
-};
-
-constexpr StaticText names_of_analyses = [] {
-  StaticText joined;
-  for (const AnalysisRow& row : analyses) {
-    joined.add(joined.size == 0 ? "" : " ");
-    joined.add(row.name);
-  }
-  return joined;
-}();
+constexpr StaticText names_of_analyses = joined_names(analyses, " ");
 
 constexpr StaticText text_of_analyses = [] {
-  StaticText joined;
-  std::string_view before = "kind of analysis: ";
-  for (const AnalysisRow& row : analyses) {
-    for (const std::string_view part : {before, row.name, std::string_view(" ("), row.words, std::string_view(")")})
-      joined.add(part);
-    before = "; ";
-  }
-  return joined;
+  StaticText text;
+  text.add("kind of analysis: ");
+  add_joined(text, analyses, "; ", [](StaticText& to, const AnalysisRow& row) {
+    for (const std::string_view part : {row.name, std::string_view(" ("), row.words, std::string_view(")")})
+      to.add(part);
+  });
+  return text;
+}();
+
+constexpr StaticText names_of_load_models = joined_names(load_models, " ");
+
+constexpr StaticText text_of_profile = [] {
+  StaticText text;
+  text.add("height of the running surface: none, bump, ");
+  text.add(track::names_of_spectra);
+  text.add(", or a file x,height");
+  return text;
 }();
 
 // clang-format off
@@ -71,7 +66,7 @@ constexpr Row beam_rows[] = {
   {"beam_temperature_gradient", number, "K", "0", any, "", 0, "temperature difference top minus bottom"},
   {"beam_temperature_expansion", number, "1/K", "1.2e-5", not_negative, "", 0, "coefficient of thermal expansion"},
   {"beam_temperature_depth", number, "m", "", positive, "", 0, "depth of the beam from bottom to top, for the gradient"},
-  {"beam_damping_ratios", numbers, "1", "", {0.0, 0.999}, "", 0, "damping ratios at the first two distinct frequencies (eq. 20); the second: from f1/f2 to f2/f1 times the first"},
+  {"beam_damping_ratios", numbers, "1", "", {0.0, 0.999}, "", 0, "damping ratios of the first two distinct modes by the beam itself (eq. 20); springs add none, dampers add theirs; without springs the second is from f1/f2 to f2/f1 times the first"},
   {"beam_damping_frequencies", numbers, "Hz", "", positive, "", 2, "the two frequencies at which the damping ratios apply"},
   {"beam_rayleigh", numbers, "1/s, s", "", not_negative, "", 2, "a, b of C = a M + b K, instead of damping ratios"},
   {"beam_self_weight", flag, "", "false", any, "", 0, "gravity also acts on the beam"},
@@ -81,7 +76,7 @@ constexpr Row beam_rows[] = {
   {"foundation_shear_layer", number_or_file, "N", "", positive, "", 0, "shear stiffness of the layer of a Pasternak foundation, or a file x,value: with a deflection v it exerts the force G v'' per length; its springs are foundation_vertical_bed_k"},
   {"support_motion", file, "", "", any, "", 0, "a file t,value of the vertical motion of all supports, or t,value0,value1,... with one column for each span end; the ground moves with the first and the last one"},
   {"support_motion_along", file, "", "", any, "", 0, "as support_motion, for the motion along the beam of the supports that hold it along x"},
-  {"support_motion_values", choice, "", "acceleration", any, "acceleration displacement", 0, "what the files of support_motion and support_motion_along have; acceleration: m/s2, linear between its rows, from rest; displacement: m, natural cubic spline through its rows"},
+  {"support_motion_values", choice, "", "acceleration", any, "acceleration displacement", 0, "what the files of support_motion and support_motion_along have; acceleration: m/s2, linear between its rows, from rest; displacement: m, cubic spline through its rows, which holds its end values"},
   {"support_stiffness", numbers, "N/m", "0", not_negative, "", 0, "vertical stiffness of each support, one per span end; 0: rigid"},
   {"support_scour", numbers, "1", "0", {0.0, 1.0}, "", 0, "fraction of support_stiffness that scour removes, one per span end"},
   {"support_types", choice_list, "", "(pinned, then rollers; simply supported spans: all pinned)", any, "free roller pinned clamped guided", 0, "type of support at each span end, one word applies to all"},
@@ -109,7 +104,7 @@ constexpr Row run_rows[] = {
   {"train_drive", choice, "", "(constant; free without wheels)", any, "constant free", 0, "constant: x of each vehicle is prescribed by the speed; free: only forces act"},
 
   {"load_forces", numbers, "N", "", any, "", 0, "moving constant forces, positive downward"},
-  {"load_positions", numbers, "m", "(first force at 0)", any, "", 0, "x of each force at t = 0; with load_hslm_a, load_hslm_b, load_en15528 or load_file: x of the first axle"},
+  {"load_positions", numbers, "m", "(first force at 0)", any, "", 0, "x of each force at t = 0; with load_hslm_a, load_hslm_b, load_en15528 or load_file: x of the first axle; a force that moves from an end of the bridge is not on it at t = 0"},
   {"loads", texts, "", "(one load: the options of load)", any, "", 0, "names of several groups of forces; each has its own block with the options of load: NAME_forces, NAME_speed, ..."},
   {"load_speed", number, "m/s", "(train_speed)", {-1e4, 1e4}, "", 0, "speed of the forces, in m/s or as 100 km/h; positive: to the right; negative: to the left"},
   {"load_speed_file", file, "", "", any, "", 0, "table t,v (s, m/s) instead of a speed, linear between its rows"},
@@ -129,13 +124,13 @@ constexpr Row run_rows[] = {
   {"load_phase", numbers, "rad", "0", any, "", 0, "phases of the harmonics, one for each amplitude"},
   {"load_unbalance", number, "kg m", "", not_negative, "", 0, "rotating mass times its eccentricity; adds unbalance (2 pi f)^2 to the first amplitude"},
 
-  {"track_profile", text, "", "none", any, "", 0, "height of the running surface: none, bump, iso8608_A to iso8608_E (roads), german_low, german_high, fra_1 to fra_6 (rails), or a file x,height"},
+  {"track_profile", text, "", "none", any, "", 0, text_of_profile},
   {"track_profile_shape", choice, "", "linear", any, "linear spline", 0, "of a profile file; linear: straight lines, kinks rounded within 0.25 m of a row or up to the nearer row; spline: natural cubic spline"},
   {"track_bump_start", number, "m", "", any, "", 0, "x at which the bump begins"},
   {"track_bump_length", number, "m", "", positive, "", 0, "length of the bump"},
   {"track_bump_height", number, "m", "", any, "", 0, "height of the bump in its middle"},
   {"track_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "seed of the random phases of the roughness"},
-  {"track_wavelengths", numbers, "m", "(iso8608 0.1, 100; german 0.5, 80; fra 1.5, 300)", positive, "", 2, "shortest and longest wavelength of the roughness"},
+  {"track_wavelengths", numbers, "m", "(those of the spectrum)", positive, "", 2, "shortest and longest wavelength of the roughness"},
   {"track_gradient", number, "1", "0", {-1.0, 1.0}, "", 0, "gradient of beam and track, tan of the angle (0.04: rises by 40 per mille to the right); x is along the beam, gravity has a component along it"},
   {"track_dips_x", numbers, "m", "", any, "", 0, "stations of dips, which are added to track_profile"},
   {"track_dips_length", numbers, "m", "", positive, "", 0, "length of each dip; one value applies to all"},
@@ -174,7 +169,7 @@ constexpr Row later_rows[] = {
   {"modes_count", integer, "", "10", {1, 100000}, "", 0, "number of frequencies with scene_analysis modes"},
   {"contact_tolerance", number, "s", "(a thousandth of the step)", not_negative, "", 0, "steps end within this time after a contact closes or opens; 0: contact events do not change the steps"},
   {"step_kinks", flag, "", "true", any, "", 0, "steps end where wheels pass kinks of the running surface, such as span ends; needed for orders above 2"},
-  {"step_probes", flag, "", "false", any, "", 0, "steps end where wheels pass probes, and peaks are searched at every step, not among stored samples; always if accuracy sets mesh or step"},
+  {"step_probes", flag, "", "false", any, "", 0, "steps end where wheels pass probes; always if accuracy sets mesh or step; peaks are searched at every step in any case"},
   {"step_lanes", flag, "", "true", any, "", 0, "no effect any more: separate spans are computed by their elements, as all others"},
   {"step_ranks", choice, "", "auto", any, "auto all", 0, "ranks that compute a single run; auto: as many of the available ranks as make it faster, the others wait; all: all ranks"},
   {"contact_seats", flag, "", "false", any, "", 0, "bridge elements also deflect between their nodes under wheels, as rails and shear-flexible beams do; always if accuracy sets mesh or step"},
@@ -186,16 +181,16 @@ constexpr Row later_rows[] = {
   {"accuracy_report", flag, "", "false", any, "", 0, "runs the scene again with a refined model and shows estimated and true errors"},
 
   {"model_axial", choice, "", "auto", any, "auto true false", 0, "axial unknowns of the beam; auto: if there is longitudinal action"},
-  {"model_modes", text, "", "auto", any, "", 0, "number of natural modes that represent the bridge, exact in time under moving forces alone; 0: elements; auto: modes in sweeps of forces if they are accurate enough"},
+  {"model_modes", text, "", "auto", any, "", 0, "number of natural modes that represent the bridge, exact in time under moving forces alone; 0: elements; auto: modes with model_damping_bound, and in sweeps of forces if they are accurate enough"},
   {"model_damping_ratios", numbers, "1", "(Rayleigh damping)", {0.0, 0.999}, "", 0, "damping ratio of each mode of model_modes; one value applies to all"},
-  {"model_damping_bound", choice, "", "", any, "steel composite prestressed reinforced filler_beam", 0, "instead of beam_damping_ratios, for both: lower bound of EN 1991-2, table 6.6, for this kind of bridge and the longest span"},
+  {"model_damping_bound", choice, "", "", any, "steel composite prestressed reinforced filler_beam", 0, "damping ratio of each mode: lower bound of EN 1991-2, table 6.6, for this kind of bridge and the longest span; modes represent the bridge then, unless model_modes is 0 or the scene needs elements"},
   {"model_additional_damping", flag, "", "false", any, "", 0, "adds the additional damping of EN 1991-2, 6.4.6.4, for vehicles on spans below 30 m to model_damping_bound"},
   {"model_vehicles", choice, "", "auto", any, "auto full linear", 0, "model of the vehicles; full: mechanisms; linear: constant matrices about the initial state where possible, exact up to squares of angles; auto: linear if the trial runs of accuracy find it sufficient"},
   {"model_window", text, "", "auto", any, "", 0, "parts of the bridge that move less than this fraction of the largest motion are excluded from the steps; auto: 1e-9 for separate spans; 0: none"},
 
   {"limits", file, "", "", any, "", 0, "a file of limits, such as options/limits/en1990.yml; the run is checked against them at its end"},
 
-  {"norm_load_models", choice_list, "", "(lm71 if limits need it)", any, "lm71 sw0 sw2", 0, "static effects of these load models of EN 1991-2 along the bridge; lm71 and a train: also the check of 6.4.6.5, with sw0 on continuous bridges"},
+  {"norm_load_models", choice_list, "", "(lm71 if limits need it)", any, names_of_load_models, 0, "static effects of these load models of EN 1991-2 along the bridge; lm71 and a train: also the check of 6.4.6.5, with sw0 on continuous bridges"},
   {"norm_alpha", number, "1", "1", {0.1, 10.0}, "", 0, "classification factor of LM71 and SW/0, EN 1991-2 6.3.2"},
   {"norm_track", choice, "", "standard", any, "standard careful", 0, "maintenance of the track; standard: Phi3; careful: Phi2 of EN 1991-2 6.4.5.2"},
   {"norm_length", number, "m", "(from the spans)", positive, "", 0, "determinant length L_Phi of EN 1991-2 6.4.5.3"},
@@ -214,7 +209,7 @@ constexpr Row later_rows[] = {
   {"screen_fleet", text, "", "", any, "", 0, "the trains: a table of axles with the columns name, load_kN or load_t, position or spacing, and speed, or a folder of such tables"},
   {"screen_speeds", numbers, "m/s", "(10 to 250 km/h, every km/h)", positive, "", 3, "speeds of the screen: from, to, step; each may be in km/h; a train runs up to its own speed and that of the bridge"},
   {"screen_modes", integer, "", "3", {1, 8}, "", 0, "number of bending modes of each bridge; frequencies above them are left out of the deck acceleration, without any other filter"},
-  {"screen_stations", integer, "", "10", {2, 50}, "", 0, "number of equal parts of each span; the response is computed between them"},
+  {"screen_stations", integer, "", "10", {2, 50}, "", 0, "least number of equal parts of each span, between which the response is sampled; peaks along the bridge are searched for exactly"},
   {"screen_samples", number, "", "20", {8.0, 1000.0}, "", 0, "samples per period of the highest mode in a passage; peaks between samples are searched for exactly"},
   {"screen_audit", integer, "", "0", {0, 1e6}, "", 0, "number of pairs, drawn at random, that are checked by passages at all speeds after the screen"},
   {"screen_resume", flag, "", "false", any, "", 0, "uses the finished bridges of the same screen in the existing results file"},
@@ -250,14 +245,14 @@ constexpr Row later_rows[] = {
   {"verbose", flag, "", "false", any, "", 0, "print the description of the model, and in sweeps the resonance speeds of each train; the results file always has them"},
   {"output_quiet", flag, "", "false", any, "", 0, "no progress display on the terminal"},
 
-  {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step; each may be in km/h"},
+  {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step; each may be in km/h; a train or load with the speed 0 stands"},
   {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "runs the scene with each of these trains A1 to A10 of EN 1991-2"},
   {"sweep_refine", number, "1", "(with limits: where a limit may be exceeded between two speeds)", tolerance_or_none, "", 0, "adds speeds near the peaks until the peaks of each train over the speed have this relative accuracy; 0: only the given speeds"},
   {"sweep_lanes", choice, "", "8", any, "0 1 4 8", 0, "largest number of runs that are computed together in SIMD lanes; 0: each run separately with TS"},
   {"sweep_instants", number, "", "20", {4.0, 1e4}, "", 0, "samples per period of the fastest mode if the modes are exact in time; peaks between samples are interpolated by parabolas"},
 
   {"study_combine", choice, "", "grid", any, "grid together random", 0, "how the lists of study_vary are combined; grid: all combinations; together: lists of equal length, row by row; random: study_draws draws from each list"},
-  {"study_draws", integer, "", "", {1, 1e6}, "", 0, "number of values that are drawn of each random option; with study_sensitivity: base samples of Sobol's or trajectories of Morris' design"},
+  {"study_draws", integer, "", "", {1, 1e6}, "", 0, "number of values that are drawn of each random option; with study_sensitivity: base samples of Sobol's or trajectories of Morris' design, from 2"},
   {"study_sensitivity", choice, "", "none", any, "none local morris sobol", 0, "which random options matter; local: derivatives at their means; morris: elementary effects; sobol: parts of the variance"},
   {"study_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "seed of the random draws; each option has its own random stream"},
   {"study_statistics_over", texts, "", "(track_seed and drawn options)", any, "", 0, "options over which mean, deviation and quantiles are computed"},

@@ -1,7 +1,9 @@
 // Rows of the option table: a vehicle and its parts. See table.hpp for the columns.
 #include <array>
 
+#include "base/static_text.hpp"
 #include "derived_rows.hpp"
+#include "traverse/contact/law.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {
@@ -10,6 +12,18 @@ namespace {
 using enum Kind;
 
 constexpr Range share = {0.0, 1.0, true};
+
+constexpr base::StaticText names_of_laws = base::joined_names(contact::law_rows, " ");
+
+constexpr base::StaticText text_of_laws = [] {
+  base::StaticText text;
+  text.add("force over penetration a");
+  for (const contact::LawRow& row : contact::law_rows)
+    if (!row.name.empty())
+      for (const std::string_view part : {std::string_view("; "), row.name, std::string_view(": "), row.words})
+        text.add(part);
+  return text;
+}();
 
 // clang-format off
 constexpr Row vehicle[] = {
@@ -50,7 +64,7 @@ constexpr Row spring[] = {
   {"damper_table", file, "", "", any, "", 0, "a file rate,force instead of damping: m/s of elongation, N in tension; linear between and beyond its rows"},
   {"gap", number, "m", "0", not_negative, "", 0, "play: no force up to this change of length in either direction; stiffness or table begin there"},
   {"side", choice, "", "both", any, "both compression tension", 0, "compression: no tensile force (a bump stop); tension: no compressive force (a rope)"},
-  {"winding_table", file, "", "", any, "", 0, "a file t,length: m that a winch adds to the free length, negative where it hoists; natural cubic spline through its rows"},
+  {"winding_table", file, "", "", any, "", 0, "a file t,length: m that a winch adds to the free length, negative where it hoists; cubic spline through its rows, which holds its end values"},
 };
 
 constexpr Row torsion_spring[] = {
@@ -67,7 +81,7 @@ constexpr Row torsion_spring[] = {
 constexpr Row wheel[] = {
   {"body", text, "", "", any, "", 0, "body whose centre of mass is the wheel's centre"},
   {"radius", number, "m", "", positive, "", 0, "radius"},
-  {"law", choice, "", "hertz", any, "hertz linear two_sided", 0, "force over penetration a; hertz: k a^1.5; linear: k a; two_sided: k a that also pulls"},
+  {"law", choice, "", "hertz", any, names_of_laws, 0, text_of_laws},
   {"stiffness", number, "N/m^1.5 or N/m", "", positive, "", 0, "k of the contact law"},
   {"damping", number, "Ns/m", "0", not_negative, "", 0, "damping of the contact"},
   {"restitution", number, "1", "", share, "", 0, "coefficient of restitution, instead of damping: speed after an impact over the speed before it"},
@@ -100,7 +114,7 @@ constexpr Row driver[] = {
   {"coordinate", choice, "", "", any, "x y phi", 0, "prescribed coordinate; x is relative to the vehicle's origin"},
   {"value", number, "m or rad", "(the position at t = 0)", any, "", 0, "value at t = 0"},
   {"rate", number, "m/s or rad/s", "0", any, "", 0, "constant rate"},
-  {"table", file, "", "", any, "", 0, "a file t,value instead of value and rate; natural cubic spline through its rows"},
+  {"table", file, "", "", any, "", 0, "a file t,value instead of value and rate; cubic spline through its rows, which holds its end values"},
 };
 
 constexpr Row contact[] = {
@@ -109,7 +123,7 @@ constexpr Row contact[] = {
   {"radii", numbers, "m", "", any, "", 0, "radii of the two arcs, or of the arc on the line; negative: a hollow arc around the other one"},
   {"centres", numbers, "m", "", any, "", 0, "x, y of each arc's centre at t = 0"},
   {"line", numbers, "m", "", any, "", 4, "arc_line: x, y of its two ends at t = 0; beyond an end the contact is with the end point"},
-  {"law", choice, "", "hertz", any, "hertz linear two_sided", 0, "force over penetration a; hertz: k a^1.5; linear: k a; two_sided: k a that also pulls"},
+  {"law", choice, "", "hertz", any, names_of_laws, 0, text_of_laws},
   {"stiffness", number, "N/m^1.5 or N/m", "", positive, "", 0, "k of the contact law"},
   {"damping", number, "Ns/m", "0", not_negative, "", 0, "damping of the contact"},
   {"restitution", number, "1", "", share, "", 0, "coefficient of restitution, instead of damping: speed after an impact over the speed before it"},

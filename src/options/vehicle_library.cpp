@@ -50,7 +50,7 @@ std::vector<std::pair<std::string, std::string>> library_files(const std::filesy
   std::vector<std::pair<std::string, std::string>> files;
   std::error_code unreadable;
   for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable))
-    if (entry.path().extension() == ".yml")
+    if (entry.path().extension() == ".yml" && entry.is_regular_file(unreadable))
       files.emplace_back(entry.path().filename().string(), what_it_is(entry.path()));
   std::sort(files.begin(), files.end());
   return files;

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "beam/support_line.hpp"
 #include "recovery/recovery_section.hpp"
 
 namespace traverse::beam {
 namespace {
 
-constexpr double station_tolerance =
-    1e-7;  // largest distance of a load from a station at which it passes, relative to an element's length
+constexpr double standing_speed = 1e-6;  // m/s: a slower load stands; rounding errors are far smaller
 
 }  // namespace
 
@@ -29,7 +29,10 @@ Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stati
     }
     sections_.emplace_back(line, x);
     sections_.back().add_weight(line.model, self_weight);
-    if (&line == &beam.bridge()) sections_.back().record_sleepers(beam);
+    if (&line == &beam.bridge()) {
+      sections_.back().record_sleepers(beam);
+      sections_.back().support_line = support_line(beam.model(), x).height(beam.model().settlement);
+    }
     size += 18 + 4 * sections_.back().sleepers.size();
   }
   gathered_.resize(size);
@@ -60,16 +63,21 @@ Forces Recovery::inside(std::size_t station, double x, const ElementLoad& load, 
   const RecoverySection& s = sections_[station];
   Forces added = inside(station, x, load);
   const double xi = (x - s.element.x) / s.element.length;
-  const bool left = xi < 0.0 || (xi <= 1.0 && is_left(xi, s.at.xi));
-  if (left == as_left) return added;
+  if (is_left(xi, s.at.xi) == as_left) return added;
   const Forces by = jump(station, load);
   for (std::size_t f = 0; f < added.size(); ++f) added[f] += as_left ? by[f] : -by[f];
   return added;
 }
 
-bool Recovery::is_left_of(std::size_t station, const ElementLoad& load) const {
-  const Station& at = sections_[station].at;
-  return load.element == at.element ? is_left(load.xi, at.xi) : load.element < at.element;
+bool Recovery::is_left_of(std::size_t station, double x) const {
+  const RecoverySection& s = sections_[station];
+  return is_left((x - s.element.x) / s.element.length, s.at.xi);
+}
+
+bool Recovery::is_outside(double x) const {
+  const Mesh& mesh = line_.mesh;
+  const auto tolerance = [&](int element) { return section_tolerance * mesh.element(element).length; };
+  return x < mesh.start() + tolerance(0) || x > mesh.end() - tolerance(mesh.elements() - 1);
 }
 
 Forces Recovery::jump(std::size_t station, const ElementLoad& load) const {
@@ -169,6 +177,7 @@ StationForms Recovery::forms(std::size_t station) const {
   f.element = s.at.element;
   f.constant_deflection = none.deflection;
   f.constant_moment = none.moment;
+  f.support_line = s.support_line;
   // `of`: pointers to v, w and a of the unknown among these values; null if the response does not depend on it.
   const auto add = [&](int unknown, const std::array<double*, 3>& of) {
     if (unknown < 0) return;
@@ -239,8 +248,10 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
   }
   for (const ElementLoad& load : loads) {
     for (const Place& place : sections_of(load.element)) sections_[place.section].add_load(load, out[place.section]);
-    if (load.speed != 0.0) add_beside(load, out);
+    if (std::abs(load.speed) > standing_speed) add_beside(load, out);
   }
+  for (std::size_t i = 0; i < sections_.size(); ++i)
+    out[i].relative_deflection = out[i].deflection - sections_[i].support_line;
 }
 
 std::span<const Recovery::Place> Recovery::sections_of(int element) const {
@@ -250,20 +261,21 @@ std::span<const Recovery::Place> Recovery::sections_of(int element) const {
   return {first, past};
 }
 
-// A station at a node belongs to the element on its right, but a load also passes it in the element on its left.
+// A station at a node belongs to the element on its right, but a load also passes it in the element on its left. A load
+// that stands there passes nothing: it is on the side of is_left().
 void Recovery::add_beside(const ElementLoad& load, std::vector<Response>& out) const {
   const auto add_at = [&](int element, double xi) {
     for (const Place& place : sections_of(element)) {
-      if (std::abs(xi - sections_[place.section].at.xi) > station_tolerance) continue;
+      if (std::abs(xi - sections_[place.section].at.xi) > section_tolerance) continue;
       const Forces by = jump(place.section, load);
-      const bool left = is_left_of(place.section, load), from_left = load.speed > 0.0;
+      const bool left = is_left_of(place.section, x_of(load)), from_left = load.speed > 0.0;
       const std::size_t side = left == from_left ? 1 : 0;
       out[place.section].shear_beside[side] += left ? -by[1] : by[1];
       out[place.section].axial_force_beside[side] += left ? -by[2] : by[2];
     }
   };
   add_at(load.element, load.xi);
-  if (load.xi > 1.0 - station_tolerance) add_at(load.element + 1, load.xi - 1.0);
+  if (load.xi > 1.0 - section_tolerance) add_at(load.element + 1, load.xi - 1.0);
 }
 
 }  // namespace traverse::beam

@@ -7,23 +7,27 @@
 #include <vector>
 
 #include "beam/beam.hpp"
+#include "beam/section.hpp"
 
 namespace traverse::beam {
 
 /// A load on an element, at xi: fx, fy in N (fy upward), moment in N m counter-clockwise. It moves with
-/// `speed` along x, m/s.
+/// `speed` along x, m/s, and keeps its number `source`, which no other load of a list has; -1: a load that does not
+/// move.
 struct ElementLoad {
   int element = 0;
   double xi = 0.0;
   double fx = 0.0, fy = 0.0, moment = 0.0;
   double speed = 0.0;
   double extent = 0.0;  // the load is spread uniformly over xi -+ extent/2 within the element; 0: concentrated
+  int source = -1;
 };
 
 /// Response at one station. Deflection positive upward, moment positive in sagging (EI v'' > 0),
 /// shear = d moment/dx.
 struct Response {
-  double deflection = 0.0, velocity = 0.0, acceleration = 0.0;
+  double deflection = 0.0, velocity = 0.0, acceleration = 0.0;  // in space
+  double relative_deflection = 0.0;                             // to the line through the supports (support_line.hpp)
   double moment = 0.0, shear = 0.0;
   double axial_displacement = 0.0, axial_force = 0.0;
   /// The parts of the forces, and of d moment/dt (N m/s), that follow from the nodal values alone, without loads,
@@ -50,6 +54,7 @@ struct StationForms {
   std::array<Form, 3> deflection, moment;  // coefficients of v, w and a; the moment without nodal_moment
   Form acceleration, nodal_moment;         // coefficients of a; coefficients of v
   double constant_deflection = 0.0, constant_moment = 0.0;  // by weight and temperature
+  double support_line = 0.0;                                // m: the height of the line through the settled supports
 };
 
 /// Evaluates responses: linear combinations of the nodal values of a station's element, plus the effect of loads inside
@@ -72,7 +77,8 @@ class Recovery {
   /// element, without the part b*K_e w, which is damping and not bending. The deflection includes the element's
   /// deflection between clamped ends, which the cubic shape functions do not contain: under concentrated loads and the
   /// beam's weight and, if a foundation acts inside the element, on this foundation and with the forces of foundation
-  /// and inertia. Velocity and acceleration do not include it.
+  /// and inertia. Velocity and acceleration do not include it. The relative deflection is relative to the line through
+  /// the settled supports of the beam's model.
   void evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
                 std::vector<Response>& out);
 
@@ -85,13 +91,16 @@ class Recovery {
     const Element& e = line_.mesh.element(load.element);
     return e.x + load.xi * e.length;
   }
-  bool is_outside(double x) const { return x < line_.mesh.start() || x > line_.mesh.end(); }
+  /// An upper bound of the distance from a station at which a load is at it, m.
+  double greatest_tolerance() const { return section_tolerance * (line_.mesh.end() - line_.mesh.start()); }
+  /// Whether a load at x is at an end of the line or outside.
+  bool is_outside(double x) const;
   /// The contribution of a load to the forces if it acts at x inside the station's element; zero elsewhere.
   Forces inside(std::size_t station, double x, ElementLoad load) const;
   /// The contribution of a load that is assigned to the given side of the station, independent of its position.
   Forces inside(std::size_t station, double x, const ElementLoad& load, bool as_left) const;
-  /// Whether evaluate() assigns the load to the left side of the station.
-  bool is_left_of(std::size_t station, const ElementLoad& load) const;
+  /// Whether evaluate() assigns a load at x to the left side of the station.
+  bool is_left_of(std::size_t station, double x) const;
   /// The forces with the load on the left side of the station minus those with the load on its right side.
   Forces jump(std::size_t station, const ElementLoad& load) const;
   /// The contribution of a load inside the station's element to the response; zero for a load elsewhere.

@@ -2,6 +2,8 @@
 // temperature, and from the deflection of the element clamped at both ends.
 #include "recovery/recovery_section.hpp"
 
+#include <algorithm>
+
 #include "beam/assembly.hpp"
 #include "beam/gauss.hpp"
 #include "beam/nonlinear_points.hpp"
@@ -198,7 +200,7 @@ void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const
   const bool left = is_left(load.xi, at.xi);
   if (left) {
     r.shear += load.fy;
-    r.moment += load.fy * (at.xi - load.xi) * h - load.moment;
+    r.moment += load.fy * std::max(at.xi - load.xi, 0.0) * h - load.moment;
   }
   if (EA > 0.0) add_axial_point_load(load.xi, load.fx, r);
 }

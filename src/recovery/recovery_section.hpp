@@ -46,6 +46,7 @@ struct RecoverySection {
   /// under the forces of foundation and inertia for a motion by the shape functions.
   std::optional<HeldElement> held;
   std::array<double, 4> held_by_stiffness{}, held_by_damping{}, held_by_mass{};
+  double support_line = 0.0;  // m: the height of the line through the settled supports
   std::vector<ConnectedSleeper> sleepers;
 
  private:

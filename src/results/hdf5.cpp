@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -92,13 +93,17 @@ Id open_whole(const std::string& path) {
 }
 
 File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
-  open(Id(check(H5Fcreate(place_.file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access().get()))));
-  place_.keep();
+  place_.open_temporary();
+  open(Id(check(H5Fcreate(place_.temporary_file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access().get()))));
 }
 
 File::File(Place place, std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right)
     : place_(std::move(place)), path_(place_.path()) {
   place_.copy_temporarily(std::move(sources), is_right);
+  open_temporary();
+}
+
+void File::open_temporary() {
   open(Id(check(H5Fopen(place_.temporary_file().c_str(), H5F_ACC_RDWR, access().get()))));
   hsize_t size = 0;
   check(H5Fget_filesize(file_.get(), &size));
@@ -138,9 +143,17 @@ void File::open(Id file) {
   check(H5Tset_cset(text_.get(), H5T_CSET_UTF8));
 }
 
-void File::replace_file() {
+void File::publish() {
   flush();
-  place_.replace_by_temporary();
+  if (place_.has_temporary()) place_.replace_by_temporary();
+}
+
+void File::change_beside() {
+  publish();
+  for (Id* const id : {&parents_, &rows_access_, &compact_, &text_}) *id = Id();
+  check(H5Fclose(file_.release()));
+  place_.copy_temporarily();
+  open_temporary();
 }
 
 std::vector<std::string> File::objects() const {
@@ -203,11 +216,15 @@ void File::close() {
   flush();
   check(H5Fclose(file_.get()));
   file_.release();
-  place_.check_is_there();
+  if (place_.has_temporary())
+    place_.replace_by_temporary();
+  else
+    place_.check_is_there();
   place_ = Place();
 }
 
 void File::abandon() noexcept {
+  remove_made_place();  // also if the process ends without the destructors
   try {
     const int memory_file = memfd_create("traverse", MFD_CLOEXEC);
     if (memory_file < 0) return;
@@ -215,6 +232,10 @@ void File::abandon() noexcept {
     ::close(memory_file);
   } catch (const FileError&) {  // no file was open
   }
+  rlimit size{};
+  getrlimit(RLIMIT_FSIZE, &size);
+  // The limit applies to memory too, and HDF5 cannot close a file that it cannot write.
+  if (size.rlim_cur != RLIM_INFINITY) file_.release();
 }
 
 Id File::group(const std::string& name) {

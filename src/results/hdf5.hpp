@@ -50,16 +50,19 @@ Id open_whole(const std::string& path);
 /// disk before any metadata refer to the new part (HDF5 itself writes it last).
 class File {
  public:
-  /// Creates the file at its place, replacing an older one. The place is claimed until the file is closed.
+  /// Creates a file beside its place, which publish() or close() moves there. The place is claimed until the file is
+  /// closed.
   explicit File(Place place);
 
-  /// Opens a copy of a results file under a temporary name; replace_file() moves it to its place. It is a copy of the
-  /// first source for which is_right(path of the copy) is true. FileError if there is none.
+  /// Opens a copy of a results file beside its place. It is a copy of the first source for which is_right(path of the
+  /// copy) is true. FileError if there is none.
   File(Place place, std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right);
 
   const std::string& path() const { return path_; }
-  /// Moves a changed copy to its place, atomically.
-  void replace_file();
+  /// Moves a file from beside its place to it, atomically; nothing if it is there already.
+  void publish();
+  /// Continues in a copy beside the place, so that a kill leaves the file as it is now.
+  void change_beside();
   /// The paths of all groups and datasets.
   std::vector<std::string> objects() const;
   /// Removes all other objects.
@@ -113,6 +116,7 @@ class File {
 
  private:
   void open(Id file);
+  void open_temporary();
   Id access() const;
   int descriptor() const;
   void set_text(const Id& object, const char* name, const std::string& text);

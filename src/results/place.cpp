@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 // Names to remove after a signal that ends the program at once: the file, then its folders, the innermost first.
 std::vector<std::string> created_names;
 FileId created_file;
+std::string unfinished_name;  // the temporary file
+FileId unfinished_file;       // if there is one
 std::atomic<bool> must_remove{false};
 
 constexpr const char* hdf5_locks = "HDF5_USE_FILE_LOCKING";
@@ -77,23 +79,12 @@ bool copy(const Descriptor& from, const Descriptor& to) {
   }
 }
 
-/// Whether a file is an incomplete copy of `source` from a killed run: no process has it open, and it equals the first
-/// part of the source.
-bool is_incomplete_copy(const std::string& path, const Descriptor& source) {
-  const Descriptor file = open_ordinary(path, false);
-  if (!file.open()) return false;
-  if (!locks_are_off() && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
-  std::vector<char> part(std::size_t{1} << 20), expected(part.size());
-  for (off_t at = 0;;) {
-    const ssize_t read = ::pread(file.get(), part.data(), part.size(), at);
-    if (read <= 0) return read == 0;
-    const auto size = static_cast<std::size_t>(read);
-    if (::pread(source.get(), expected.data(), size, at) != read ||
-        !std::equal(part.begin(), part.begin() + read, expected.begin()))
-      return false;
-    at += read;
-  }
+/// A free name beside a file, for each attempt another one.
+std::string temporary_name(const std::string& path, int attempt) {
+  return path + ".part." + std::to_string(::getpid()) + (attempt == 0 ? "" : "." + std::to_string(attempt));
 }
+
+constexpr int max_attempts = 100;  // names tried
 
 constexpr const char* place_advice = "; name another file with -output_file";
 
@@ -128,6 +119,10 @@ void Place::claim() {
   }
   struct stat status {};
   if (::fstat(file_.get(), &status) != 0) fail(path_, std::strerror(errno));
+  if (id_at(path_.c_str()) != id_of(file_)) {  // another run has replaced it since
+    created_ = false;
+    fail(path_, std::string("another run or program has it open") + place_advice);
+  }
   if (status.st_size > 0 && !is_results_file(file_))
     fail(path_, std::string("it is there already and is no results file of Traverse") + place_advice);
   if (!created_) return;
@@ -135,6 +130,31 @@ void Place::claim() {
   created_names = {path_};
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) created_names.push_back(folder->string());
   must_remove = true;
+}
+
+void Place::open_temporary() {
+  for (int attempt = 0; !temporary_.open() && attempt < max_attempts; ++attempt) {
+    temporary_name_ = temporary_name(path_, attempt);
+    temporary_ = make_file(temporary_name_);
+    if (!temporary_.open() && errno != EEXIST) break;
+  }
+  if (!temporary_.open()) fail(path_, "its folder takes no new file: " + std::string(std::strerror(errno)));
+  unfinished_name = temporary_name_;
+  unfinished_file = id_of(temporary_);
+  if (!locks_are_off()) (void)::flock(temporary_.get(), LOCK_EX | LOCK_NB);
+  struct stat replaced {};
+  if (::fstat(file_.get(), &replaced) == 0) (void)::fchmod(temporary_.get(), replaced.st_mode);
+}
+
+void Place::copy_to_temporary(const Descriptor& source) {
+  open_temporary();
+  if (!copy(source, temporary_)) fail(path_, std::strerror(errno));
+}
+
+void Place::copy_temporarily() {
+  const Descriptor source = open_ordinary(path_, false);
+  check_is_there();
+  copy_to_temporary(source);
 }
 
 void Place::copy_temporarily(std::vector<std::string> sources,
@@ -148,8 +168,7 @@ void Place::copy_temporarily(std::vector<std::string> sources,
     const FileId id = id_at(source->c_str());
     const bool missing = !id.there || (created_ && id == id_of(file_));  // the claimed file itself does not count
     if (valid) {
-      make_temporary(from);
-      if (!copy(from, temporary_)) fail(path_, temporary() + ": " + std::strerror(errno));
+      copy_to_temporary(from);
       if (is_right(temporary_file())) return;
       remove_temporary();
     }
@@ -163,29 +182,19 @@ void Place::copy_temporarily(std::vector<std::string> sources,
   fail(path_, "there are no results to take up: " + failures + "; name them with -output_file");
 }
 
-void Place::make_temporary(const Descriptor& source) {
-  temporary_ = make_file(temporary());
-  int why = errno;
-  if (!temporary_.open() && why == EEXIST && is_incomplete_copy(temporary(), source)) {
-    (void)::unlink(temporary().c_str());
-    temporary_ = make_file(temporary());
-    why = errno;
-  }
-  if (!temporary_.open() && why == EEXIST)
-    fail(path_, temporary() + " is there already and is no copy that a run has left; move it away");
-  if (!temporary_.open()) fail(path_, temporary() + ": " + std::strerror(why));
-  if (!locks_are_off()) (void)::flock(temporary_.get(), LOCK_EX | LOCK_NB);
-}
-
 void Place::remove_temporary() noexcept {
-  if (temporary_.open() && id_at(temporary().c_str()) == id_of(temporary_)) (void)::unlink(temporary().c_str());
+  if (!temporary_.open()) return;
+  unfinished_file = {};
+  if (id_at(temporary_name_.c_str()) == id_of(temporary_)) (void)::unlink(temporary_name_.c_str());
   temporary_ = Descriptor();
 }
 
 void Place::replace_by_temporary() {
   check_is_there();
-  if (id_at(temporary().c_str()) != id_of(temporary_)) fail(path_, temporary() + " was removed or replaced meanwhile");
-  if (::rename(temporary().c_str(), path_.c_str()) != 0) fail(path_, std::strerror(errno));
+  if (id_at(temporary_name_.c_str()) != id_of(temporary_))
+    fail(path_, temporary_name_ + " was removed or replaced meanwhile");
+  if (::rename(temporary_name_.c_str(), path_.c_str()) != 0) fail(path_, std::strerror(errno));
+  unfinished_file = {};
   file_ = std::move(temporary_);
   temporary_ = Descriptor();
   keep();
@@ -214,6 +223,8 @@ void Place::keep() {
 }
 
 void remove_made_place() noexcept {
+  if (unfinished_file.there && id_at(unfinished_name.c_str()) == unfinished_file)
+    (void)::unlink(unfinished_name.c_str());
   if (!must_remove) return;
   bool file = true;  // the first name
   for (const std::string& name : created_names) {
@@ -257,6 +268,7 @@ Place& Place::operator=(Place&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(file_, other.file_);
   std::swap(temporary_, other.temporary_);
+  std::swap(temporary_name_, other.temporary_name_);
   std::swap(created_, other.created_);
   std::swap(folders_, other.folders_);
   return *this;

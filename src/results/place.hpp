@@ -34,23 +34,28 @@ class Place {
   /// FileError if the file is no longer at its path.
   void check_is_there() const;
 
-  /// Copies a results file to the name temporary(): the first one of the sources and of the file at this place for
-  /// whose copy `is_right` is true. FileError if there is none, or if another file has that name.
+  /// Creates a file under a free name beside this place, which takes its place when it is complete. FileError.
+  void open_temporary();
+  /// Like open_temporary(), with the content of this place.
+  void copy_temporarily();
+  /// Like open_temporary(), with the content of the first results file of the sources and of this place for whose copy
+  /// `is_right` is true. FileError if there is none.
   void copy_temporarily(std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right);
-  std::string temporary() const { return path_ + ".part"; }
+  bool has_temporary() const { return temporary_.open(); }
   std::string temporary_file() const { return temporary_.path(); }
-  /// Moves the locked copy to this place.
+  /// Moves the locked temporary file to this place, atomically.
   void replace_by_temporary();
 
  private:
   void claim();
-  void make_temporary(const Descriptor& source);
+  void copy_to_temporary(const Descriptor& source);
   void remove_temporary() noexcept;
   void release() noexcept;
 
   std::string path_;
-  Descriptor file_, temporary_;  // temporary: a copy, if there is one
-  bool created_ = false;         // the file was created by this object
+  Descriptor file_, temporary_;  // temporary: if there is one
+  std::string temporary_name_;
+  bool created_ = false;  // the file was created by this object
   std::vector<std::filesystem::path> folders_;
 };
 

@@ -115,7 +115,7 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Recorder::Earlier& 
     for (const char* name : summary_at_root) file.remove_attribute("/", name);
     file.remove_all_except(objects);
     series = create_series(earlier.rows, earlier.digests);
-    file.replace_file();
+    file.publish();
   });
 }
 
@@ -149,7 +149,7 @@ void Recorder::Impl::add(const Sample& sample) {
   if (series.empty()) {
     series = create_series(0, {});
     if (layout.interval > 0.0) file.attribute("/time", "interval", layout.interval);
-    file.flush();  // from here on the metadata do not change, only lengths grow
+    file.publish();  // from here on the metadata do not change, only lengths grow
   }
   series.front().add(sample.time);
   const double* next = sample.values.data();
@@ -221,6 +221,14 @@ Recorder::Recorder(MPI_Comm comm, Place place, const Layout& layout, const Earli
     }
   }
   share_failure(comm, failure);
+}
+
+void Recorder::publish() {
+  if (impl_ != nullptr) impl_->attempt([&] { impl_->file.publish(); });
+}
+
+void Recorder::change_beside() {
+  if (impl_ != nullptr) impl_->attempt([&] { impl_->file.change_beside(); });
 }
 
 void Recorder::of_scene(const std::string& digest) { attributes(digest_group, {{digest_attribute, digest}}); }

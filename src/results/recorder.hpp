@@ -93,6 +93,7 @@ struct Summary {
   bool probes = false;  // false without probes: then there are no peaks
   bool moments = true;  // moments are known
   Extreme deflection, acceleration, moment;
+  bool relative_to_supports = false;  // the deflection is relative to supports that are not where they were built
   std::optional<Extreme> shear, axial_displacement, axial_force;  // if known
   std::optional<LowPassed> low_passed;                            // peak of the filtered acceleration
   double static_deflection = 0.0;  // largest |static deflection| at the same station with the same loads; 0: unknown
@@ -113,7 +114,7 @@ struct Summary {
   double rest_error() const;
   double energy_scale =
       0.0;  // largest term, J, without initially stored energy and the forward motion of a driven train
-  double largest_energy = 0.0;  // largest stored energy, J
+  double largest_energy = 0.0;  // largest stored energy, or work of loads that do not cancel, J
   double static_error = 0.0;    // relative rounding error of static solutions
   long steps = 0;
   long rejected_steps = 0;    // repeated with a shorter step
@@ -132,7 +133,8 @@ struct Attribute {
   std::variant<double, long, std::string> value;
 };
 
-/// The writer. Only rank 0 opens and writes the file; on other ranks every call does nothing.
+/// The writer. Only rank 0 opens and writes the file; on other ranks every call does nothing. The file replaces an
+/// older one at its place when it is published or finished, or has its first sample; until then it is beside its place.
 class Recorder {
  public:
   /// Creates the file at its place; FileError on failure. attributes: name, text.
@@ -160,6 +162,11 @@ class Recorder {
   Recorder(Recorder&& other) noexcept;
   ~Recorder();  // writes remaining data; never throws
 
+  /// Moves the file to its place: it can be continued from here on.
+  void publish();
+  /// What follows until finish() is written to a copy beside the file, so that a kill leaves the published tables
+  /// readable.
+  void change_beside();
   /// Whether this rank writes a file: samples on other ranks need no values.
   bool writes() const { return impl_ != nullptr; }
   void add(const Sample& sample);

@@ -30,6 +30,10 @@ void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double raylei
       }
       if (modes.x.size() == points) file.dataset("/modes/x", {points}, modes.x, "m");
     }
+    if (!modes.beam_ratio.empty()) {
+      file.dataset("/modes/ratio_by_beam", {frequency.size()}, modes.beam_ratio, "1");
+      file.dataset("/modes/ratio_by_dampers", {frequency.size()}, modes.damper_ratio, "1");
+    }
     file.attribute("/modes", "rayleigh_a", rayleigh_a);
     file.attribute("/modes", "rayleigh_b", rayleigh_b);
     file.attribute("/modes", "omega1", omega1);

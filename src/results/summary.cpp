@@ -19,6 +19,7 @@ std::vector<Attribute> attributes_of(const Summary& summary) {
   };
   if (summary.probes) {
     extreme("deflection", summary.deflection);
+    if (summary.relative_to_supports) add("deflection_relative_to", std::string("supports"));
     extreme("acceleration", summary.acceleration);
     if (summary.low_passed) {
       extreme("acceleration_lowpass", summary.low_passed->extreme);

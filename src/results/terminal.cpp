@@ -59,7 +59,8 @@ std::string extreme_text(std::string_view quantity, const Extreme& extreme) {
 void print_beam(const Summary& summary) {
   const bool moved = summary.deflection.value != 0.0 || summary.acceleration.value != 0.0;
   if (!moved && summary.moment.value == 0.0) return;
-  line("peak deflection", extreme_text("deflection", summary.deflection));
+  line("peak deflection", extreme_text("deflection", summary.deflection) +
+                              (summary.relative_to_supports ? ", relative to the supports" : ""));
   line("peak acceleration", extreme_text("acceleration", summary.acceleration));
   if (summary.low_passed)
     line(fmt::format("  up to {:.4g} Hz", summary.low_passed->frequency),
@@ -163,6 +164,14 @@ void print_with_damping(const modes::Modes& modes, const modes::DampedModes& dam
   }
 }
 
+/// Prints lines under a heading; nothing without lines.
+void print_lines(const char* heading, const std::vector<std::string>& lines) {
+  if (!is_first_rank() || lines.empty()) return;
+  fmt::print("{}\n", heading);
+  for (const std::string& text : lines) fmt::print("  {}\n", printable(text));
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 void print_columns(std::vector<std::vector<std::string>> rows) {
@@ -174,12 +183,8 @@ void print_columns(std::vector<std::vector<std::string>> rows) {
   for (const auto& row : rows) fmt::print("  {}\n", fmt::join(row, "  "));
 }
 
-void print_modelled(const std::vector<std::string>& lines) {
-  if (!is_first_rank() || lines.empty()) return;
-  fmt::print("modelled\n");
-  for (const auto& text : lines) fmt::print("  {}\n", printable(text));
-  std::fflush(stdout);
-}
+void print_modelled(const std::vector<std::string>& lines) { print_lines("modelled", lines); }
+void print_unusual(const std::vector<std::string>& lines) { print_lines("unusual input", lines); }
 
 Progress::Progress(double start, double end, bool quiet)
     : start_(start),

@@ -16,6 +16,9 @@ std::string duration_text(double seconds);
 /// Prints the lines "modelled": each has a part of the model, followed by the reason or method of its choice.
 void print_modelled(const std::vector<std::string>& lines);
 
+/// Prints the lines "unusual input" of a scene.
+void print_unusual(const std::vector<std::string>& lines);
+
 /// Prints a table. Each column is as wide as its longest text; texts are aligned on the right.
 void print_columns(std::vector<std::vector<std::string>> rows);
 

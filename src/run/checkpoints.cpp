@@ -42,15 +42,16 @@ std::string path_for(const Scene& scene) {
 /// Throws InputError if results and checkpoint, including their temporary files, would be the same file.
 void check_distinct_outputs(const std::string& results, const std::string& checkpoint) {
   if (checkpoint.empty() || results.empty()) return;
-  std::error_code ignored;
-  const auto place = [&](const std::string& name) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(name), ignored);
+  const auto place = [](const std::string& name) {
+    const std::filesystem::path absolute = std::filesystem::absolute(name);
+    std::error_code unknown;  // a name that is too long for a file, for example
+    const std::filesystem::path canonical = std::filesystem::weakly_canonical(absolute, unknown);
+    return unknown ? absolute.lexically_normal() : canonical;
   };
-  for (const std::string& name : {results, results + ".part"})
-    for (const std::string& other : {checkpoint, results::temporary_checkpoint(checkpoint)})
-      if (place(name) == place(other))
-        throw InputError(fmt::format("checkpoint_file = {}: the results file {} would be written to the same place",
-                                     checkpoint, results));
+  for (const std::string& other : {checkpoint, results::temporary_checkpoint(checkpoint)})
+    if (place(results) == place(other))
+      throw InputError(fmt::format("checkpoint_file = {}: the results file {} would be written to the same place",
+                                   checkpoint, results));
 }
 
 /// InputError if the results file is an input of the run; a continued study or run is an exception.

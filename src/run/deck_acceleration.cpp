@@ -52,6 +52,11 @@ std::vector<double> first_frequencies(const SharedBeam& shared) {
   return frequencies;
 }
 
+double cutoff_of(const std::vector<double>& frequencies) {
+  if (frequencies.empty()) return least_frequency;
+  return std::max({least_frequency, first_factor * frequencies.front(), frequencies.back()});
+}
+
 bool filters_deck(const Scene& scene) {
   return scene.beam && scene.analysis == Analysis::transient && !scene.output.probes.empty() &&
          scene.output.low_pass.value_or(least_frequency) > 0.0 &&
@@ -74,8 +79,7 @@ double cutoff_frequency(const Scene& scene, const SharedBeam& shared, bool affor
     return 0.0;
   }
   const std::vector<double> f = first_frequencies(shared);
-  const double first = f.empty() ? 0.0 : f.front(), third = f.empty() ? 0.0 : f.back();
-  const double greatest = std::max({least_frequency, first_factor * first, third});
+  const double first = f.empty() ? 0.0 : f.front(), third = f.empty() ? 0.0 : f.back(), greatest = cutoff_of(f);
   notes.push_back(
       fmt::format("deck accelerations are given unfiltered and low-passed at {:.6g} Hz, the largest of 30 Hz, 1.5 f1 = "
                   "{:.6g} Hz and f{} = {:.6g} Hz; -output_lowpass changes it",

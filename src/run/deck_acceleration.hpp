@@ -25,6 +25,8 @@ bool frequencies_are_cheap(const beam::Beam& beam);
 /// Collective. The first three distinct bending frequencies, Hz, ascending; with model_modes the frequencies of its
 /// modes.
 std::vector<double> first_frequencies(const SharedBeam& shared);
+/// The cut-off frequency of EN 1990, A2.4.4.2.1 for these first three frequencies, Hz.
+double cutoff_of(const std::vector<double>& frequencies);
 
 /// Collective, after SharedBeam::prepare. The cut-off frequency (Hz) of deck accelerations in this scene; 0: they are
 /// not filtered. It is given by the scene, or is the greatest of 30 Hz, 1.5 f1 and f3, the bridge's distinct bending

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "beam/shape_points.hpp"
+#include "beam/support_line.hpp"
 
 namespace traverse::app {
 namespace {
@@ -48,6 +49,10 @@ results::Shape shape_of(const beam::Beam& beam, const Scene& scene, const Larges
     if (which.size() < points_per_call && (i + 1 < points.size() || which.empty())) continue;
     fill_inside(beam, scene.self_weight ? scene.gravity : 0.0, worst, points, which, out.deflection);
     which.clear();
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const beam::SupportLine line = beam::support_line(beam.model(), points[i].x);
+    out.deflection[i] -= line.height(beam.model().settlement) + line.height(worst.ground);
   }
   return out;
 }

@@ -19,6 +19,7 @@ std::size_t first_body(const train::Fleet& fleet, const train::Member& member) {
 
 ExitStates::ExitStates(const Scene& scene) {
   if (!scene.beam) return;
+  steps_end_before_exits_ = scene.contact_tolerance != 0.0;
   const beam::BeamModel& beam = *scene.beam;
   double last = beam.start;
   for (const double span : beam.spans) last += span;
@@ -65,6 +66,14 @@ double ExitStates::share_before_exit(const OpenEnd& end, const train::Fleet& fle
   return latest;
 }
 
+/// Whether a guided wheel leaves the end, which is released from its force at once: the instant before, at which a step
+/// ends, has the tip's motion.
+bool ExitStates::leaves_guide(const train::Member& member) const {
+  return steps_end_before_exits_ && std::ranges::any_of(member.type->wheels, [](const train::Wheel& wheel) {
+           return wheel.law.kind == contact::LawKind::two_sided;
+         });
+}
+
 void ExitStates::add(double t, const train::Fleet& fleet, const std::vector<beam::Response>& probes) {
   if (ends_.empty()) return;
   std::vector<std::array<Motion, 3>> bodies;
@@ -99,7 +108,9 @@ void ExitStates::add(double t, const train::Fleet& fleet, const std::vector<beam
         Record record{time_before_ + s * h, static_cast<int>(m), static_cast<int>(i), {}, {}};
         for (std::size_t c = 0; c < 3; ++c)
           record.motion[c] = between(before_[first + i][c], bodies[first + i][c], h, s);
-        record.tip = between(tips_before_[e], tips[e], h, s);
+        record.tip = leaves_guide(member)
+                         ? Motion{tips_before_[e].value + s * h * tips_before_[e].rate, tips_before_[e].rate}
+                         : between(tips_before_[e], tips[e], h, s);
         records_.push_back(record);
       }
     }

@@ -18,8 +18,10 @@ class ExitStates {
   ExitStates() = default;
   explicit ExitStates(const Scene& scene);
 
+  /// Whether there is an end to leave, so that every instant needs the motion of all bodies.
+  bool needs_bodies() const { return !ends_.empty(); }
   /// Evaluates the next observed instant t, s. Between two instants, positions and the deflections of the probes are
-  /// interpolated by cubics.
+  /// interpolated by cubics; the tip that a guided wheel leaves has the motion of the instant before.
   void add(double t, const train::Fleet& fleet, const std::vector<beam::Response>& probes);
   /// The exits in the order of time: /exit/time, position, velocity, and tip_deflection, tip_velocity of a probe at
   /// this end (NaN without such a probe).
@@ -46,6 +48,7 @@ class ExitStates {
     int probe = -1;                 // at this end; -1: none
   };
   static Motion between(const Motion& a, const Motion& b, double h, double s);
+  bool leaves_guide(const train::Member& member) const;
   double share_before_exit(const OpenEnd& end, const train::Fleet& fleet, const train::Member& member, double h) const;
 
   std::vector<OpenEnd> ends_;
@@ -54,6 +57,7 @@ class ExitStates {
   std::vector<char> has_left_;                 // one for each of the fleet's members
   std::vector<Record> records_;
   double time_before_ = 0.0;
+  bool steps_end_before_exits_ = false;
 };
 
 }  // namespace traverse::app

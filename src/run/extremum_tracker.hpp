@@ -3,32 +3,40 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <tuple>
-#include <vector>
 
 #include "base/bytes.hpp"
 #include "run/interpolated_extremum.hpp"
 
 namespace traverse::app {
 
-inline bool between(const std::vector<double>& times, double from, double to) {
-  const auto next = std::lower_bound(times.begin(), times.end(), from);
-  return next != times.end() && *next <= to;
-}
+/// The latest times at which a curve has a kink, s.
+class KinkTimes {
+ public:
+  KinkTimes() { times_.fill(-std::numeric_limits<double>::infinity()); }
+  void add(double t) { times_[next_++ % times_.size()] = t; }
+  /// Whether there is one from `from` to `to`, the times of two of the latest samples.
+  bool between(double from, double to) const {
+    return std::any_of(times_.begin(), times_.end(), [=](double t) { return t >= from && t <= to; });
+  }
+
+ private:
+  std::array<double, 2 * Samples::max_count> times_;
+  std::size_t next_ = 0;
+};
+inline const KinkTimes no_kinks;
 
 /// The extremes of one curve, evaluated as samples arrive. For each extreme record(value, time, outward) is called;
 /// outward: its magnitude is extreme too, i.e. it is a maximum above zero or a minimum below.
 class ExtremumTracker {
  public:
-  ExtremumTracker() = default;
-  /// of_samples: the curve may jump between samples, so that it is not interpolated.
-  explicit ExtremumTracker(bool of_samples) : of_samples_(of_samples) {}
-
-  /// Adds a sample and records the extreme two samples before it, if any. kinks: ascending times at which the curve may
-  /// have one.
+  /// Adds a sample and records the extreme two samples before it, if any. kinks: those of the curve.
   template <class Record>
-  void add(double t, double value, const std::vector<double>& kinks, Record&& record) {
+  void add(double t, double value, const KinkTimes& kinks, Record&& record) {
     const double latest = samples_.time[4];
     if (samples_.count > 1 && t - latest < min_ratio * (latest - samples_.time[3])) {
       if (std::abs(value) > std::abs(samples_.value[4]))
@@ -41,12 +49,12 @@ class ExtremumTracker {
   }
   /// After the last sample: records the extreme just before it, if any.
   template <class Record>
-  void record_last(const std::vector<double>& kinks, Record&& record) const {
+  void record_last(const KinkTimes& kinks, Record&& record) const {
     if (samples_.count >= 3) evaluate(3, kinks, record);
   }
   /// Like record_last(), and records the last value too.
   template <class Record>
-  void finish(const std::vector<double>& kinks, Record&& record) const {
+  void finish(const KinkTimes& kinks, Record&& record) const {
     record_last(kinks, record);
     if (samples_.count > 0) record(samples_.value.back(), samples_.time.back(), true);
   }
@@ -67,18 +75,17 @@ class ExtremumTracker {
 
   /// Records the sample at i if it is extreme.
   template <class Record>
-  void evaluate(std::size_t i, const std::vector<double>& kinks, Record&& record) const {
+  void evaluate(std::size_t i, const KinkTimes& kinks, Record&& record) const {
     const auto &t = samples_.time, &y = samples_.value;
     const bool outward = std::abs(y[i]) >= std::abs(y[i - 1]) && std::abs(y[i]) > std::abs(y[i + 1]);
     if (!outward && !((y[i] - y[i - 1]) * (y[i + 1] - y[i]) < 0.0)) return;
     const Extreme extremum = interpolate_extremum(samples_, i, [&](std::size_t from, std::size_t to) {
-      return !of_samples_ && y[from] * y[to] > 0.0 && !between(kinks, t[from], t[to]);
+      return y[from] * y[to] > 0.0 && !kinks.between(t[from], t[to]);
     });
     record(extremum.value, extremum.time, outward);
   }
 
   Samples samples_;
-  bool of_samples_ = false;
 };
 
 /// The extremes of a curve M + b dM/dt, where M is smooth except for its kinks, which have samples.
@@ -125,10 +132,6 @@ inline JumpExtremum extremum_after_jump(double before, double after, double slop
 /// pieces between two such passages. With damping b K it relaxes after a jump, V = S + r exp(-t/b), where S is smooth.
 class JumpingCurve {
  public:
-  JumpingCurve() = default;
-  /// of_samples: the times of jumps are unknown.
-  explicit JumpingCurve(bool of_samples) : smooth_(of_samples) {}
-
   /// relaxed: S; unrelaxed: the remaining part of r, used at the begin of a piece. b in s; 0: the curve is S.
   template <class Record>
   void add(double t, double relaxed, double unrelaxed, double b, Record&& record) {
@@ -144,12 +147,12 @@ class JumpingCurve {
     time_ = t;
     relaxed_ = relaxed;
     known_ = true;
-    smooth_.add(t, relaxed, {}, with_transient(b, record));
+    smooth_.add(t, relaxed, no_kinks, with_transient(b, record));
   }
   /// After the last sample of a piece; then a new piece begins.
   template <class Record>
   void finish(double b, Record&& record) {
-    smooth_.finish({}, with_transient(b, record));
+    smooth_.finish(no_kinks, with_transient(b, record));
     smooth_.reset();
     known_ = false;
   }

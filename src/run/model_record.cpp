@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "base/notes.hpp"
+#include "beam/shape_points.hpp"
+#include "modes/modes.hpp"
 #include "run/quantity.hpp"
 #include "traverse/options/verdict_limit.hpp"
 
@@ -180,6 +182,21 @@ void record_model(const Scene& scene, const std::vector<std::string>& notes, res
   record_quantities(recorder);
   if (scene.beam) record_bridge(*scene.beam, recorder);
   record_train(scene, recorder);
+}
+
+void record_modes(const SharedBeam& shared, results::Recorder& recorder) {
+  if (!shared.omega) return;
+  const auto [omega1, omega2] = *shared.omega;
+  modes::Modes modes;
+  if (shared.modal)
+    modes = modes::as_stored(*shared.beam, shared.modal->basis(), beam::ShapePoints(shared.beam->mesh()));
+  for (const SharedBeam::RatioOfMode& mode : shared.damping_ratios()) {
+    if (!shared.modal) modes.omega.push_back(mode.omega);
+    if (shared.modal && !shared.modal->dampers_couple()) modes.ratio.push_back(mode.beam + mode.dampers);
+    modes.beam_ratio.push_back(mode.beam);
+    modes.damper_ratio.push_back(mode.dampers);
+  }
+  recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
 }
 
 }  // namespace traverse::app

@@ -17,6 +17,9 @@ constexpr Row<Response> motion_rows[] = {
     {"acceleration", "m/s2", of<&Response::acceleration>},
 };
 
+// With supports that have settled or move.
+constexpr Row<Response> relative_rows[] = {{"relative_deflection", "m", of<&Response::relative_deflection>}};
+
 // Quantities of beams by elements.
 constexpr Row<Response> force_rows[] = {
     {"moment", "N m", of<&Response::moment>},
@@ -99,6 +102,7 @@ void add_probes(const Source& source, Outputs& outputs) {
   if (x.empty()) return;
   outputs.add_constant("/probes/x", x, "m");
   outputs.add_each("/probes/", motion_rows, x.size(), probe);
+  if (source.scene.supports_displaced()) outputs.add_each("/probes/", relative_rows, x.size(), probe);
   if (source.beam->model().given) return;
   outputs.add_each("/probes/", force_rows, x.size(), probe);
   outputs.add_each("/probes/", shear_rows, x.size(), probe);

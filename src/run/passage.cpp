@@ -11,7 +11,7 @@
 #include "results/stage.hpp"
 #include "run/axle_load_records.hpp"
 #include "run/resolution.hpp"
-#include "run/response_extremes.hpp"
+#include "run/table_ends.hpp"
 #include "structure/active_window.hpp"
 #include "structure/modal_structure.hpp"
 
@@ -22,11 +22,21 @@ constexpr double min_steps = 5.0;  // steps for each crossing of a probe
 
 constexpr double default_solves = 5.0;  // stage solves of the default method, for which contact_impact_steps is defined
 
-/// The times at which a wheel or force crosses a probe; empty if there are too many of them for the steps.
+/// The times at which a wheel or force crosses a probe; empty if there are too many of them for the steps, or if wheels
+/// run on the rail of a layered track. Wheels without a prescribed speed have none.
 std::vector<double> crossing_times(const Scene& scene, const Plan& plan) {
   std::vector<double> times;
-  for (const std::vector<double>& one : passages_of(scene)) times.insert(times.end(), one.begin(), one.end());
-  std::erase_if(times, [&](double t) { return t >= plan.end_time; });
+  if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return times;
+  const auto add = [&](double x, const base::SpeedLaw& law) {
+    if (law.direction() == 0.0) return;
+    for (const double probe : scene.output.probes)
+      if (const double t = law.time_of(probe - x); t > 0.0 && t < plan.end_time) times.push_back(t);
+  };
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    if (drive_of(scene.train, i) == train::Drive::constant)
+      for (const double x : wheels_at_start(scene, i)) add(x, law_of(scene.train, i));
+  for (std::size_t i = 0; i < scene.load.positions.size(); ++i)
+    if (length_of(scene.load, i) == 0.0) add(scene.load.positions[i], law_of(scene.load, i));
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   if (static_cast<double>(times.size()) * min_steps > plan.end_time / plan.time_step) times.clear();
@@ -68,7 +78,10 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
       input_(system_input(scene, static_only_)),
       system_(shared.comm, carrier(scene, shared, input_), input_) {
   check_mesh(scene, notes);
-  if (!static_only_) plan_ = make_plan(scene, system_, shared.first_period(), notes);
+  if (!static_only_) {
+    plan_ = make_plan(scene, system_, shared.first_period(), notes);
+    check_table_ends(scene, plan_.end_time, notes);
+  }
   if (earlier != nullptr) {
     plan_.time_step = earlier->time_step;
     plan_.interval = earlier->interval;

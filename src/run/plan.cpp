@@ -14,8 +14,7 @@ namespace {
 constexpr double steps_per_period = 100.0;   // in the first period or a span's crossing, at an accuracy of 1e-3
 constexpr double steps_per_wave = 20.0;      // in a wave of the track or of a wheel out of round, at that accuracy
 constexpr double samples_per_period = 20.0;  // in the first period of a bridge by modes, if the interval is open
-constexpr double samples_per_first_period = 10.0;  // smallest number of samples in the first period for peaks
-constexpr double mechanism_step = 1e-3;            // s, without a beam
+constexpr double mechanism_step = 1e-3;      // s, without a beam
 constexpr double min_steps_per_span = 10.0;
 constexpr double max_steps = 1e10;
 constexpr double samples_of_open_interval = 2000.0;  // largest number, if the interval is open
@@ -155,16 +154,12 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   if (scene.output.interval && *scene.output.interval > plan.end_time)
     notes.push_back(fmt::format("output_interval {:g} s is longer than the run: of its series only the start is stored",
                                 *scene.output.interval));
-  // If stored samples are too far apart for peaks, there are further samples in between.
-  const double sampling_interval =
-      scene.beam ? std::min(scene.sampling_interval, shortest_scale(scene, first_period) / samples_per_first_period)
-                 : scene.sampling_interval;
   if (scene.output.interval) {
     plan.interval = std::min(*scene.output.interval, max_steps * plan.time_step);  // long enough for any run
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9))));
     plan.stored = scene.model.step_probes
                       ? steps
-                      : samples_among(steps, plan.interval / static_cast<double>(steps), sampling_interval);
+                      : samples_among(steps, plan.interval / static_cast<double>(steps), scene.sampling_interval);
     plan.interval /= static_cast<double>(plan.stored);
     if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
@@ -172,7 +167,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   } else {
     const long steps =
         static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / samples_of_open_interval)));
-    plan.stored = scene.model.step_probes ? steps : samples_among(steps, plan.time_step, sampling_interval);
+    plan.stored = scene.model.step_probes ? steps : samples_among(steps, plan.time_step, scene.sampling_interval);
     plan.interval = plan.time_step * static_cast<double>(steps) / static_cast<double>(plan.stored);
   }
   move_end_to_sample(plan);

@@ -4,11 +4,13 @@
 // extrapolated, where possible, by straight lines from the two instants before and the two after it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <vector>
+#include <span>
 
+#include "recovery/load_movement.hpp"
 #include "recovery/recovery.hpp"
 #include "run/extremum_tracker.hpp"
 #include "run/quantity.hpp"
@@ -18,36 +20,35 @@ namespace traverse::app {
 class ProbeForces {
  public:
   ProbeForces() = default;
-  /// axial: the beam has an axial force; passages_known: the times of all passages are known in advance.
-  ProbeForces(bool axial, bool passages_known)
-      : shear_(!passages_known), axial_(!passages_known), has_axial_(axial), known_(passages_known) {}
+  /// axial: the beam has an axial force.
+  explicit ProbeForces(bool axial) : has_axial_(axial) {}
 
   /// Calls record(Quantity, value, time, outward, other) for the extremes of moment, shear and axial force; other: the
-  /// shear at a moment's extreme, the moment at a shear's extreme. passages: times of passages, s, ascending; lag: b of
-  /// Rayleigh damping, s, if the responses lag.
+  /// shear at a moment's extreme, the moment at a shear's extreme. passages: those since the previous instant,
+  /// ascending; lag: b of Rayleigh damping, s, if the responses lag.
   template <class Record>
-  void add(double t, const beam::Response& r, const std::vector<double>& passages, double lag, Record&& record) {
+  void add(double t, const beam::Response& r, std::span<const beam::StationPassage> passages, double lag,
+           Record&& record) {
     const bool lagging = lag > 0.0 && !std::isnan(r.moment_rate);
+    for (const beam::StationPassage& passage : passages) kinks_.add(passage.time);
     store({t, r.moment, r.shear, r.axial_force});
     largest_moment_ = std::max(largest_moment_, std::abs(r.moment));
     if (lagging)
       lagging_moment_.add(t, r.moment, r.moment_rate, lag, of_moment(record));
     else
-      moment_.add(t, r.moment, passages, of_moment(record));
+      moment_.add(t, r.moment, kinks_, of_moment(record));
     add_jumping(t, r, passages, lagging ? lag : 0.0, record);
   }
   template <class Record>
-  void finish(const std::vector<double>& passages, double lag, Record&& record) {
+  void finish(double lag, Record&& record) {
     lagging_moment_.finish(of_moment(record));
-    moment_.finish(passages, of_moment(record));
+    moment_.finish(kinks_, of_moment(record));
     finish_piece(lag, record);
   }
 
  private:
-  static constexpr double uncertain_side =
-      1e-6;  // relative to the time between two instants: closer to a passage the side is uncertain
   static constexpr double same_instant =
-      1e-4;  // relative to this time: a passage so soon after an instant belongs to it
+      1e-4;  // relative to the time between two instants: a passage so near an instant with both sides belongs to it
   static constexpr double moment_tolerance = 0.02;  // relative to the largest moment at the probe
   static constexpr double hinge_arm = 1e-6;  // m: times the shear, a moment that is a rounding error, as at a hinge
 
@@ -78,33 +79,42 @@ class ProbeForces {
     return [&record](double value, double at, bool outward) { record(axial_force, value, at, outward, 0.0); };
   }
 
+  /// Whether a straight line through two instants `apart` s apart may be continued for `beyond` s: through two instants
+  /// close together, at an event, it has the slope of rounding errors.
+  static bool reaches(double beyond, double apart) { return beyond <= base::Stencil::most_uneven * apart; }
+
   template <class Record>
-  void add_jumping(double t, const beam::Response& r, const std::vector<double>& passages, double lag,
+  void add_jumping(double t, const beam::Response& r, std::span<const beam::StationPassage> passages, double lag,
                    Record&& record) {
     if (instants_ > 0 && t <= latest_[0].time) return;  // this instant was already added
-    const bool has_transient = known_ && lag > 0.0;
-    const Forces relaxed = {t, r.moment, r.shear - (has_transient ? r.unrelaxed_shear : 0.0),
-                            r.axial_force - (has_transient ? r.unrelaxed_axial_force : 0.0)};
-    const bool ends_there = (known_ || lag == 0.0) && (r.shear_beside != none || r.axial_force_beside != none);
-    const double since = instants_ > 0 ? t - latest_[0].time : 0.0;
-    const std::size_t first = passed_;
-    while (passed_ < passages.size() && passages[passed_] <= t + (ends_there ? same_instant * since : 0.0)) ++passed_;
-    const std::size_t passages_now = passed_ - first;
+    const Forces relaxed = {t, r.moment, r.shear - (lag > 0.0 ? r.unrelaxed_shear : 0.0),
+                            r.axial_force - (lag > 0.0 ? r.unrelaxed_axial_force : 0.0)};
+    const bool ends_there = r.shear_beside != none || r.axial_force_beside != none;
+    const double tolerance = instants_ > 0 ? same_instant * (t - latest_[0].time) : 0.0;
+    std::size_t between = 0;
+    double passage = 0.0;
+    for (const beam::StationPassage& p : passages) {
+      if ((ended_there_ && p.time <= latest_[0].time + tolerance) || (ends_there && p.time >= t - tolerance)) continue;
+      passage = p.time;
+      ++between;
+    }
+    ended_there_ = ends_there;
     if (ends_there) {
       const auto side_forces = [&](std::size_t side) {
         return Forces{t, relaxed.moment, relaxed.shear + r.shear_beside[side],
                       relaxed.axial + r.axial_force_beside[side]};
       };
-      if (passages_now <= 1) add_to_piece(side_forces(0), r, lag, record);
+      if (between == 0) add_to_piece(side_forces(0), r, lag, record);
       finish_piece(lag, record);
+      kinks_.add(t);
       add_to_piece(side_forces(1), r, lag, record);
-    } else if (passages_now > 0) {
-      const double passage = passages[passed_ - 1];
-      const bool known = passages_now == 1 && instants_ > 1;
+    } else if (between > 0) {
+      const bool known =
+          between == 1 && instants_ > 1 && reaches(passage - latest_[0].time, latest_[0].time - latest_[1].time);
       if (known) before_passage_ = latest_[0].at(passage, latest_[1]);
       finish_piece(lag, record);
       has_before_ = known;
-      if (t - passage > uncertain_side * since) add_to_piece(relaxed, r, lag, record);
+      add_to_piece(relaxed, r, lag, record);
     } else {
       add_to_piece(relaxed, r, lag, record);
     }
@@ -112,7 +122,8 @@ class ProbeForces {
   /// Adds an instant on one side of all passages of loads to the present interval between passages, or to a new one.
   template <class Record>
   void add_to_piece(const Forces& now, const beam::Response& r, double lag, Record& record) {
-    if (has_before_ && instants_ == 1) record_sides(latest_[0].at(before_passage_.time, now), now, lag, record);
+    if (has_before_ && instants_ == 1 && reaches(latest_[0].time - before_passage_.time, now.time - latest_[0].time))
+      record_sides(latest_[0].at(before_passage_.time, now), now, lag, record);
     shear_.add(now.time, now.shear, r.shear - now.shear, lag, of_shear(record));
     if (has_axial_) axial_.add(now.time, now.axial, r.axial_force - now.axial, lag, of_axial(record));
     latest_ = {now, latest_[0]};
@@ -164,17 +175,18 @@ class ProbeForces {
 
   static constexpr std::array<double, 2> none{};
   ExtremumTracker moment_;
+  KinkTimes kinks_;  // of the moment
   LaggedMomentTracker lagging_moment_;
   JumpingCurve shear_, axial_;
   std::array<Forces, 2> latest_{};  // relaxed forces in the interval between two passages, the latest first
-  std::size_t instants_ = 0,
-              passed_ = 0;  // number of instants in this interval between passages; number of past passages
+  std::size_t instants_ = 0;        // in this interval between passages
+  bool ended_there_ = false;        // the latest instant has both sides
   bool has_before_ = false;
   Forces before_passage_;  // forces just before a passage between two instants; the forces after it are not yet known
   std::array<Forces, 8> history_{};
   std::size_t next_ = 0, count_ = 0;
   double largest_moment_ = 0.0;  // N m
-  bool has_axial_ = false, known_ = true;
+  bool has_axial_ = false;
 };
 
 }  // namespace traverse::app

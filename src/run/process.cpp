@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <petscversion.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -29,9 +30,12 @@ void print_notes(MPI_Comm comm, const Scene& scene, const std::vector<std::strin
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   if (rank != 0) return;
+  const auto said_before = [&](const std::string& note) {
+    return std::find(scene.unusual.begin(), scene.unusual.end(), note) != scene.unusual.end();
+  };
   std::vector<std::string> lines;
   for (const std::string& note : notes)
-    if (scene.verbose || !base::is_detail(note)) lines.push_back(base::text_of_note(note));
+    if ((scene.verbose || !base::is_detail(note)) && !said_before(note)) lines.push_back(base::text_of_note(note));
   results::print_modelled(lines);
 }
 

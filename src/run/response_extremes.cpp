@@ -12,7 +12,6 @@ namespace {
 constexpr double stored_share = 0.5;    // relative to the largest extreme so far
 constexpr double compared_share = 0.6;  // relative to the largest one
 constexpr double spread_factor = 2.0;   // times the root mean square: probable bound of an extreme's error
-const std::vector<double> no_kinks;     // an empty list
 constexpr std::size_t max_peaks =
     1 << 16;  // largest number for a quantity; if exceeded, peaks below `compared_share` are removed
 
@@ -38,16 +37,14 @@ const Extreme* nearest(const std::vector<Extreme>& peaks, const Extreme& to, dou
 
 }  // namespace
 
-ResponseExtremes::ResponseExtremes(std::vector<std::vector<double>> passages, std::size_t wheels, double lag,
-                                   bool axial, bool passages_known)
-    : passages_(std::move(passages)),
-      lag_(lag),
+ResponseExtremes::ResponseExtremes(std::size_t probes, std::size_t wheels, double lag, bool axial)
+    : lag_(lag),
       axial_(axial),
-      forces_(passages_.size(), ProbeForces(axial, passages_known)),
-      motions_(passages_.size()),
+      forces_(probes, ProbeForces(axial)),
+      motions_(probes),
       wheels_(wheels),
-      ranges_(passages_.size()) {
-  for (std::size_t q = 0; q < quantities; ++q) largest_of_each_[q].resize(q == wheel_force ? wheels : passages_.size());
+      ranges_(probes) {
+  for (std::size_t q = 0; q < quantities; ++q) largest_of_each_[q].resize(q == wheel_force ? wheels : probes);
 }
 
 ResponseExtremes ResponseExtremes::of_failure() {
@@ -89,12 +86,20 @@ auto ResponseExtremes::recorder_of_forces(std::size_t probe) {
   };
 }
 
-void ResponseExtremes::add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces) {
+void ResponseExtremes::add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces,
+                           std::span<const beam::StationPassage> passages) {
+  const auto at_probe = [&passages](std::size_t probe) {  // removes them from the list
+    std::size_t count = 0;
+    while (count < passages.size() && passages[count].station == probe) ++count;
+    const auto first = passages.first(count);
+    passages = passages.subspan(count);
+    return first;
+  };
   for (std::size_t i = 0; i < probes.size(); ++i) {
-    const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].axial_displacement};
+    const std::array values = {probes[i].relative_deflection, probes[i].acceleration, probes[i].axial_displacement};
     const std::size_t known = values.size() - (axial_ ? 0 : 1);
     for (std::size_t m = 0; m < known; ++m) motions_[i][m].add(t, values[m], no_kinks, recorder_of(motions[m], i));
-    forces_[i].add(t, probes[i], passages_[i], lag_, recorder_of_forces(i));
+    forces_[i].add(t, probes[i], at_probe(i), lag_, recorder_of_forces(i));
     roughness_.acceleration = std::max(roughness_.acceleration, motions_[i][acceleration].second_difference());
   }
   for (std::size_t i = 0; i < wheel_forces.size(); ++i) {
@@ -121,7 +126,7 @@ double SecondDifference::ratio_to(const SecondDifference& others) const {
 void ResponseExtremes::finish() {
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     for (std::size_t m = 0; m < motions.size(); ++m) motions_[i][m].finish(no_kinks, recorder_of(motions[m], i));
-    forces_[i].finish(passages_[i], lag_, recorder_of_forces(i));
+    forces_[i].finish(lag_, recorder_of_forces(i));
   }
   for (std::size_t i = 0; i < wheels_.size(); ++i)
     wheels_[i].finish(no_kinks, [&](double value, double at, bool outward) {
@@ -205,37 +210,8 @@ double difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Q
   return std::max(peak_difference(rough, fine, q), spread_factor * spread);
 }
 
-std::vector<std::vector<double>> passages_of(const Scene& scene) {
-  std::vector<std::vector<double>> passages(scene.output.probes.size());
-  if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return passages;
-  std::vector<std::pair<double, base::SpeedLaw>> starts;  // x at t = 0 and speed law
-  const auto add = [&](double x, const base::SpeedLaw& law) {
-    if (law.direction() != 0.0) starts.emplace_back(x, law);
-  };
-  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
-    if (drive_of(scene.train, i) == train::Drive::constant)
-      for (const double x : wheels_at_start(scene, i)) add(x, law_of(scene.train, i));
-  for (std::size_t i = 0; i < scene.load.positions.size(); ++i)
-    if (length_of(scene.load, i) == 0.0) add(scene.load.positions[i], law_of(scene.load, i));
-  for (std::size_t p = 0; p < passages.size(); ++p) {
-    for (const auto& [x, law] : starts) {
-      const double t = law.time_of(scene.output.probes[p] - x);
-      if (t > 0.0 && std::isfinite(t)) passages[p].push_back(t);
-    }
-    std::sort(passages[p].begin(), passages[p].end());
-  }
-  return passages;
-}
-
-bool all_passages_known(const Scene& scene) {
-  if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return true;
-  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
-    if (drive_of(scene.train, i) != train::Drive::constant) return false;
-  return true;
-}
-
 ResponseExtremes peaks_for(const Scene& scene, std::size_t wheels, double lag) {
-  return {passages_of(scene), wheels, lag, scene.beam && scene.beam->axial, all_passages_known(scene)};
+  return {scene.output.probes.size(), wheels, lag, scene.beam && scene.beam->axial};
 }
 
 }  // namespace traverse::app

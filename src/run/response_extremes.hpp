@@ -1,8 +1,8 @@
 // Extremes (peaks) of a run. Between samples a curve is interpolated by a polynomial of degree four
 // (interpolated_extremum.hpp). The least and the greatest value at every probe form the envelopes along the bridge.
-// When a wheel passes a probe, the moment there has a kink over time, which gets its own sample (option step_probes),
-// and the shear jumps (probe_forces.hpp). With damping b K both relax after that within a time of b, which may be much
-// shorter than a step.
+// When a wheel passes a probe, the moment there has a kink over time, and the shear jumps (probe_forces.hpp); option
+// step_probes gives both an instant of their own. With damping b K both relax after that within a time of b, which may
+// be much shorter than a step.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "recovery/recovery.hpp"
+#include "recovery/load_movement.hpp"
 #include "run/extremum_tracker.hpp"
 #include "run/probe_forces.hpp"
 #include "run/quantity.hpp"
@@ -36,17 +36,18 @@ struct SecondDifference {
   double ratio_to(const SecondDifference& others) const;
 };
 
-/// The signed extremes of a run above half of the largest one so far. Places are probes or wheels.
+/// The signed extremes of a run above half of the largest one so far. Places are probes or wheels. Deflections are
+/// relative to the line through the supports.
 class ResponseExtremes {
  public:
   ResponseExtremes() = default;
-  /// passages: for each probe the times at which loads pass it; lag: lag of the moments, b of Rayleigh damping in s, if
-  /// responses have rates; axial: the beam has axial displacements; passages_known: the list of these times is
-  /// complete.
-  ResponseExtremes(std::vector<std::vector<double>> passages, std::size_t wheels, double lag = 0.0, bool axial = false,
-                   bool passages_known = true);
+  /// lag: lag of the moments, b of Rayleigh damping in s, if responses have rates; axial: the beam has axial
+  /// displacements.
+  ResponseExtremes(std::size_t probes, std::size_t wheels, double lag = 0.0, bool axial = false);
 
-  void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
+  /// passages: of probes since the previous instant, as of LoadMovement.
+  void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces,
+           std::span<const beam::StationPassage> passages = {});
   void finish();
   /// Adds the extremes of low-passed accelerations, rows of all probes at intervals of `interval` s from 0 on.
   void add_low_passed(std::span<const double> rows, double interval);
@@ -77,7 +78,6 @@ class ResponseExtremes {
   auto recorder_of_forces(std::size_t probe);
   void record_range(Quantity q, std::size_t probe, double value, double time, double other);
 
-  std::vector<std::vector<double>> passages_;
   double lag_ = 0.0;
   bool axial_ = false;
   std::vector<ProbeForces> forces_;
@@ -106,11 +106,6 @@ double difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Q
 /// The relative difference of the largest extremes only.
 double peak_difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Quantity q);
 
-/// For each probe of the scene the times at which wheels and forces pass it, s. Empty if the positions of the wheels
-/// are not known in advance, or if they run on the rail of a layered track.
-std::vector<std::vector<double>> passages_of(const Scene& scene);
-/// Whether passages_of() returns all times at which loads pass probes.
-bool all_passages_known(const Scene& scene);
 /// The empty extremes of a run of the scene. lag: b of Rayleigh damping if responses have rates, s.
 ResponseExtremes peaks_for(const Scene& scene, std::size_t wheels, double lag);
 

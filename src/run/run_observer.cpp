@@ -45,6 +45,10 @@ RunObserver::RunObserver(const Scene& scene, coupling::System& system, const bea
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     now_.ground.emplace(*beam);
+    if (!scene.support_motion.empty()) {
+      ground_.assign(beam->model().supports.size(), 0.0);
+      for (const double x : scene.output.probes) support_lines_.push_back(beam::support_line(beam->model(), x));
+    }
     if (recorded_ && !scene.output.sleepers.empty()) now_.sleepers.emplace(*beam, scene.output.sleepers);
     if (beam->rail() != nullptr) {
       rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
@@ -53,15 +57,17 @@ RunObserver::RunObserver(const Scene& scene, coupling::System& system, const bea
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
   const double lag = beam != nullptr && scene.model.modes == 0 ? beam->rayleigh().b : 0.0;
-  if (lag > 0.0) lag_.emplace(*recovery_, lag);
+  if (recovery_) movement_.emplace(*recovery_);
+  if (lag > 0.0) lag_.emplace(*recovery_, *movement_, lag);
   exits_ = ExitStates(scene);
   peaks_ = peaks_for(scene, wheel_count_, lag);
   wheels_ = WheelExtremes(wheel_count_, system.surface_kinks());
 }
 
 void RunObserver::sample(const integrate::Instant& instant) {
-  const bool stored = instant.purpose != integrate::Purpose::peaks;
-  const bool all = stored || limit_check_ || extrapolation_check_.needs_springs() || scene_.train.drive == Drive::free;
+  const bool stored = is_stored(instant.purpose);
+  const bool all = stored || limit_check_ || extrapolation_check_.needs_springs() || exits_.needs_bodies() ||
+                   scene_.train.drive == Drive::free;
   system_.observe(instant.time, instant.y, instant.acceleration, now_.motion, all);
   const structure::NodalMotion& beam = now_.motion.beam;
   sample_.time = instant.time;
@@ -69,22 +75,36 @@ void RunObserver::sample(const integrate::Instant& instant) {
     if (instant.drag != nullptr) drag(instant.drag);
     if (!beam.drag.empty()) drag(beam.drag.data());
     recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.bridge_loads, now_.probes);
-    if (lag_) lag_->apply(instant.time, now_.motion.bridge_loads, now_.probes);
+    if (instant.purpose != integrate::Purpose::exit) {  // the same instant follows for peaks
+      movement_->advance(instant.time, now_.motion.bridge_loads);
+      if (lag_) lag_->apply(now_.probes);
+    }
     for (beam::Response& probe : now_.probes)
       if (!lag_) probe.moment_rate = std::numeric_limits<double>::quiet_NaN();
     if (scene_.by_given_modes())
-      for (beam::Response& probe : now_.probes) probe.moment = probe.shear = 0.0;  // unknown
+      for (beam::Response& probe : now_.probes)  // section forces are unknown
+        probe = {probe.deflection, probe.velocity, probe.acceleration, probe.relative_deflection};
+    subtract_support_motion();
     for (std::size_t i = 0; i < drag_response_.size(); ++i)
       now_.probes[i].acceleration -= drag_response_[i].acceleration;
   }
+  exits_.add(instant.time, system_.fleet(), now_.probes);
+  if (instant.purpose == integrate::Purpose::exit) return;
   step(instant.time);  // the first instant is not the end of a step
   record_peaks();
   record_largest_deflection();
   if (limit_check_) limit_check_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
-  exits_.add(instant.time, system_.fleet(), now_.probes);
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
   if (stored) store(instant.purpose == integrate::Purpose::end);
+}
+
+void RunObserver::subtract_support_motion() {
+  const structure::SupportMotion* moved = system_.structure()->support_motion();
+  if (moved == nullptr) return;
+  for (std::size_t i = 0; i < ground_.size(); ++i) ground_[i] = moved->upward()[i].displacement;
+  for (std::size_t p = 0; p < support_lines_.size(); ++p)
+    now_.probes[p].relative_deflection -= support_lines_[p].height(ground_);
 }
 
 void RunObserver::store(bool end) {
@@ -134,13 +154,15 @@ void RunObserver::record_peaks() {
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
   extrapolation_check_.add(sample_.time, fleet, now_.motion.beam.foundation, peaks_);
-  peaks_.add(sample_.time, now_.probes, wheel_forces_);
+  peaks_.add(sample_.time, now_.probes, wheel_forces_,
+             movement_ ? movement_->passages() : std::span<const beam::StationPassage>());
   if (deck_) deck_->add(sample_.time, now_.probes);
 }
 
 void RunObserver::record_largest_deflection() {
   double deflection = 0.0;
-  for (const beam::Response& probe : now_.probes) deflection = std::max(deflection, std::abs(probe.deflection));
+  for (const beam::Response& probe : now_.probes)
+    deflection = std::max(deflection, std::abs(probe.relative_deflection));
   if (deflection > largest_deflection_value_) {
     largest_deflection_value_ = deflection;
     largest_deflection_.time = sample_.time;
@@ -150,6 +172,7 @@ void RunObserver::record_largest_deflection() {
     largest_deflection_.w.assign(beam.w, beam.w + size);
     largest_deflection_.a.assign(beam.a, beam.a + size);
     largest_deflection_.loads = now_.motion.bridge_loads;
+    largest_deflection_.ground = ground_;
   }
 }
 
@@ -162,7 +185,7 @@ void RunObserver::record_energy() {
   now_.energy = {e.kinetic, e.strain, e.potential, e.dissipated, e.work, stored + e.dissipated - e.work};
   summary_.structure_energy = std::max(summary_.structure_energy, e.structure);
   summary_.energy_residual = std::max(summary_.energy_residual, std::abs(now_.energy.residual));
-  for (double term : {e.kinetic, e.strain, e.potential})
+  for (double term : {e.kinetic, e.strain, e.potential, e.largest_work})
     summary_.largest_energy = std::max(summary_.largest_energy, std::abs(term));
   // Without steps that end at kinks the work of the drive is not accurate enough to be separated.
   const bool separate = scene_.train.drive == Drive::constant && scene_.model.step_kinks;
@@ -187,8 +210,7 @@ void RunObserver::step(double t) {
 void RunObserver::record_wheels() {
   const train::Fleet& fleet = system_.fleet();
   summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.least().value;
-  summary_.greatest_wheel_force =
-      std::max({summary_.greatest_wheel_force, peaks_.largest(wheel_force).value, wheels_.greatest().value});
+  summary_.greatest_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.greatest().value;
   const Extreme& least = wheels_.least();
   if (std::isinf(least.value)) return;
   summary_.least_wheel_force_time = least.time;
@@ -250,6 +272,7 @@ const results::Summary& RunObserver::finished_extremes() {
 void RunObserver::keep(base::Archive& archive) {
   archive.same(peaks_, extrapolation_check_, wheels_, paths_, energy_at_start_, at_first_sample_, sample_.time,
                now_.probes, largest_deflection_value_);
+  if (movement_) archive.same(*movement_);
   if (lag_) archive.same(*lag_);
   if (limit_check_) archive.same(*limit_check_);
   archive.same(axle_passages_, exits_);
@@ -257,7 +280,7 @@ void RunObserver::keep(base::Archive& archive) {
   deck_ ? archive.same(*deck_) : archive.same();
   filtered_wheels_ ? archive.same(*filtered_wheels_) : archive.same();
   archive.same(summary_.structure_energy, summary_.energy_residual, summary_.largest_energy, summary_.energy_scale);
-  archive.same(largest_deflection_.time, largest_deflection_.loads);
+  archive.same(largest_deflection_.time, largest_deflection_.loads, largest_deflection_.ground);
   bool stored = largest_deflection_value_ > 0.0;
   archive.same(stored);
   if (!stored) return;
@@ -276,6 +299,7 @@ results::Summary RunObserver::finish() {
   if (!scene_.output.probes.empty()) {
     summary_.probes = beam_ != nullptr;
     summary_.deflection = extreme(deflection);
+    summary_.relative_to_supports = scene_.supports_displaced();
     summary_.acceleration = extreme(acceleration);
     summary_.moments = !scene_.by_given_modes();
     summary_.moment = extreme(moment);

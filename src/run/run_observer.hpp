@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "beam/support_line.hpp"
 #include "coupling/system.hpp"
 #include "integrate/stepper.hpp"
+#include "recovery/load_movement.hpp"
 #include "recovery/recovery.hpp"
 #include "recovery/viscous_lag.hpp"
 #include "results/recorder.hpp"
@@ -81,6 +83,7 @@ class RunObserver {
 
  private:
   void drag(const double* drag);
+  void subtract_support_motion();
   void record_separations();
   void record_wheels();
   void store(bool end);
@@ -94,11 +97,14 @@ class RunObserver {
   const beam::Beam* beam_;
   results::Recorder& recorder_;
   std::optional<beam::Recovery> recovery_, rail_recovery_;
+  std::optional<beam::LoadMovement> movement_;  // on the bridge
   std::optional<beam::ViscousLag> lag_;
   const Outputs* outputs_;  // null if this rank writes no file
   bool recorded_;           // whether any rank stores samples
   std::vector<beam::Response> drag_response_;
-  std::vector<double> with_drag_;  // accelerations including the accelerations of modal damping
+  std::vector<double> with_drag_;                 // accelerations including the accelerations of modal damping
+  std::vector<beam::SupportLine> support_lines_;  // of each probe, if supports move vertically
+  std::vector<double> ground_;                    // m: their displacements now, at every span end
   ResponseExtremes peaks_;
   ExtrapolationCheck extrapolation_check_;
   std::optional<DeckAcceleration> deck_;

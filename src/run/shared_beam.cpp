@@ -1,5 +1,5 @@
-// Assembles the beam, determines Rayleigh damping from its first two distinct natural frequencies (equations 19 and 20
-// of the paper), and computes factorisation and modes.
+// Assembles the beam, determines Rayleigh damping from its first distinct natural modes (equations 19 and 20 of the
+// paper), and computes factorisation and modes.
 #include "run/shared_beam.hpp"
 
 #include <fmt/format.h>
@@ -16,6 +16,8 @@ namespace traverse::app {
 namespace {
 
 constexpr double distinct = 1e-6;  // relative difference of two frequencies
+// Number of distinct modes whose damping ratios are known; with springs the pair of eq. 20 may be any of them.
+constexpr std::size_t modes_without = 4, modes_with_springs = 10, most_shown = 6;
 
 std::string track_text(const beam::Beam& beam) {
   const beam::LayeredTrack& t = *beam.model().track;
@@ -49,6 +51,26 @@ std::string beam_text(const beam::Beam& beam) {
                      m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "",
                      beam.mesh().elements(), m.axial ? 3 : 2,
                      m.axial ? "axial, deflection, rotation" : "deflection, rotation");
+}
+
+double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
+
+/// The first distinct modes of small motions: of the bridge without the rail, but with the mass of the track.
+std::vector<modes::BendingMode> distinct_modes_of(const beam::Beam& beam) {
+  const beam::BeamModel& model = beam.model();
+  const bool sprung = beam.springs() != nullptr || beam.rail() != nullptr || model.foundation.nonlinear();
+  const std::size_t count = sprung ? modes_with_springs : modes_without;
+  if (beam.rail() == nullptr && !model.foundation.nonlinear()) return modes::distinct_modes(beam, count);
+  beam::BeamModel small = linearised(bridge_alone(model));
+  const beam::Beam with_track(beam.comm(), small);
+  if (beam.rail() == nullptr) return modes::distinct_modes(with_track, count);
+  small.mass = model.mass;
+  return modes::distinct_modes(with_track, count, beam::Beam(beam.comm(), small).mass());
+}
+
+/// Whether the scene asks for natural modes that nothing couples, so that each can have its own damping ratio.
+bool computes_uncoupled_modes(const Scene& scene, const beam::Beam& beam) {
+  return scene.analysis == Analysis::modes && beam.dampers() == nullptr;
 }
 
 /// Refuses a compression at which the beam buckles.
@@ -85,6 +107,7 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
         "gaps "
         "open");
   beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
+  if (!scene.beam->given) beam::check_springs(beam->model());
   check_compression(*beam);
   notes.push_back(base::detail(scene.beam->given ? given_modes_text(*beam) : beam_text(*beam)));
   if (beam->rail() != nullptr) notes.push_back(base::detail(track_text(*beam)));
@@ -100,20 +123,73 @@ void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<s
   }
   const results::Stage stage("search for the first frequencies");
   const Damping& damping = scene.damping;
-  if (damping.frequencies)
-    omega = {2.0 * std::numbers::pi * damping.frequencies->first, 2.0 * std::numbers::pi * damping.frequencies->second};
-  else if (damping.ratios || frequencies_wanted)
-    omega = beam->rail() == nullptr && !beam->model().foundation.nonlinear()
-                ? modes::distinct_pair(*beam)
-                : modes::distinct_pair(beam::Beam(beam->comm(), linearised(bridge_alone(beam->model()))));
+  const bool each_has_one = !scene.damping_of_modes.empty();
+  const bool of_each_mode = each_has_one && (scene.model.modes > 0 || computes_uncoupled_modes(scene, *beam));
+  const bool by_ratios = damping.ratios && !of_each_mode;
+  if (by_ratios || frequencies_wanted) first_modes = distinct_modes_of(*beam);
+  if (frequencies_wanted && !damping.frequencies) omega = modes::first_two(first_modes);
   if (damping.rayleigh) rayleigh = {damping.rayleigh->first, damping.rayleigh->second};
-  if (damping.ratios)
-    rayleigh = modes::rayleigh(omega->first, omega->second, damping.ratios->first, damping.ratios->second);
+  if (by_ratios) set_rayleigh_from_ratios(damping, notes);
   beam->set_rayleigh(rayleigh);
   if (omega)
-    notes.push_back(base::detail(fmt::format(
-        "first distinct frequencies {:.6g} and {:.6g} Hz; Rayleigh a = {:.6g} 1/s, b = {:.6g} s",
-        omega->first / (2.0 * std::numbers::pi), omega->second / (2.0 * std::numbers::pi), rayleigh.a, rayleigh.b)));
+    notes.push_back(base::detail(fmt::format("frequencies {:.6g} and {:.6g} Hz; Rayleigh a = {:.6g} 1/s, b = {:.6g} s",
+                                             hertz(omega->first), hertz(omega->second), rayleigh.a, rayleigh.b)));
+  if (of_each_mode && damping.ratios)
+    notes.push_back(
+        fmt::format("each mode has the damping ratio of the norm, {:.4g} %", 100.0 * scene.damping_of_modes.front()));
+  if (!by_ratios) return;
+  const std::string ratios = "damping ratios by a and b: " + damping_text();
+  notes.push_back(each_has_one ? ratios + "; elements have that of the norm in two modes only, unlike model_modes"
+                               : base::detail(ratios));
+}
+
+/// Gives the ratios to the first two distinct modes, or to modes at the given frequencies.
+void SharedBeam::set_rayleigh_from_ratios(const Damping& damping, std::vector<std::string>& notes) {
+  const auto [zeta1, zeta2] = *damping.ratios;
+  if (damping.frequencies) {
+    omega = {2.0 * std::numbers::pi * damping.frequencies->first, 2.0 * std::numbers::pi * damping.frequencies->second};
+    rayleigh = modes::rayleigh(modes::between(first_modes, omega->first), modes::between(first_modes, omega->second),
+                               zeta1, zeta2);
+    return;
+  }
+  const auto [ab, second] = modes::rayleigh_pair(first_modes, zeta1, zeta2);
+  rayleigh = ab;
+  omega = {first_modes[0].omega, first_modes[second].omega};
+  if (second == 1) return;
+  notes.push_back(fmt::format(
+      "the damping ratio {:g} is that of modes 1 and {}, {:.4g} and {:.4g} Hz: with a and b >= 0 modes 1 and 2 "
+      "cannot both have it, because the springs carry mode 2 with little bending of the beam; mode 2 has {:.3g} %",
+      zeta1, second + 1, hertz(omega->first), hertz(omega->second), 100.0 * first_modes[1].ratio(rayleigh)));
+}
+
+std::string SharedBeam::damping_text() const {
+  const std::vector<RatioOfMode> ratios = damping_ratios();
+  const std::size_t shown = std::min(ratios.size(), most_shown);
+  std::string by_beam, by_dampers;
+  for (std::size_t i = 0; i < shown; ++i) {
+    by_beam += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", 100.0 * ratios[i].beam);
+    by_dampers += fmt::format("{}{:.4g}", i == 0 ? "" : ", ", 100.0 * ratios[i].dampers);
+  }
+  if (shown == 0) return "";
+  if (std::all_of(ratios.begin(), ratios.end(), [](const RatioOfMode& r) { return r.beam == 0.0 && r.dampers == 0.0; }))
+    return "none";
+  const bool damped = std::any_of(ratios.begin(), ratios.end(), [](const RatioOfMode& r) { return r.dampers != 0.0; });
+  return fmt::format("{} % in modes 1 to {}{}", by_beam, shown,
+                     damped ? fmt::format(", and by dampers {} %", by_dampers) : "");
+}
+
+std::vector<SharedBeam::RatioOfMode> SharedBeam::damping_ratios() const {
+  std::vector<RatioOfMode> ratios;
+  if (modal) {
+    for (std::size_t i = 0; i < modal->modes(); ++i) {
+      const double one = modal->omega()[i], dampers = modal->damper_sigma()[i] / one;
+      ratios.push_back({one, modal->sigma()[i] / one - dampers, dampers});
+    }
+  } else if (beam && !beam->model().given) {
+    for (const modes::BendingMode& mode : first_modes)
+      ratios.push_back({mode.omega, mode.ratio(rayleigh), mode.damper_ratio()});
+  }
+  return ratios;
 }
 
 void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
@@ -131,7 +207,6 @@ void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
   if (scene.by_given_modes() && modal->modes() < scene.beam->given->omega.size())
     notes.push_back(base::detail(fmt::format("of these modes the {} lowest", modal->modes())));
   if (scene.by_given_modes()) return;
-  const auto hertz = [&](double value) { return value / (2.0 * std::numbers::pi); };
   notes.push_back(
       base::detail(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}", modal->modes(),
                                hertz(modal->omega().back()), scene.exact_in_time() ? ", exact in time" : "",

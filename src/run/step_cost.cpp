@@ -2,6 +2,7 @@
 #include "run/step_cost.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/one_step_methods.hpp"
 #include "beam/layered_track.hpp"
@@ -16,6 +17,7 @@ constexpr double layered_unknowns = 5.0;   // number of unknowns in a column of 
 constexpr double elements_of_span = 20.0;  // if they are not chosen yet
 // Time in a stage, s: constant part, for a body of a mechanism, for a body of a linear vehicle, for a probe.
 constexpr double per_stage = 2e-6, per_body = 9.6e-7, per_linear_body = 1.6e-7, per_probe = 2e-8;
+constexpr double per_contact_pair = 4e-8;   // of a mechanism: each of its contacts moves all others
 constexpr double rough_track_factor = 3.0;  // factor for a rough track, where contacts need more iterations
 // Time for a run's stage in a batch, s: for a vehicle, for an element.
 constexpr double per_lane_vehicle = 1e-7, per_lane_element = 5e-9;
@@ -27,6 +29,14 @@ double bodies_of(const Scene& scene) {
   for (const int type : scene.train.vehicles)
     bodies += static_cast<double>(scene.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
   return bodies;
+}
+
+/// The pairs of contacts of one mechanism, which are many in a chain on rollers.
+double contact_pairs_of(const Scene& scene) {
+  double pairs = 0.0;
+  for (const int type : scene.train.vehicles)
+    pairs += std::pow(static_cast<double>(scene.vehicles[static_cast<std::size_t>(type)].wheels.size()), 2);
+  return pairs;
 }
 
 double roughness_of(const Scene& scene) { return scene.profile.level() ? 1.0 : rough_track_factor; }
@@ -64,8 +74,9 @@ double step_seconds(const Scene& scene, const std::string& method, int elements,
   const bool linear = scene.model.vehicles == VehicleModel::linear ||
                       (scene.model.vehicles == VehicleModel::automatic && scene.beam && scene.train.steady());
   const double body = linear ? per_linear_body : per_body;
+  const double contacts = linear ? 0.0 : per_contact_pair * contact_pairs_of(scene);
   const double probes = per_probe * static_cast<double>(scene.output.probes.size());
-  return stages * (roughness_of(scene) * (per_stage + body * bodies_of(scene)) + probes +
+  return stages * (roughness_of(scene) * (per_stage + body * bodies_of(scene) + contacts) + probes +
                    moving * unknown_seconds(scene) * unknowns_of(scene, elements));
 }
 

@@ -3,12 +3,15 @@
 #include "traverse/scene/scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "limits.hpp"
 #include "options/read_verdict_limits.hpp"
 #include "scene_parts.hpp"
+#include "train/on_line.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
 
@@ -134,7 +137,32 @@ void check_scene(const Options& o, Scene& scene) {
       if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: there are no load_forces");
     }
   }
+  if (scene.sweep && !scene.sweep->speeds.empty() && greatest_speed(scene) == 0.0)
+    o.refuse("sweep_speed", "nothing moves, because the speed that is given for it is 0");
   check_end(o, scene);
+}
+
+/// Adds a note on the wheels and forces that are on the bridge or its approaches at the start.
+void record_start(Scene& scene) {
+  if (!scene.beam || scene.analysis != Analysis::transient) return;
+  const double approach = scene.beam->track ? scene.beam->track->approach : 0.0, end = scene.beam->length() + approach;
+  std::size_t wheels = 0, forces = 0;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    for (const double x : wheels_at_start(scene, i))
+      if (train::is_on_line(-approach, end, x, speed_of(scene.train, i, 0.0))) ++wheels;
+  for (std::size_t i = 0; i < scene.load.positions.size(); ++i) {
+    const double x = scene.load.positions[i], half = 0.5 * length_of(scene.load, i);
+    const bool line_load_on = x + half > -approach && x - half < end;
+    if (half > 0.0 ? line_load_on : train::is_on_line(-approach, end, x, speed_of(scene.load, i, 0.0))) ++forces;
+  }
+  std::vector<std::string> standing;
+  for (const auto& [count, what] : {std::pair(wheels, "wheel"), std::pair(forces, "force")})
+    if (count > 0) standing.push_back(fmt::format("{} {}{}", count, what, count == 1 ? "" : "s"));
+  if (standing.empty()) return;
+  scene.notes.push_back(fmt::format(
+      "on the bridge{} at the start: {}; {}", approach > 0.0 ? " or its approaches" : "", fmt::join(standing, " and "),
+      scene.start == Start::equilibrium ? "the run begins in the static equilibrium under them"
+                                        : "the bridge begins to deflect under them (scene_start: given)"));
 }
 
 }  // namespace
@@ -149,6 +177,15 @@ bool has_own_contact_law(const Scene& scene) {
 double greatest_speed(const Scene& scene) {
   return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
                   scene.load.forces.empty() ? 0.0 : scene.load.speed);
+}
+
+double moving_speed(const Scene& scene) {
+  return !scene.vehicles.empty() && scene.train.speed > 0.0 ? scene.train.speed : scene.load.speed;
+}
+
+void set_speed(Scene& scene, double speed) {
+  if (scene.train.courses.empty() && scene.train.speed > 0.0) scene.train.speed = speed;
+  if (scene.load.courses.empty() && scene.load.speed > 0.0) scene.load.speed = speed;
 }
 
 double shortest_wave(const Scene& scene) {
@@ -222,6 +259,7 @@ Scene read_scene(Options o) {
   if (const options::Entry* fit = o.first_with_prefix("fit_"))
     scene.notes.push_back(fit->name + " has no effect: fit_vary names no option to estimate");
   check_plausibility(o, vehicles, scene);
+  record_start(scene);
   check_size(o, scene);
   scene.options = o.all();
   return scene;

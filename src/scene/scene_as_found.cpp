@@ -64,6 +64,7 @@ void make_supports_elastic(const Options& o, const std::vector<double>& stiffnes
       beam::PointFoundation spring;
       spring.x = std::min(x, beam.length());
       spring.k = stiffness[end] * (1.0 - scour[end]);
+      spring.option = "support_stiffness";
       beam.foundation.vertical.push_back(spring);
     }
     if (end < beam.spans.size()) x += beam.spans[end];

@@ -231,7 +231,8 @@ void read_tension(const Options& o, beam::BeamModel& beam) {
     if (beam.foundation.rotational_bed || o.has("beam_tension"))
       o.refuse("foundation_shear_layer", "acts as a rotational bed and as a tension; give only one of the three");
     if (beam.GA) o.refuse("foundation_shear_layer", "allowed for beams without shear deformation (beam_GA)");
-    beam.foundation.rotational_bed = beam::Bed{read_distribution(o, "foundation_shear_layer"), 0.0, {}};
+    beam.foundation.rotational_bed =
+        beam::Bed{read_distribution(o, "foundation_shear_layer"), 0.0, {}, "foundation_shear_layer"};
   }
   if (!o.has("beam_tension")) return;
   if (beam.foundation.rotational_bed)
@@ -241,7 +242,7 @@ void read_tension(const Options& o, beam::BeamModel& beam) {
   if (tension.minimum() < 0.0 && tension.maximum() > 0.0)
     o.refuse("beam_tension", "allowed: tension everywhere, or compression everywhere");
   if (tension.minimum() == 0.0 && tension.maximum() == 0.0) o.refuse("beam_tension", "allowed: a force other than 0");
-  beam.foundation.rotational_bed = beam::Bed{std::move(tension), 0.0, {}};
+  beam.foundation.rotational_bed = beam::Bed{std::move(tension), 0.0, {}, "beam_tension"};
 }
 
 void read_ground(const Options& o, beam::BeamModel& beam) {

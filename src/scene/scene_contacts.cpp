@@ -29,15 +29,13 @@ double VehicleReader::stiffness(contact::LawKind kind, double radius, const std:
 /// The contact law. radius: effective radius of eq. 48. other: prefix of the options of the second material.
 contact::Law VehicleReader::law(double radius, const std::string& other) const {
   contact::Law law;
-  const std::string kind = o_.choice(key("law"));
-  law.kind = kind == "hertz"    ? contact::LawKind::hertz
-             : kind == "linear" ? contact::LawKind::linear
-                                : contact::LawKind::two_sided;
+  law.kind = contact::law_kind(o_.choice(key("law"))).value();
   law.stiffness = stiffness(law.kind, radius, other);
-  if (law.kind == contact::LawKind::two_sided)
+  if (contact::pulls(law.kind))
     for (const char* field : {"friction", "restitution"})
       if (has(field) && number(field) != 0.0)
-        o_.refuse(key(field), "is only for one-sided contacts, not for law two_sided");
+        o_.refuse(key(field),
+                  fmt::format("is only for one-sided contacts, not for law {}", contact::row_of(law.kind).name));
   law.damping = number("damping");
   if (has("restitution")) {
     if (has("damping")) o_.refuse(key("restitution"), "give either restitution or damping");

@@ -97,6 +97,11 @@ double direction_of(const Options& o, const Block& block) {
   return o.has(speed) && o.number(speed) < 0.0 ? -1.0 : 1.0;
 }
 
+bool stands(const Options& o, const Block& block) {
+  const std::string speed = block.option("speed");
+  return o.has(speed) && o.number(speed) == 0.0;
+}
+
 double entrance(const Scene& scene, double direction) {
   return direction < 0.0 && scene.beam ? scene.beam->length() : 0.0;
 }

@@ -176,6 +176,10 @@ void check_filter(const Options& o, const std::string& target, const options::Me
                                    t[i - 1], t[i], t[i] - t[i - 1], mean));
   if (*series.low_pass >= 0.5 / mean)
     o.refuse(option, fmt::format("allowed: below {:g} Hz, half of the measured values in a second", 0.5 / mean));
+  if (const double duration = t.back() - t.front(); *series.low_pass * duration < 1.0)
+    o.refuse(option, fmt::format("a filter leaves nothing of a record that is shorter than its period: the record has "
+                                 "{:g} s; allowed: from {:.3g} Hz on",
+                                 duration, 1.0 / duration));
 }
 
 /// Reads what was measured: a quantity at a station of the bridge, or any dataset.

@@ -123,7 +123,7 @@ void append(const MovingLoad& load, MovingLoad& all) {
 double read_load_speed(const Options& o, const Block& block, const Scene& scene) {
   const std::string speed = block.option("speed");
   const bool needed = scene.analysis == Analysis::transient && !o.has("train_speed");
-  if (scene.sweep && !scene.sweep->speeds.empty()) return scene.sweep->speeds.front();
+  if (scene.sweep && !scene.sweep->speeds.empty() && !stands(o, block)) return scene.sweep->speeds.front();
   if (o.has(speed) || needed) return o.number(speed);
   return o.has("train_speed") ? o.number("train_speed") : 0.0;
 }

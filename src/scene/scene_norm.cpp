@@ -45,12 +45,11 @@ void read_damping_bound(const Options& o, Scene& scene) {
   const double least = norm::least_damping(material_of(o.choice("model_damping_bound")), span);
   const double more = o.flag("model_additional_damping") ? norm::additional_damping(span) : 0.0;
   const double ratio = least + more;
-  scene.notes.push_back(
-      fmt::format("damping {:.4g} %: EN 1991-2 table 6.6, {}, span {:g} m{}; at the first two frequencies, Rayleigh "
-                  "damping at all others",
-                  100.0 * ratio, o.choice("model_damping_bound"), span,
-                  more > 0.0 ? fmt::format(", with {:.3g} % by 6.4.6.4", 100.0 * more) : ""));
-  scene.damping.ratios = {ratio, ratio};  // elements and modes have the same damping law
+  scene.notes.push_back(fmt::format("damping {:.4g} %: EN 1991-2 table 6.6, {}, span {:g} m{}", 100.0 * ratio,
+                                    o.choice("model_damping_bound"), span,
+                                    more > 0.0 ? fmt::format(", with {:.3g} % by 6.4.6.4", 100.0 * more) : ""));
+  scene.damping.ratios = {ratio, ratio};  // of the first two modes of a bridge by elements
+  scene.damping_of_modes = {ratio};
 }
 
 void read_norm(const Options& o, Scene& scene) {

@@ -39,6 +39,8 @@ void declare_blocks(options::Options& options);
 std::vector<Block> blocks_of(const options::Options& options, const char* list);
 /// The direction of a block's speed or speed_file: 1 to the right, -1 to the left.
 double direction_of(const options::Options& options, const Block& block);
+/// Whether the speed 0 is given for a train or load.
+bool stands(const options::Options& options, const Block& block);
 /// x of the bridge end at which trains in this direction enter, m.
 double entrance(const Scene& scene, double direction);
 /// The speed law of a block's speed_file for a first wheel or force at `front` at t = 0.

@@ -1,11 +1,14 @@
-// Checks for input that is possible but unusual: a train behind the bridge, speeds in km/h, short tables.
+// Checks for input that is possible but unusual: a train behind the bridge, speeds in km/h, profiles in mm, short
+// tables.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "norm/usual_ranges.hpp"
 #include "options/data_file.hpp"
 #include "scene_parts.hpp"
 
@@ -14,8 +17,11 @@ namespace {
 
 using options::Options;
 
-constexpr double fastest_train = 160.0;   // m/s: the record of a train on rails is 574.8 km/h
-constexpr double far_away = 1000.0;       // m
+constexpr double far_away = 1000.0;            // m
+constexpr double greatest_by_friction = 10.0;  // m/s2: deceleration of a car on a dry road
+constexpr double rough_range = 0.25;  // m, of heights, and their mean slope, from which they are probably in mm
+constexpr double rough_slope = 0.1;
+constexpr double level_part = 1e-3;       // height at the end of a profile, relative to its range, that is level
 constexpr double rounding = 1e-6;         // relative to a length
 constexpr double least_approach = 100.0;  // m: a few wavelengths of the slowest motion of a car
 
@@ -142,13 +148,39 @@ void check_ground(const Options& o, const Scene& scene) {
   }
 }
 
+/// The greatest magnitude of the acceleration of a train or load, m/s2.
+double greatest_acceleration(const base::SpeedLaw& law) {
+  const std::vector<double> kinks = law.kinks();
+  double greatest = 0.0;
+  for (std::size_t i = 0; i + 1 < kinks.size(); ++i)
+    greatest = std::max(greatest, std::abs(law.acceleration(0.5 * (kinks[i] + kinks[i + 1]))));
+  return greatest;
+}
+
+void record_speed(const Options& o, const std::string& block, const base::SpeedLaw& law, Scene& scene) {
+  const std::string file = block + "_speed_file";
+  const bool table = o.knows(file) && o.has(file);
+  if (const std::string line = norm::unusual_speed(table ? file : block + "_speed", law.fastest()); !line.empty())
+    scene.notes.push_back(line);
+  if (const double acceleration = greatest_acceleration(law); acceleration > greatest_by_friction)
+    scene.notes.push_back(fmt::format(
+        "{}: the speed changes by up to {:.4g} m/s2, more than the friction of wheels allows; speeds are in "
+        "m/s, not km/h, and positions in m, not km",
+        file, acceleration));
+}
+
 void record_speeds(const Options& o, Scene& scene) {
-  const bool swept = scene.sweep && !scene.sweep->speeds.empty();
-  const double speed = swept ? scene.sweep->speeds.back() : greatest_speed(scene);
-  if (!(speed > fastest_train)) return;
-  const char* option = swept ? "sweep_speed" : o.has("train_speed") ? "train_speed" : "load_speed";
-  scene.notes.push_back(fmt::format("{}: {:g} m/s is {:g} km/h, faster than any train has run; speeds are in m/s",
-                                    option, speed, 3.6 * speed));
+  if (scene.sweep && !scene.sweep->speeds.empty()) {
+    const std::string line = norm::unusual_speed("sweep_speed", scene.sweep->speeds.back());
+    if (!line.empty()) scene.notes.push_back(line);
+    return;
+  }
+  const auto record = [&](const char* block, const auto& moving, bool moves) {
+    if (moves && moving.courses.empty()) record_speed(o, block, base::SpeedLaw(moving.speed), scene);
+    for (const train::Course& course : moving.courses) record_speed(o, course.name, course.speed, scene);
+  };
+  record("train", scene.train, !scene.train.vehicles.empty());
+  record("load", scene.load, !scene.load.forces.empty());
 }
 
 /// Adds a note on a table that does not cover the beam, which is continued by its end values, or is longer.
@@ -238,12 +270,96 @@ void record_axles(const Options& o, Scene& scene) {
   }
 }
 
+/// Checks that rounding of positions, which have the size of the radius, changes the force of a contact by less than
+/// `noise` of its load, N.
+void check_stiffness(const Options& o, const std::string& contact, const contact::Law& law, double radius, double load,
+                     const char* unit) {
+  constexpr double noise = 1e-3, eps = std::numeric_limits<double>::epsilon();
+  if (law.kind == contact::LawKind::other || !(load > 0.0)) return;
+  const double exponent = law.kind == contact::LawKind::hertz ? 1.5 : 1.0;
+  const double penetration = contact::static_penetration(law, load), least = exponent * eps * radius / noise;
+  if (penetration >= least) return;
+  const std::string young = contact + "_young";
+  o.refuse(
+      o.has(young) ? young : contact + "_stiffness",
+      fmt::format("a load of {:.3g} N presses the contact in by {:.1g} m, which rounding hides beside the radius of "
+                  "{:g} m; allowed: a stiffness of at most {:.1g} {}",
+                  load, penetration, radius, load / std::pow(least, exponent), unit));
+}
+
+void check_contacts(const Options& o, const Scene& scene) {
+  for (const Vehicle& vehicle : scene.vehicles) {
+    double weight = 0.0;
+    for (const multibody::Body& body : vehicle.mechanism.bodies) weight += body.mass * scene.gravity;
+    const auto check = [&](const std::string& name, const contact::Law& law, double radius, double load) {
+      check_stiffness(o, "vehicle_" + vehicle.name + "_" + name, law, std::abs(radius), load,
+                      law.kind == contact::LawKind::hertz ? "N/m^1.5" : "N/m");
+    };
+    for (const Wheel& wheel : vehicle.wheels)
+      check(wheel.name, wheel.law, wheel.radius, weight / static_cast<double>(vehicle.wheels.size()));
+    for (const contact::BodyContact& contact : vehicle.contacts)
+      check(contact.name, contact.law, std::max(contact.radii[0], contact.radii[1]), weight);
+  }
+}
+
+/// Adds a note on a profile whose heights are probably in mm.
+void record_heights(const std::string& option, const std::vector<double>& x, const std::vector<double>& h,
+                    Scene& scene) {
+  const auto [least, greatest] = std::minmax_element(h.begin(), h.end());
+  double rise = 0.0;
+  for (std::size_t i = 1; i < h.size(); ++i) rise += std::abs(h[i] - h[i - 1]);
+  const double slope = rise / (x.back() - x.front());
+  if (*greatest - *least < rough_range || slope < rough_slope) return;
+  scene.notes.push_back(
+      fmt::format("{}: heights from {:g} to {:g} m, with a mean slope of {:.2g}, are no track; heights are possibly "
+                  "given in mm; their unit is m",
+                  option, *least, *greatest, slope));
+}
+
+/// Adds a note on a profile that is not where the wheels are, or that ends on the bridge at another height than 0.
+void record_extent(const std::string& option, const std::vector<double>& x, const std::vector<double>& h,
+                   Scene& scene) {
+  const double length = std::accumulate(scene.beam->spans.begin(), scene.beam->spans.end(), 0.0);
+  const std::vector<double> wheels = wheels_at_start(scene);
+  const double first = std::min(0.0, *std::min_element(wheels.begin(), wheels.end())),
+               last = std::max(length, *std::max_element(wheels.begin(), wheels.end()));
+  const double slack = rounding * length;
+  if (x.front() > last || x.back() < first) {
+    scene.notes.push_back(fmt::format(
+        "{}: the table goes from x = {:g} to {:g} m, but the wheels and the bridge are between {:g} and {:g} m, where "
+        "the track is level",
+        option, x.front(), x.back(), first, last));
+    return;
+  }
+  const double level = level_part * (*std::max_element(h.begin(), h.end()) - *std::min_element(h.begin(), h.end()));
+  const bool late = x.front() > slack && std::abs(h.front()) > level,
+             early = x.back() < length - slack && std::abs(h.back()) > level;
+  if (late || early)
+    scene.notes.push_back(fmt::format(
+        "{}: the table goes from x = {:g} to {:g} m, the bridge from 0 to {:g} m; outside the table the track is level",
+        option, x.front(), x.back(), length));
+}
+
+/// Adds notes on files of profiles.
+void record_profiles(const Options& o, Scene& scene) {
+  std::vector<std::string> names = {"track_profile"};
+  for (const train::Course& course : scene.train.courses) names.push_back(course.name + "_profile");
+  for (const std::string& option : names) {
+    if (!o.has(option) || o.text(option).find_first_of("./") == std::string::npos) continue;
+    const std::vector<std::vector<double>> columns = options::read_columns(o.path(option), 2, 2);
+    record_heights(option, columns[0], columns[1], scene);
+    if (scene.beam && !wheels_at_start(scene).empty()) record_extent(option, columns[0], columns[1], scene);
+  }
+}
+
 void record_unusual_input(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
+  check_contacts(o, scene);
   if (!vehicles.unused.empty())
     scene.notes.push_back(
         fmt::format("defined, but not in the train (train_vehicles): {}", fmt::join(vehicles.unused, ", ")));
   record_overlaps(o, scene);
   record_speeds(o, scene);
+  record_profiles(o, scene);
   if (!scene.beam) return;
   check_ground(o, scene);
   record_tables(scene);

@@ -1,4 +1,6 @@
 // Reads the motion of the supports over time, and refuses what does not go with it.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "options/data_file.hpp"
@@ -57,9 +59,7 @@ void check_motion_along(const options::Options& o, const std::string& file, cons
         "act along x");
 }
 
-}  // namespace
-
-void read_support_motion(const options::Options& o, Scene& scene) {
+void read_motion(const options::Options& o, Scene& scene) {
   const std::string upward = "support_motion", along = "support_motion_along", values = "support_motion_values";
   if (!o.has(upward) && !o.has(along)) {
     if (o.has(values)) o.refuse(values, "needs " + upward + " or " + along);
@@ -78,6 +78,19 @@ void read_support_motion(const options::Options& o, Scene& scene) {
     scene.support_motion_along = displacements(o, along, supports.size());
   }
   scene.modes_open = false;
+}
+
+}  // namespace
+
+void read_support_motion(const options::Options& o, Scene& scene) {
+  read_motion(o, scene);
+  const bool has_peaks = scene.analysis == Analysis::transient || scene.analysis == Analysis::static_response;
+  if (has_peaks && scene.supports_displaced())
+    scene.notes.push_back(
+        fmt::format("the supports {}: greatest deflections, their limits, envelopes and amplifications are relative to "
+                    "the straight "
+                    "lines between the supports",
+                    scene.support_motion.empty() ? "have settled" : "move"));
 }
 
 }  // namespace traverse::app

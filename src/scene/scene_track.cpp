@@ -6,23 +6,12 @@
 
 #include "options/data_file.hpp"
 #include "scene_parts.hpp"
+#include "track/spectrum_names.hpp"
 
 namespace traverse::app {
 namespace {
 
 using options::Options;
-
-/// The spectrum with this name; none for another profile.
-std::optional<track::Spectrum> spectrum_of(const std::string& profile) {
-  const auto grade = [&](std::string_view kind, char first, char last) {
-    return profile.size() == kind.size() + 1 && profile.starts_with(kind) && profile.back() >= first &&
-           profile.back() <= last;
-  };
-  if (grade("iso8608_", 'A', 'E')) return track::iso8608(profile.back());
-  if (grade("fra_", '1', '6')) return track::fra(profile.back() - '0');
-  if (profile == "german_low" || profile == "german_high") return track::german(profile == "german_high");
-  return {};
-}
 
 Roughness read_roughness(const Options& o, const std::string& prefix, const track::Spectrum& spectrum, double start,
                          bool to_the_left) {
@@ -84,7 +73,7 @@ ReadProfile read_profile(const Options& o, const std::string& prefix, double sta
         track::Profile::bump(o.number(key("bump_start")), o.number(key("bump_length")), o.number(key("bump_height"))),
         {}};
   if (bump != nullptr) scene.notes.push_back(bump->name + " has no effect: " + option + " is " + profile);
-  const std::optional<track::Spectrum> spectrum = spectrum_of(profile);
+  const std::optional<track::Spectrum> spectrum = track::spectrum_of(profile);
   if (!spectrum && o.has(key("wavelengths")))
     scene.notes.push_back(key("wavelengths") + " has no effect: " + option + " is " + profile);
   if (profile == "none") return {};
@@ -93,9 +82,8 @@ ReadProfile read_profile(const Options& o, const std::string& prefix, double sta
     return {roughness.profile(static_cast<std::uint64_t>(o.integer(key("seed")))), roughness};
   }
   if (!is_file) {
-    o.refuse(option,
-             "allowed: none, bump, iso8608_A to iso8608_E, german_low, german_high, fra_1 to fra_6, or "
-             "a file x,height");
+    o.refuse(option, fmt::format("allowed: none, bump, {}, or a file x,height",
+                                 static_cast<std::string_view>(track::names_of_spectra)));
   }
   const std::string path = o.path(option);
   auto columns = options::read_columns(path, 2, 2);

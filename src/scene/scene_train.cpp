@@ -198,7 +198,7 @@ void read_trains(const Options& o, const NamedVehicles& vehicles, Scene& scene) 
     read_couplers(o, train, vehicles.trains.size() == 1, scene);
     if (!courses) {
       scene.train.drive = read_drive(o, train, scene);
-      const bool swept = scene.sweep && !scene.sweep->speeds.empty();
+      const bool swept = scene.sweep && !scene.sweep->speeds.empty() && !stands(o, block);
       scene.train.speed = swept ? scene.sweep->speeds.front() : read_speed(o, train, scene);
       return;
     }

@@ -86,8 +86,11 @@ std::vector<StudyDimension> swept_dimensions(const Options& o, const NamedVehicl
   if (o.has("sweep_speed")) {
     const bool forces = forces_move(o);
     StudyDimension speeds{{}, "m/s", false, "list", read_speeds(o, "sweep_speed"), 0};
-    if (!vehicles.train.empty()) speeds.options.emplace_back("train_speed");
-    if (forces || speeds.options.empty()) speeds.options.emplace_back("load_speed");
+    const bool train_stands = stands(o, {"train", {}}), load_stands = stands(o, {"load", {}});
+    if (!vehicles.train.empty() && !train_stands) speeds.options.emplace_back("train_speed");
+    if ((forces && !load_stands) || vehicles.train.empty()) speeds.options.emplace_back("load_speed");
+    if (speeds.options.empty() || (vehicles.train.empty() && load_stands))
+      o.refuse("sweep_speed", "nothing moves, because the speed that is given for it is 0");
     dimensions.push_back(std::move(speeds));
   }
   return dimensions;

@@ -73,7 +73,11 @@ void StudyAxes::finish_design() {
     o_.refuse("study_sensitivity",
               "no option has a distribution; allowed: study_vary with uniform, normal or lognormal");
   using Method = options::Sensitivity::Method;
-  if (analysis.method != Method::local) analysis.base_samples = draws(study_.dimensions[first_factor_].name());
+  if (analysis.method != Method::local) {
+    analysis.base_samples = draws(study_.dimensions[first_factor_].name());
+    if (analysis.base_samples < 2)
+      o_.refuse("study_draws", "one sample has no scatter, so that its intervals would have no width; allowed: from 2");
+  }
   const auto points = static_cast<double>(analysis.method == Method::local ? 1 + base::local_points_per_factor * factors
                                           : analysis.method == Method::morris ? base::morris_block(factors)
                                                                               : base::saltelli_block(factors)) *

@@ -111,6 +111,13 @@ double shape_at(const SpanShape& shape, double beta, double L, double xi) {
          shape.d * std::exp(-beta * (L - xi));
 }
 
+std::array<double, 3> shape_and_derivatives(const SpanShape& shape, double beta, double L, double xi) {
+  const double sine = std::sin(beta * xi), cosine = std::cos(beta * xi), falling = shape.c * std::exp(-beta * xi),
+               rising = shape.d * std::exp(-beta * (L - xi)), harmonic = shape.a * sine + shape.b * cosine;
+  return {harmonic + falling + rising, beta * (shape.a * cosine - shape.b * sine - falling + rising),
+          beta * beta * (falling + rising - harmonic)};
+}
+
 std::vector<BeamMode> beam_modes(std::span<const double> spans, int count) {
   std::vector<BeamMode> modes;
   for (int number = 1; number <= count; ++number) {

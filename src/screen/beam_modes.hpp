@@ -6,6 +6,7 @@
 //   phi = a sin(beta xi) + b cos(beta xi) + c exp(-beta xi) + d exp(-beta (L - xi))
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -26,5 +27,7 @@ std::vector<BeamMode> beam_modes(std::span<const double> spans, int count);
 
 /// phi at a distance xi from the left end of a span of length L.
 double shape_at(const SpanShape& shape, double beta, double L, double xi);
+/// phi, phi' and phi'' there.
+std::array<double, 3> shape_and_derivatives(const SpanShape& shape, double beta, double L, double xi);
 
 }  // namespace traverse::screen

@@ -10,7 +10,9 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double same = 1e-9;  // relative difference of shapes that are equal but for rounding
+constexpr double same = 1e-9;               // relative difference of shapes that are equal but for rounding
+constexpr double parts_of_half_wave = 6.0;  // of the highest mode, so that each peak is next to a station's sample
+constexpr int points_of_part = 16;          // at which the largest |phi| of a part is searched
 
 /// A particular solution and its rate, for a unit force.
 struct Motion {
@@ -41,12 +43,16 @@ BridgeModel::BridgeModel(const Bridge& bridge, int modes, int parts, const std::
     own.omega_d = own.omega * std::sqrt(1.0 - zeta * zeta);
     own.lambda2 = std::pow(Complex(-zeta * own.omega, own.omega_d), 2);
     own.shape = std::move(mode.spans);
-    for (SpanShape& shape : own.shape)
+    for (SpanShape& shape : own.shape) {
       for (double* coefficient : {&shape.a, &shape.b, &shape.c, &shape.d}) *coefficient /= std::sqrt(bridge.mass);
+      own.size = std::max(own.size, std::hypot(shape.a, shape.b) + std::abs(shape.c) + std::abs(shape.d));
+    }
     modes_.push_back(std::move(own));
   }
   sampling_time_ = 2.0 * std::numbers::pi / modes_.back().omega / samples;
-  set_stations(parts);
+  const double half_waves =
+      modes_.back().beta * *std::max_element(bridge.spans.begin(), bridge.spans.end()) / std::numbers::pi;
+  set_stations(std::max(parts, static_cast<int>(std::ceil(parts_of_half_wave * half_waves))));
   group_speeds_ = speeds;
   speed_count_ = speeds.size();
   while (group_speeds_.size() % lanes != 0) group_speeds_.push_back(speeds.back());
@@ -63,32 +69,41 @@ double BridgeModel::tail(std::size_t group) const {
 
 void BridgeModel::set_stations(int parts) {
   largest_.assign(modes_.size(), 0.0);
-  for (std::size_t j = 0; j < bridge_.spans.size(); ++j)
+  for (std::size_t j = 0; j < bridge_.spans.size(); ++j) {
+    const double L = bridge_.spans[j];
+    part_ = std::max(part_, L / parts);
     for (int part = 1; part < parts; ++part) {
-      const double L = bridge_.spans[j];
-      for (std::size_t n = 0; n < modes_.size(); ++n) {
-        shapes_.push_back(shape_at(modes_[n].shape[j], modes_[n].beta, L, L * part / parts));
-        largest_[n] = std::max(largest_[n], std::abs(shapes_.back()));
-      }
+      for (const ModeOfBridge& mode : modes_)
+        shapes_.push_back(shape_at(mode.shape[j], mode.beta, L, L * part / parts));
       of_deflection_.push_back(bridge_.of_deflection / L);
     }
-  largest_of_deflection_ = *std::max_element(of_deflection_.begin(), of_deflection_.end());
-  for (std::size_t s = 0; s < stations(); ++s) {
-    const auto equals = [&](std::size_t other) {
-      if (std::abs(of_magnitudes_[other] - of_deflection_[s]) > same * of_deflection_[s]) return false;
-      for (std::size_t n = 0; n < modes_.size(); ++n)
-        if (std::abs(magnitudes_[other * modes_.size() + n] - std::abs(shapes_[s * modes_.size() + n])) >
-            same * largest_[n])
-          return false;
-      return true;
-    };
-    bool known = false;
-    for (std::size_t other = 0; other < of_magnitudes_.size(); ++other) known = known || equals(other);
-    if (known) continue;
-    of_magnitudes_.push_back(of_deflection_[s]);
-    for (std::size_t n = 0; n < modes_.size(); ++n)
-      magnitudes_.push_back(std::abs(shapes_[s * modes_.size() + n]) + same * largest_[n]);
+    for (int part = 0; part < parts; ++part) add_part(j, part, parts);
   }
+  largest_of_deflection_ = *std::max_element(of_deflection_.begin(), of_deflection_.end());
+}
+
+// Between two points |phi| exceeds the larger of their values by at most an eighth of their distance squared times
+// |phi''|.
+void BridgeModel::add_part(std::size_t span, int part, int parts) {
+  const double L = bridge_.spans[span], h = L / parts / points_of_part, factor = bridge_.of_deflection / L;
+  std::vector<double> magnitudes;
+  for (std::size_t n = 0; n < modes_.size(); ++n) {
+    const ModeOfBridge& mode = modes_[n];
+    double most = 0.0;
+    for (int i = 0; i <= points_of_part; ++i)
+      most = std::max(most, std::abs(shape_at(mode.shape[span], mode.beta, L, (part * points_of_part + i) * h)));
+    const double between = 0.125 * std::pow(h * mode.beta, 2) * mode.size;
+    magnitudes.push_back(std::min(most + between, mode.size) + same * mode.size);
+    largest_[n] = std::max(largest_[n], magnitudes.back());
+  }
+  for (std::size_t other = 0; other < of_magnitudes_.size(); ++other) {
+    bool equal = std::abs(of_magnitudes_[other] - factor) <= same * factor;
+    for (std::size_t n = 0; equal && n < modes_.size(); ++n)
+      equal = std::abs(magnitudes_[other * modes_.size() + n] - magnitudes[n]) <= 0.1 * same * modes_[n].size;
+    if (equal) return;
+  }
+  of_magnitudes_.push_back(factor);
+  magnitudes_.insert(magnitudes_.end(), magnitudes.begin(), magnitudes.end());
 }
 
 void BridgeModel::set_numbers(const ModeOfBridge& mode, double v, double* first, std::size_t lane) const {

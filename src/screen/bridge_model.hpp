@@ -23,11 +23,13 @@ struct ModeOfBridge {
   double beta = 0.0, omega = 0.0, omega_d = 0.0;  // 1/m, rad/s
   std::complex<double> lambda2;                   // (-zeta omega + i omega_d)^2, 1/s2
   std::vector<SpanShape> shape;                   // mass-normalised, 1/sqrt(kg)
+  double size = 0.0;                              // 1/sqrt(kg): |phi|, |phi'|/beta and |phi''|/beta^2 do not exceed it
 };
 
 class BridgeModel {
  public:
-  /// parts: of each span, with the stations between them. speeds: m/s, ascending.
+  /// parts: the least number of equal parts of each span, with the stations between them; six in each half wave of the
+  /// highest mode. speeds: m/s, ascending.
   BridgeModel(const Bridge& bridge, int modes, int parts, const std::vector<double>& speeds, double samples);
 
   const Bridge& bridge() const { return bridge_; }
@@ -35,12 +37,16 @@ class BridgeModel {
   const std::vector<double>& supports() const { return supports_; }  // m
   bool continuous() const { return bridge_.spans.size() > 1; }
   std::size_t stations() const { return of_deflection_.size(); }
+  std::size_t stations_of_span() const { return stations() / bridge_.spans.size(); }
+  /// The longest part of a span, m.
+  double part() const { return part_; }
   /// phi_n at the stations: [station][mode].
   const std::vector<double>& shapes() const { return shapes_; }
-  /// |phi_n| at stations where they differ, for bounds: [station][mode]; and their factors of deflections.
+  /// The largest |phi_n| in parts of the spans in which they differ, for bounds: [part][mode]; and their factors of
+  /// deflections.
   const std::vector<double>& magnitudes() const { return magnitudes_; }
   const std::vector<double>& of_magnitudes() const { return of_magnitudes_; }
-  /// The largest |phi_n| of all stations.
+  /// The largest |phi_n| of the bridge.
   const std::vector<double>& largest() const { return largest_; }
   /// Factors that make a deflection at a station a fraction of its limit, 1/m.
   const std::vector<double>& of_deflection() const { return of_deflection_; }
@@ -60,6 +66,7 @@ class BridgeModel {
 
  private:
   void set_stations(int parts);
+  void add_part(std::size_t span, int part, int parts);
   void set_numbers(const ModeOfBridge& mode, double v, double* first, std::size_t lane) const;
   std::size_t numbers_of_mode() const { return coefficients + 2 * supports_.size(); }
   std::size_t numbers_in_group() const { return modes_.size() * numbers_of_mode() * lanes; }
@@ -68,7 +75,7 @@ class BridgeModel {
   std::vector<ModeOfBridge> modes_;
   std::vector<double> supports_, shapes_, magnitudes_, of_magnitudes_, largest_, of_deflection_, group_speeds_;
   std::size_t speed_count_ = 0;
-  double largest_of_deflection_ = 0.0, sampling_time_ = 0.0;
+  double largest_of_deflection_ = 0.0, part_ = 0.0, sampling_time_ = 0.0;
   engine::Aligned numbers_{0};
 };
 

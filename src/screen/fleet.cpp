@@ -86,7 +86,7 @@ void read_table(const std::string& path, std::vector<Formation>& fleet) {
   const HeaderTable table(path, {"name", "speed", "load_kN", "load_t", "load_N", "position", "spacing"});
   if (table.has("position") == table.has("spacing"))
     table.refuse_columns("where the axles are; allowed: one of the columns position and spacing");
-  const std::string alone = table.has("name") ? "" : std::filesystem::path(path).stem().string();
+  const std::string alone = table.has("name") ? "" : printable(std::filesystem::path(path).stem().string());
   const auto name = [&](std::size_t row) { return alone.empty() ? table.text(row, "name") : alone; };
   for (std::size_t first = 0, last = 0; first < table.rows(); first = last) {
     if (name(first).empty()) table.refuse(first, "name: missing");
@@ -100,9 +100,11 @@ void read_table(const std::string& path, std::vector<Formation>& fleet) {
 /// The tables of a folder, on the disk or of a results file that is run again.
 std::vector<std::string> tables_in(const std::string& folder) {
   std::vector<std::string> files = options::mounted_in(folder);
+  std::error_code unreadable, ignored;
   if (files.empty())
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      if (entry.is_regular_file()) files.push_back(entry.path().string());
+    for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable))
+      if (!entry.is_directory(ignored)) files.push_back(entry.path().string());  // the reader refuses what is no file
+  if (unreadable) throw InputError("screen_fleet: the folder " + folder + ": " + unreadable.message());
   std::erase_if(files, [](const std::string& file) { return std::filesystem::path(file).extension() != ".csv"; });
   std::sort(files.begin(), files.end());
   if (files.empty()) throw InputError("screen_fleet: the folder " + folder + " contains no .csv files");
@@ -113,7 +115,8 @@ std::vector<std::string> tables_in(const std::string& folder) {
 
 std::vector<Formation> read_fleet(const std::string& path) {
   std::vector<Formation> fleet;
-  const bool folder = !options::mounted_in(path).empty() || std::filesystem::is_directory(path);
+  std::error_code ignored;
+  const bool folder = !options::mounted_in(path).empty() || std::filesystem::is_directory(path, ignored);
   for (const std::string& file : folder ? tables_in(path) : std::vector<std::string>{path}) read_table(file, fleet);
   std::unordered_set<std::string> names;
   for (const Formation& formation : fleet)

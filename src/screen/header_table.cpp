@@ -57,6 +57,8 @@ HeaderTable::HeaderTable(const std::string& path, const std::vector<std::string_
       throw InputError(where + fmt::format("longer than {} characters, so this is not a table", longest_line));
     line = line.substr(0, line.find('#'));
     if (trimmed(line).empty()) continue;
+    if (line.find(';') != line.npos && line.find(',') != line.npos)
+      throw InputError(fmt::format("{}commas and semicolons in one row; {}", where, options::decimal_point));
     std::vector<std::string> cells = cells_of(line);
     if (columns_.empty()) {
       check_names(cells, allowed, where);
@@ -65,7 +67,9 @@ HeaderTable::HeaderTable(const std::string& path, const std::vector<std::string_
       continue;
     }
     if (cells.size() != columns_.size())
-      throw InputError(where + fmt::format("{} cells, expected {}", cells.size(), columns_.size()));
+      throw InputError(where +
+                       fmt::format("{} cells, expected {}{}", cells.size(), columns_.size(),
+                                   line.find(',') == line.npos ? "" : fmt::format("; {}", options::decimal_point)));
     if (lines_.size() == most_rows) throw InputError(where + fmt::format("allowed: at most {} rows", most_rows));
     lines_.push_back(number);
     std::move(cells.begin(), cells.end(), std::back_inserter(cells_));

@@ -21,6 +21,7 @@ Pairs::Pairs(const BridgeModel& model) : model_(model), search_(model, events_) 
     beta_.push_back(mode.beta);
     omega2_.push_back(mode.omega * mode.omega);
     lambda2_.insert(lambda2_.end(), {mode.lambda2.real(), mode.lambda2.imag()});
+    size_.push_back(mode.size);
   }
   task_.modes = static_cast<int>(model.modes().size());
   task_.supports = static_cast<int>(model.supports().size());
@@ -28,9 +29,11 @@ Pairs::Pairs(const BridgeModel& model) : model_(model), search_(model, events_) 
   task_.beta = beta_.data();
   task_.omega2 = omega2_.data();
   task_.lambda2 = lambda2_.data();
+  task_.size = size_.data();
   task_.continuous = model.continuous();
   task_.stations = static_cast<int>(model.stations());
-  task_.different_stations = static_cast<int>(model.of_magnitudes().size());
+  task_.different_parts = static_cast<int>(model.of_magnitudes().size());
+  task_.part = model.part();
   task_.shapes = model.shapes().data();
   task_.of_deflection = model.of_deflection().data();
   task_.magnitudes = model.magnitudes().data();
@@ -42,10 +45,10 @@ Pairs::Pairs(const BridgeModel& model) : model_(model), search_(model, events_) 
   task_.result = result_.data();
   task_.sampled = &sampled_;
   task_.context = this;
-  task_.search_peak = [](void* context, int lane, long event, const double* z, double length, int samples,
-                         double error) {
+  task_.search_peak = [](void* context, int lane, long event, const double* z, double length, int samples, double error,
+                         double least) {
     Pairs& own = *static_cast<Pairs*>(context);
-    return own.search_.peak(own.group_, lane, event, z, length, samples, error);
+    return own.search_.peak(own.group_, lane, event, z, length, samples, error, least);
   };
 }
 

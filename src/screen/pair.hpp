@@ -55,7 +55,7 @@ class Pairs {
   TrainEvents events_;
   PeakSearch search_;
   ScreenTask task_;
-  std::vector<double> beta_, omega2_, lambda2_, bounds_;
+  std::vector<double> beta_, omega2_, lambda2_, size_, bounds_;
   engine::Aligned limit_{lanes}, result_{lanes}, work_{0};
   std::size_t work_size_ = 0, group_ = 0;
   long sampled_ = 0;

@@ -5,11 +5,9 @@
 
 #include <numbers>
 
-#include "results/earlier_copy.hpp"
 #include "results/study_reader.hpp"
 #include "run/model_record.hpp"
 #include "run/process.hpp"
-#include "screen/beam_modes.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::screen {
@@ -33,11 +31,6 @@ std::vector<double> values_of(const std::vector<Thing>& things, Get get) {
   std::vector<double> values;
   for (const Thing& thing : things) values.push_back(get(thing));
   return values;
-}
-
-double first_frequency(const Bridge& bridge) {
-  const double beta = beam_modes(bridge.spans, 1).front().beta;
-  return beta * beta * std::sqrt(bridge.EI / bridge.mass) / (2.0 * std::numbers::pi);
 }
 
 /// An unlimited speed is unknown (NaN) in the file.
@@ -126,7 +119,6 @@ ScreenFile::ScreenFile(MPI_Comm comm, results::Place place, const Problem& probl
                        const std::vector<std::string>& notes, std::map<std::size_t, std::vector<double>>& rows,
                        Totals& totals)
     : comm_(comm), formations_(problem.fleet.size()), recorder_([&] {
-        const results::EarlierCopy copy(place, !rows.empty());
         results::Recorder made(comm, std::move(place), {}, app::attributes(comm, problem.scene), problem.scene.options);
         app::record_model(problem.scene, notes, made);
         made.names("/bridge", names_of(problem.stock));
@@ -149,7 +141,7 @@ ScreenFile::ScreenFile(MPI_Comm comm, results::Place place, const Problem& probl
           totals.add(bridge, row);
           row = {};
         }
-        copy.remove();
+        made.publish();
         return made;
       }()) {}
 
@@ -177,6 +169,7 @@ void ScreenFile::finish(const Totals& totals, std::size_t bridges, double second
   const auto other = [](const Governing& g) { return g.other(); };
   const auto ratio = [](const Governing& g) { return g.ratio(); };
   const std::vector<Governing>&b = totals.of_bridges(), &f = totals.of_formations();
+  recorder_.change_beside();
   recorder_.datasets({{"/screen/governing_formation", {b.size()}, values_of(b, other), "1"},
                       {"/screen/bridge_ratio", {b.size()}, values_of(b, ratio), "1"},
                       {"/screen/governing_bridge", {f.size()}, values_of(f, other), "1"},

@@ -30,11 +30,13 @@ class ScreenBatch : LaneFunctions<W> {
 
  public:
   ScreenBatch(const ScreenTask& task, double* work) : task_(task), modes_(task.modes) {
-    Lane** const of_modes[] = {&z_real_,       &z_imag_,     &step_real_, &step_imag_,
-                               &acceleration_, &deflection_, &at_real_,   &at_imag_};
+    Lane** const of_modes[] = {&z_real_,     &z_imag_,  &step_real_, &step_imag_,    &acceleration_,
+                               &deflection_, &at_real_, &at_imag_,   &largest_real_, &largest_imag_};
     for (Lane** own : of_modes) *own = allocate_from<Lane>(work, used_, W, modes_);
     Lane** const of_gaps[] = {&gap_real_, &gap_imag_};
     for (Lane** own : of_gaps) *own = allocate_from<Lane>(work, used_, W, static_cast<long>(modes_) * task.gaps);
+    reach_ = allocate_from<Lane>(work, used_, W, task.events);
+    largest_ = allocate_from<Largest>(work, used_, W, 1);
     wave_ = allocate_from<double>(work, used_, W, 8L * modes_);
     copy_ = allocate_from<double>(work, used_, W, 2L * modes_);
   }
@@ -51,14 +53,21 @@ class ScreenBatch : LaneFunctions<W> {
     *lanes(task_.result) = largest * (1.0 + rounding);
   }
 
-  /// The largest fraction of a limit in the intervals with a bound above `limit` and the largest one so far.
+  /// The largest fraction of a limit in the intervals with a bound above `limit` and the largest one so far, at the
+  /// stations' samples. Then with task.search the largest one between them, in the intervals whose samples permit it.
   void pass() {
     begin();
     best_ = *lanes(task_.limit);
+    task_.search ? search_at_largest() : forget_largest();
     for (long i = 0; i < task_.events; ++i) {
       pass_event(i);
       if (!is_interval(i)) continue;
       if (i + 1 == task_.events) break;
+      if (task_.search) {
+        if (exceeds(reach_[i], best_)) search(i, task_.length[i], reach_[i]);
+        continue;
+      }
+      reach_[i] = Lane{};
       if (task_.every || exceeds(bound_above(i, best_), best_)) sample(i, task_.length[i]);
     }
     decay_freely();
@@ -122,31 +131,48 @@ class ScreenBatch : LaneFunctions<W> {
       coarse_acceleration += task_.largest[n] * acceleration_[n];
       coarse_deflection += task_.largest[n] * deflection_[n];
     }
-    const Lane coarse =
-        greater(task_.of_acceleration * coarse_acceleration, task_.largest_of_deflection * coarse_deflection);
-    if (!exceeds(coarse, least)) return least;
-    for (int s = 0; s < task_.different_stations; ++s) least = greater(least, bound_at(s));
+    return largest_of({task_.different_parts, task_.magnitudes, task_.of_magnitudes}, coarse_acceleration,
+                      coarse_deflection, least);
+  }
+
+  struct Places {
+    int count;
+    const double *shapes, *of_deflection;
+  };
+
+  /// The greater of `least` and the largest fraction of a limit at these places, by acceleration_ and deflection_ of
+  /// the modes. coarse: bounds of both at all places.
+  Lane largest_of(const Places& places, Lane coarse_acceleration, Lane coarse_deflection, Lane least) const {
+    if (exceeds(task_.of_acceleration * coarse_acceleration, least)) {
+      Lane largest = Lane{};
+      for (int s = 0; s < places.count; ++s)
+        largest = greater(largest, magnitude(response(places.shapes + s * modes_, acceleration_)));
+      least = greater(least, task_.of_acceleration * largest);
+    }
+    if (exceeds(task_.largest_of_deflection * coarse_deflection, least))
+      for (int s = 0; s < places.count; ++s)
+        least = greater(least, places.of_deflection[s] * magnitude(response(places.shapes + s * modes_, deflection_)));
     return least;
   }
 
-  Lane bound_at(int station) const {
-    const double* shape = task_.magnitudes + station * modes_;
-    Lane acceleration = Lane{}, deflection = Lane{};
-    for (int n = 0; n < modes_; ++n) {
-      acceleration += shape[n] * acceleration_[n];
-      deflection += shape[n] * deflection_[n];
-    }
-    return greater(task_.of_acceleration * acceleration, task_.of_magnitudes[station] * deflection);
+  Lane response(const double* shape, const Lane* of_modes) const {
+    Lane sum = Lane{};
+    for (int n = 0; n < modes_; ++n) sum += shape[n] * of_modes[n];
+    return sum;
   }
 
   // --- samples -----------------------------------------------------------------------------------------------------
 
+  int parts_of(double length) const {
+    const double wanted = length / task_.spacing;
+    return 1 + static_cast<int>(wanted < most_samples ? wanted : most_samples);
+  }
+
   /// Samples the interval after event i, from its start to its end.
   void sample(long i, double length) {
-    const double wanted = length / task_.spacing;
-    const int parts = 1 + static_cast<int>(wanted < most_samples ? wanted : most_samples);
+    const int parts = parts_of(length);
     const double step = length / parts;
-    const Lane time = fill(step) / *lanes(task_.speed), error = 0.125 * time * time * curvature(i);
+    const Lane error = excess(i, step);
     begin_samples(i, step);
     Lane top = greater(Lane{}, (best_ - error) * (1.0 - rounding));  // samples below cannot belong to a larger peak
     for (int k = 0; k <= parts; ++k) {
@@ -154,8 +180,27 @@ class ScreenBatch : LaneFunctions<W> {
       top = response_above(top);
     }
     ++*task_.sampled;
-    if (task_.search && exceeds(top + error, best_)) top = greater(top, peaks(i, length, parts, top, error));
+    reach_[i] = top + error;
+    if (!exceeds(top, best_)) return;
+    const Mask larger = top > best_;
     best_ = greater(best_, top);
+    largest_->event = larger ? fill(static_cast<double>(i)) : largest_->event;
+    largest_->length = larger ? fill(length) : largest_->length;
+    largest_->error = larger ? error : largest_->error;
+    for (int n = 0; n < modes_; ++n) {
+      largest_real_[n] = larger ? z_real_[n] : largest_real_[n];
+      largest_imag_[n] = larger ? z_imag_[n] : largest_imag_[n];
+    }
+  }
+
+  void forget_largest() { largest_->event = fill(-1.0); }
+
+  /// The exact peaks in the intervals with the largest samples: below them nothing else needs a search.
+  void search_at_largest() {
+    for (int lane = 0; lane < W; ++lane)
+      if (const double event = numbers(largest_->event)[lane]; event >= 0.0)
+        search_lane(lane, static_cast<long>(event), largest_real_, largest_imag_, numbers(largest_->length)[lane],
+                    numbers(largest_->error)[lane]);
   }
 
   void begin_samples(long i, double step) {
@@ -203,50 +248,47 @@ class ScreenBatch : LaneFunctions<W> {
       coarse_acceleration += task_.largest[n] * magnitude(acceleration_[n]);
       coarse_deflection += task_.largest[n] * magnitude(deflection_[n]);
     }
-    const Lane coarse =
-        greater(task_.of_acceleration * coarse_acceleration, task_.largest_of_deflection * coarse_deflection);
-    if (!exceeds(coarse, least)) return least;
-    for (int s = 0; s < task_.stations; ++s) {
-      const double* shape = task_.shapes + s * modes_;
-      Lane acceleration = Lane{}, deflection = Lane{};
-      for (int n = 0; n < modes_; ++n) {
-        acceleration += shape[n] * acceleration_[n];
-        deflection += shape[n] * deflection_[n];
-      }
-      least = greater(least, task_.of_acceleration * magnitude(acceleration));
-      least = greater(least, task_.of_deflection[s] * magnitude(deflection));
-    }
-    return least;
+    return largest_of({task_.stations, task_.shapes, task_.of_deflection}, coarse_acceleration, coarse_deflection,
+                      least);
   }
 
-  /// A bound of the second derivative in time of every fraction of a limit in an interval.
-  Lane curvature(long i) {
+  /// A bound of the amount by which a peak in time and along the bridge exceeds the nearest of the stations' samples,
+  /// `step` m of the way apart. At the peak both first derivatives are zero. A motion that turns by the angle a from
+  /// sample to sample, with a shape that turns by b from station to station, changes by at most (a + b)^2/8 of its
+  /// amplitude.
+  Lane excess(long i, double step) {
+    const Lane time = fill(step) / *lanes(task_.speed);
     Lane of_acceleration = Lane{}, of_deflection = Lane{};
     for (int n = 0; n < modes_; ++n) {
       const double* s = sums(i, n);
       const Lane free = root(z_real_[n] * z_real_[n] + z_imag_[n] * z_imag_[n]);
       const Lane forced = s[1] * (magnitude(number(n, real_gain)) + magnitude(number(n, imag_gain))) +
                           s[3] * greater(number(n, falling_gain), number(n, rising_gain));
-      const Lane drive = number(n, omega2_drive);
-      const Lane bend = task_.omega2[n] * free + drive * forced;
-      of_deflection += task_.largest[n] * bend;
-      of_acceleration += task_.largest[n] * (task_.omega2[n] * task_.omega2[n] * free + drive * drive * forced);
+      const Lane turned = task_.beta[n] * task_.part + time * __builtin_sqrt(task_.omega2[n]);
+      const double driven = task_.beta[n] * (task_.part + step);
+      const Lane of_free = turned * turned * free, of_forced = driven * driven * forced;
+      of_deflection += task_.size[n] * (of_free + of_forced);
+      of_acceleration += task_.size[n] * (task_.omega2[n] * of_free + number(n, omega2_drive) * of_forced);
     }
-    return greater(task_.of_acceleration * of_acceleration, task_.largest_of_deflection * of_deflection);
+    return 0.125 * greater(task_.of_acceleration * of_acceleration, task_.largest_of_deflection * of_deflection);
   }
 
-  /// The exact peaks of the lanes in which one may exceed the largest value so far.
-  Lane peaks(long i, double length, int parts, Lane top, Lane error) {
-    Lane found = top;
-    for (int lane = 0; lane < W; ++lane) {
-      if (!(numbers(top)[lane] + numbers(error)[lane] > numbers(best_)[lane])) continue;
-      for (int n = 0; n < modes_; ++n) {
-        copy_[2 * n] = numbers(z_real_[n])[lane];
-        copy_[2 * n + 1] = numbers(z_imag_[n])[lane];
-      }
-      numbers(found)[lane] = task_.search_peak(task_.context, lane, i, copy_, length, parts, numbers(error)[lane]);
+  /// The exact peaks in the interval after event i of the lanes in which one may exceed the largest value so far: those
+  /// whose `reach`, the largest sample plus its possible error, does.
+  void search(long i, double length, Lane reach) {
+    Lane error = excess(i, length / parts_of(length));
+    for (int lane = 0; lane < W; ++lane)
+      if (numbers(reach)[lane] > numbers(best_)[lane])
+        search_lane(lane, i, z_real_, z_imag_, length, numbers(error)[lane]);
+  }
+
+  void search_lane(int lane, long i, Lane* z_real, Lane* z_imag, double length, double error) {
+    for (int n = 0; n < modes_; ++n) {
+      copy_[2 * n] = numbers(z_real[n])[lane];
+      copy_[2 * n + 1] = numbers(z_imag[n])[lane];
     }
-    return found;
+    double& best = numbers(best_)[lane];
+    best = task_.search_peak(task_.context, lane, i, copy_, length, parts_of(length), error, best);
   }
 
   /// The free oscillation after the last event, part by part while its bound is above the largest value so far. If that
@@ -256,6 +298,7 @@ class ScreenBatch : LaneFunctions<W> {
     for (int part = 0; part < longest_tail; ++part) {
       if (!exceeds(bound_above(last, best_), best_)) return;
       sample(last, task_.tail);
+      if (task_.search) search(last, task_.tail, reach_[last]);
       for (int n = 0; n < modes_; ++n) {
         z_real_[n] = at_real_[n];
         z_imag_[n] = at_imag_[n];
@@ -272,6 +315,12 @@ class ScreenBatch : LaneFunctions<W> {
   Lane *step_real_ = nullptr, *step_imag_ = nullptr;      // the factor of Z from sample to sample
   Lane *gap_real_ = nullptr, *gap_imag_ = nullptr;        // the factor of Z over each gap: [mode][gap]
   Lane *acceleration_ = nullptr, *deflection_ = nullptr;  // of each mode: q'' and q, or their bounds
+  struct Largest {                                        // the interval with the largest sample of each lane
+    Lane event, length, error;
+  };
+  Largest* largest_ = nullptr;
+  Lane *largest_real_ = nullptr, *largest_imag_ = nullptr;  // Z of each mode at its start
+  Lane* reach_ = nullptr;                                   // of each event: no peak of the interval after it is larger
   double* wave_ = nullptr;  // of each mode: the sums at a sample, and their factors from sample to sample
   double* copy_ = nullptr;
   Lane best_ = Lane{};

@@ -10,8 +10,8 @@ struct ScreenTask {
   const double* numbers = nullptr;  // of the group of speeds: BridgeModel::numbers
   const double* speed = nullptr;    // m/s, lanes
   const double* limit = nullptr;    // lanes: the fraction of the limits below which a lane is of no interest
-  // For each mode: beta, omega^2, real and imaginary part of lambda^2.
-  const double *beta = nullptr, *omega2 = nullptr, *lambda2 = nullptr;
+  // For each mode: beta, omega^2, real and imaginary part of lambda^2, ModeOfBridge::size.
+  const double *beta = nullptr, *omega2 = nullptr, *lambda2 = nullptr, *size = nullptr;
 
   long events = 0;
   const double *load = nullptr, *length = nullptr, *sums = nullptr;  // TrainEvents
@@ -20,20 +20,21 @@ struct ScreenTask {
   const double* gap_length = nullptr;
   bool continuous = false;  // there are exponential parts
 
-  int stations = 0, different_stations = 0;
+  int stations = 0, different_parts = 0;
   const double *shapes = nullptr, *of_deflection = nullptr;      // [station][mode], [station]
-  const double *magnitudes = nullptr, *of_magnitudes = nullptr;  // of different stations
+  const double *magnitudes = nullptr, *of_magnitudes = nullptr;  // of different parts
   const double* largest = nullptr;                               // of each mode
   double of_acceleration = 0.0, largest_of_deflection = 0.0;
+  double part = 0.0;  // m: between stations
 
   // Passages only.
   double spacing = 0.0, tail = 0.0;  // m: between samples; part of the free oscillation behind the train
   bool every = false;                // every interval is sampled, also where the bound is below all interest
-  bool search = false;               // peaks between samples are searched for
+  bool search = false;               // searches for peaks between samples and stations, after a call that has sampled
   /// The exact largest fraction of a limit in an interval of one lane. z: Z of each mode at its start, real and
-  /// imaginary part; length: m; samples: parts of the interval.
-  double (*search_peak)(void* context, int lane, long event, const double* z, double length, int samples,
-                        double error) = nullptr;
+  /// imaginary part; length: m; samples: parts of the interval. `least` if that is greater.
+  double (*search_peak)(void* context, int lane, long event, const double* z, double length, int samples, double error,
+                        double least) = nullptr;
   void* context = nullptr;
 
   double* result = nullptr;  // lanes: the bound, or the largest fraction of a limit

@@ -102,6 +102,11 @@ void check_columns(const HeaderTable& table, const std::vector<options::VerdictL
 
 }  // namespace
 
+double first_frequency(const Bridge& bridge) {
+  const double beta = beam_modes(bridge.spans, 1).front().beta;
+  return beta * beta * std::sqrt(bridge.EI / bridge.mass) / (2.0 * std::numbers::pi);
+}
+
 std::vector<Bridge> read_stock(const std::string& path, const std::vector<options::VerdictLimit>& limits) {
   const HeaderTable table(path, {"name", "spans", "mass", "EI", "f1", "damping", "type", "speed", "deck_acceleration",
                                  "deflection_over_span"});

@@ -20,6 +20,9 @@ struct Bridge {
   double of_acceleration = 0.0, of_deflection = 0.0;
 };
 
+/// Hz, of bending.
+double first_frequency(const Bridge& bridge);
+
 /// The bridges of a table. A row is a bridge. Columns:
 ///   name
 ///   spans              m, separated by blanks: 20 or 20 25 20

@@ -1,5 +1,6 @@
 // Steps of the structure by elements, in second-order form (one_step_methods.hpp).
 #include <algorithm>
+#include <cmath>
 
 #include "structure/element_structure.hpp"
 
@@ -186,7 +187,7 @@ void ElementStructure::reject_step(double* v, double* w) {
 
 void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) {
   if (stepped_) measure_dissipation(v, w);
-  std::copy_n(a, n_, motion_->start_acceleration());
+  start_with(a);
   powers_[0] = {};
   if (!measured_between_steps()) powers_[0].beam = dissipation(w);
   if (unmeasured_ > 0.0) measure_dissipation(v, w);
@@ -196,11 +197,33 @@ void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, doub
   window_->begin(*motion_, v, w, find_loaded(loaded));
 }
 
+// Sets the accelerations at the start of the next step to a. A method of one stage answers a jump of the accelerations
+// of modes that are faster than its steps by oscillations far beyond it, because it does not damp them. It receives the
+// jump as an implicit stage of the step would cause it, which leaves the slow modes unchanged to the order of the
+// method.
+void ElementStructure::start_with(const double* a) {
+  double* const start = motion_->start_acceleration();
+  if (method_.stages.size() > 1) {
+    std::copy_n(a, n_, start);
+    return;
+  }
+  const StageRule& rule = method_.stages.front();
+  const double shift = rule.rate / rule.displacement, shift2 = 1.0 / rule.displacement;
+  for (int i = 0; i < n_; ++i) work_[i] = a[i] - start[i];
+  statics_->multiply(1.0, work_.data(), nullptr, nullptr, z_.data());
+  release_held(z_.data());
+  statics_->factored(shift, shift2).solve(z_.data());
+  for (int i = 0; i < n_; ++i) start[i] += shift2 * z_[i];
+}
+
 // Adds the dissipation until now: the trapezoidal rule, with Rayleigh damping only corrected by the rates to order 4.
-// Strong dampers have rates that long steps do not resolve.
+// Strong dampers have rates that long steps do not resolve, and so do fast modes after a jump of the load. There the
+// correction would exceed what it corrects.
 void ElementStructure::add_dissipation(const BeamMotion::Dissipation& now) {
-  dissipated_ += 0.5 * unmeasured_ * (measured_.power + now.power);
-  if (motion_->proportional()) dissipated_ += unmeasured_ * unmeasured_ / 12.0 * (measured_.rate - now.rate);
+  const double trapezoid = 0.5 * unmeasured_ * (measured_.power + now.power);
+  const double correction = unmeasured_ * unmeasured_ / 12.0 * (measured_.rate - now.rate);
+  dissipated_ += trapezoid;
+  if (motion_->proportional() && std::abs(correction) < std::abs(trapezoid)) dissipated_ += correction;
   measured_ = now;
   unmeasured_ = 0.0;
 }

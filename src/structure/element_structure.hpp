@@ -72,6 +72,7 @@ class ElementStructure final : public Structure {
   const double* acceleration() const override { return motion_->start_acceleration(); }
   double error_energy(const double* v, const double* w) override;
 
+  Extent extent(const double* v) const override { return extent_of(v, beam_.layout(), n_); }
   StructureEnergy energy(const double* v, const double* w) override;
   void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                NodalMotion& out) override;
@@ -103,6 +104,7 @@ class ElementStructure final : public Structure {
   double dissipation(const double* w);
   int local_node(int column) const;
   bool measured_between_steps() const;
+  void start_with(const double* a);
   void measure_dissipation(const double* v, const double* w);
   void add_dissipation(const BeamMotion::Dissipation& now);
   const std::vector<Range>& find_loaded(const std::vector<Reach>& loaded);

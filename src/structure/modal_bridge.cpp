@@ -35,6 +35,7 @@ ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int coun
     : beam_(beam), statics_(statics), basis_(modes::given_basis(beam, count)) {
   const std::vector<double>& ratio = beam.model().given->ratio;
   for (std::size_t i = 0; i < modes(); ++i) sigma_.push_back(ratio[i] * basis_.omega[i]);
+  damper_sigma_.assign(modes(), 0.0);
   own_drag_.assign(modes(), 0.0);
   statics_.set_modal_flexibility(basis_.shape, basis_.omega, beam_.first_column() * beam_.block());
   influence_ = influence_of(lines_of_modes(), {});
@@ -80,12 +81,16 @@ void ModalBridge::set_damping(const std::vector<double>& ratios) {
   if (ratios.empty()) ab_ = ab;
   const auto m = static_cast<Eigen::Index>(modes());
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(m, m);  // other than Rayleigh damping
+  Eigen::VectorXd dampers = Eigen::VectorXd::Zero(m);
   // Rayleigh's b damps the beam, but not the foundation's springs.
   if (beam_.dampers() != nullptr || (beam_.springs() != nullptr && ab.b != 0.0)) {
-    const Eigen::MatrixXd forces = on_shapes(beam_.dampers()) - ab.b * on_shapes(beam_.springs());
+    const Eigen::MatrixXd by_dampers = on_shapes(beam_.dampers()),
+                          forces = by_dampers - ab.b * on_shapes(beam_.springs());
     damping = share_of_modes(forces);
+    if (beam_.dampers() != nullptr) dampers = 0.5 * share_of_modes(by_dampers).diagonal();
     set_forces_on_others(forces, damping);
   }
+  damper_sigma_.assign(dampers.begin(), dampers.end());
   Eigen::VectorXd root(m);  // square root of each mode's own damping
   for (std::size_t i = 0; i < modes(); ++i) {
     const double omega = basis_.omega[i];

@@ -79,6 +79,8 @@ class ModalBridge {
   const std::vector<double>& omega() const { return basis_.omega; }  // rad/s
   /// Half of the diagonal of the modes' damping phi^T C* phi, given ratios included, 1/s: decay rates unless coupled.
   const std::vector<double>& sigma() const { return sigma_; }
+  /// The part of it by dampers, 1/s.
+  const std::vector<double>& damper_sigma() const { return damper_sigma_; }
   /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 if it is diagonal.
   const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
   bool coupled() const { return cross_damping_.size() > 0; }
@@ -125,7 +127,7 @@ class ModalBridge {
   const beam::Beam& beam_;
   BeamOperator& statics_;
   modes::Basis basis_;
-  std::vector<double> sigma_, own_drag_;
+  std::vector<double> sigma_, damper_sigma_, own_drag_;
   Eigen::MatrixXd cross_damping_;
   beam::Rayleigh ab_;                 // zero if ratios damp the modes
   Eigen::MatrixXd forces_on_others_;  // per rate of each mode, this rank's unknowns; no columns: none

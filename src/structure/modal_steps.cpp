@@ -162,7 +162,15 @@ void ModalStructure::begin_motion(const Method& method) {
 void ModalStructure::set_method(const Method& method, double /*h*/) { method_ = method; }
 
 void ModalStructure::restart(const std::vector<Reach>& /*loaded*/, double* /*v*/, double* w, const double* a) {
-  std::copy_n(a, n_, accelerations_[0].begin());
+  if (method_.stages.size() > 1) {
+    std::copy_n(a, n_, accelerations_[0].begin());
+  } else {  // as ElementStructure::start_with
+    const StageRule& rule = method_.stages.front();
+    set_stage(rule.rate / rule.displacement, 1.0 / rule.displacement);
+    for (int i = 0; i < n_; ++i) q_[i] = a[i] - accelerations_[0][i];
+    divide(q_.data(), z_.data());
+    for (int i = 0; i < n_; ++i) accelerations_[0][i] += shift2_ * z_[i];
+  }
   powers_[0].damping = damping(w);
 }
 

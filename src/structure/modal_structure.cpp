@@ -3,6 +3,7 @@
 #include "structure/modal_structure.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "beam/shape.hpp"
 
@@ -25,6 +26,8 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
   by_unknown_.resize(modes_ * shape.front().size());
   for (std::size_t i = 0; i < modes_; ++i)
     for (std::size_t u = 0; u < shape[i].size(); ++u) by_unknown_[u * modes_ + i] = shape[i][u];
+  for (const std::vector<double>& nodal : shape)
+    extents_.push_back(extent_of(nodal.data(), beam_.layout(), static_cast<int>(nodal.size())));
 
   weight_displacement_.assign(shape.front().size(), 0.0);
   weight_.assign(modes_, 0.0);
@@ -139,6 +142,15 @@ void ModalStructure::add_values(const std::vector<int>& elements, const double* 
 }
 
 // --- observation ---------------------------------------------------------------------------------------------------
+
+Extent ModalStructure::extent(const double* v) const {
+  Extent largest;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n_); ++i) {
+    largest.displacement = std::max(largest.displacement, std::abs(v[i]) * extents_[i].displacement);
+    largest.rotation = std::max(largest.rotation, std::abs(v[i]) * extents_[i].rotation);
+  }
+  return largest;
+}
 
 // Energy of the modes only: the energy of the static correction and the work for it are not included.
 StructureEnergy ModalStructure::energy(const double* v, const double* w) {

@@ -47,6 +47,7 @@ class ModalStructure final : public Structure {
   const double* acceleration() const override { return accelerations_[0].data(); }
   double error_energy(const double* v, const double* w) override;
 
+  Extent extent(const double* v) const override;
   StructureEnergy energy(const double* v, const double* w) override;
   void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                NodalMotion& out) override;
@@ -92,6 +93,7 @@ class ModalStructure final : public Structure {
   const ModalBridge& bridge_;
   std::size_t modes_;
   std::vector<double> by_unknown_;           // [unknown][mode]
+  std::vector<Extent> extents_;              // of each mode's shape
   std::vector<double> weight_displacement_;  // v_0, of all ranks' unknowns
   std::vector<double> weight_;               // phi^T of the self-weight, N
   double weight_work_ = 0.0;                 // J, self-weight times v_0

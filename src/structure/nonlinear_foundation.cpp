@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace traverse::structure {
 namespace {
@@ -180,7 +181,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
   std::vector<int> counts(static_cast<std::size_t>(ranks)), starts(counts.size(), 0);
   const int bytes = static_cast<int>(own_loads.size() * sizeof(beam::ElementLoad));
   MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_);
-  for (std::size_t i = 1; i < starts.size(); ++i) starts[i] = starts[i - 1] + counts[i - 1];
+  std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
   const std::size_t before = loads.size();
   loads.resize(before + static_cast<std::size_t>(starts.back() + counts.back()) / sizeof(beam::ElementLoad));
   MPI_Allgatherv(own_loads.data(), bytes, MPI_BYTE, loads.data() + before, counts.data(), starts.data(), MPI_BYTE,

@@ -3,11 +3,23 @@
 #include "structure/structure.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "beam/shape.hpp"
 #include "recovery/spread_load.hpp"
 
 namespace traverse::structure {
+
+Extent extent_of(const double* v, const beam::Layout& layout, int count) {
+  Extent extent;
+  for (int first = 0; first < count; first += layout.block)
+    for (int place = 0; place < layout.block; ++place) {
+      const bool rotation = beam::Layout::rotation(layout.kind[static_cast<std::size_t>(place)]);
+      double& largest = rotation ? extent.rotation : extent.displacement;
+      largest = std::max(largest, std::abs(v[first + place]));
+    }
+  return extent;
+}
 
 Structure::Structure(const beam::Beam& beam, std::shared_ptr<BeamOperator> statics, double gravity)
     : beam_(beam),

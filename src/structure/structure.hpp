@@ -37,6 +37,14 @@ struct ElementLoads {
 /// 15). Forces along x have an effect only if there are axial unknowns.
 std::array<double, 6> on_unknowns(const beam::Line& line, const beam::ElementLoad& force);
 
+/// The largest magnitudes of the displacements, m, and rotations, rad, of a state.
+struct Extent {
+  double displacement = 0.0, rotation = 0.0;
+};
+
+/// The extent of `count` unknowns, column by column.
+Extent extent_of(const double* v, const beam::Layout& layout, int count);
+
 /// The range of the line in which a wheel or a force is during a step, m.
 struct Reach {
   double from = 0.0, to = 0.0;
@@ -100,6 +108,7 @@ class Structure {
   /// The supports move; before the first load. Only for structures by elements.
   void move_supports(std::shared_ptr<SupportMotion> motion) { support_motion_ = std::move(motion); }
   const SupportMotion* support_motion() const { return support_motion_.get(); }
+  SupportMotion* support_motion() { return support_motion_.get(); }
   /// Sets the motion of the supports to its values at t, before load and gather.
   void set_time(double t) {
     if (support_motion_) support_motion_->set_time(t);
@@ -200,6 +209,8 @@ class Structure {
 
   // --- observation -------------------------------------------------------------------------------------------------
 
+  /// This rank's share; by modes that of the mode that displaces the bridge most.
+  virtual Extent extent(const double* v) const = 0;
   /// This rank's share.
   virtual StructureEnergy energy(const double* v, const double* w) = 0;
   /// A state with its accelerations as nodal values, under the moving forces and the contacts' loads; with_loads:

@@ -1,6 +1,8 @@
 // The static shapes of unit displacements of the supports, from beams with one settled support each, and their inertia.
 #include "structure/support_motion.hpp"
 
+#include <algorithm>
+
 #include "structure/element_structure.hpp"
 
 namespace traverse::structure {
@@ -38,6 +40,22 @@ void SupportMotion::add_unit(const beam::Beam& beam, std::size_t direction, std:
   moved.reactions(zero.data(), zero.data(), zero.data(), zero.data(), unit.by_displacement);
   moved.reactions_of_imposed_acceleration(unit.by_acceleration);
   units_.push_back(std::move(unit));
+}
+
+bool SupportMotion::select_sides(double t) {
+  bool changed = false;
+  for (std::vector<base::TimeFunction>& functions : function_)
+    for (base::TimeFunction& f : functions) changed = f.select_side(t) || changed;
+  return changed;
+}
+
+std::vector<double> SupportMotion::rows() const {
+  std::vector<double> rows;
+  for (const std::vector<base::TimeFunction>& functions : function_)
+    for (const base::TimeFunction& f : functions) rows.insert(rows.end(), f.rows().begin(), f.rows().end());
+  std::sort(rows.begin(), rows.end());
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  return rows;
 }
 
 void SupportMotion::set_time(double t) {

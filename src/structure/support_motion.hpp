@@ -29,6 +29,10 @@ class SupportMotion {
 
   /// Sets all following quantities to their values at t.
   void set_time(double t);
+  /// Before a time step around t: the accelerations within the step apply at its ends. Returns whether they jump.
+  bool select_sides(double t);
+  /// The times of the rows of all tables, s.
+  std::vector<double> rows() const;
 
   /// Sum of R_s u_s and its rates: this rank's unknowns of the beam, held ones included.
   const std::vector<double>& displacement() const { return moved_[0]; }

@@ -183,15 +183,18 @@ std::vector<double> values_to_add(const StudyTable& table) {
   return values_to_add(study.dimensions[study.find->dimension].values, ratios, study.find->accuracy);
 }
 
+std::string undetermined(const StudyTable& table) {
+  if (!bounded_columns(table).empty()) return "";
+  const std::vector<Bounded> named = named_columns(table);
+  return "find_option: no run determines " +
+         (named.empty() ? table.study().find->quantity : reason_of(table, named.front()));
+}
+
 namespace {
 
 /// Why the search has no answer; empty if it has one.
 std::string search_obstacle(const StudyTable& table) {
-  if (bounded_columns(table).empty()) {
-    const std::vector<Bounded> named = named_columns(table);
-    return "find_option: no run determines " +
-           (named.empty() ? table.study().find->quantity : reason_of(table, named.front()));
-  }
+  if (const std::string why = undetermined(table); !why.empty()) return why;
   if (const std::vector<double> wanted = values_to_add(table); !wanted.empty())
     return fmt::format(
         "find_option: the intervals are not known to {:g} after {} values ({} more are needed): the results contain "

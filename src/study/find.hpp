@@ -27,6 +27,9 @@ std::vector<FoundAnswer> answers_of(const results::StudyTable& table);
 /// The values of the option that have to be added. Empty: the intervals are known to the accuracy of the search.
 std::vector<double> values_to_add(const results::StudyTable& table);
 
+/// The message that the runs of a table determine no quantity of the search; empty if they do.
+std::string undetermined(const results::StudyTable& table);
+
 /// Collective. SolverError if the table of rank 0 does not have the answers: no run determines a quantity, or the ends
 /// of the intervals are not known to the accuracy of the search.
 void check_answers(MPI_Comm comm, const results::StudyTable& table);

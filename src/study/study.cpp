@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "base/notes.hpp"
@@ -92,7 +93,10 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
   const Study& study = scenes.study();
   const CaseRunner& first = *scenes.runner(0).runs;
   describe_runs(study, notes);
-  if (known > 0) notes.push_back(fmt::format("{} of them are read from the existing results file", known));
+  if (known > 0)
+    notes.push_back(fmt::format("{} of them are read from the existing results file", known));
+  else if (study.resume)
+    notes.push_back(fmt::format("study_resume: {} contains no finished run of this study", scene.output.file));
   if (first.has_lanes())
     notes.push_back(base::detail(
         fmt::format("up to {} runs{} are advanced together, one in each lane of {} vectors", first.width(),
@@ -155,15 +159,25 @@ class Rounds {
     begin(scenes.study());
   }
 
-  /// Collective. Further speeds (m/s) for the first round.
-  void add(const std::vector<double>& speeds) {
-    if (!speeds.empty()) begin(with_values(scenes_.study(), scenes_.study().speeds, speeds));
+  /// Collective. Further values of the extended dimension for the first round.
+  void add(const std::vector<double>& values) {
+    if (!values.empty()) begin(with_values(scenes_.study(), extended_dimension(scenes_.study()), values));
   }
-  /// Collective. Copies the results of earlier runs from the file and returns their number.
+  /// Collective. Copies the results of earlier runs from the file and returns their number. The first round has the
+  /// values that an interrupted study has added: the file always contains all known runs.
   std::size_t copy_stored() {
     if (scenes_.study().sensitivity) return 0;  // its file has no single runs
+    if (adds_values(scenes_.study())) add(on_all_ranks(added_before()));
     known_ = copy_known(comm_, stored_, *table_);
     return static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 1));
+  }
+  /// Collective. InputError if the study is a search and neither its first nor its last run determines its quantities.
+  void check_search() {
+    if (!scenes_.study().find) return;
+    int rank = 0;
+    MPI_Comm_rank(comm_, &rank);
+    const std::string why = broadcast_text(comm_, rank == 0 ? undetermined_in_first_and_last() : "");
+    if (!why.empty()) throw InputError(why);
   }
   /// Collective. Computes all rounds and leaves their file open.
   RunFailure run(results::Place place, StudyCourse& course) {
@@ -213,11 +227,36 @@ class Rounds {
       const std::size_t known = study.dimensions[extended_dimension(study)].values.size();
       if (known + values.size() > max_values_of(study, given_.size())) values.clear();
     }
+    return on_all_ranks(std::move(values));
+  }
+  /// On rank 0: the values of finished runs of the file that are between the given ones.
+  std::vector<double> added_before() const {
+    const auto finished = stored_.datasets.find("finished");
+    if (finished == stored_.datasets.end()) return {};
+    const Study& study = scenes_.study();
+    const std::vector<double>& all = stored_.datasets.at(study.dimensions[extended_dimension(study)].name());
+    std::set<double> added;
+    for (std::size_t run = 0; run < all.size(); ++run)
+      if (finished->second[run] == 1.0 && all[run] > given_.front() && all[run] < given_.back()) added.insert(all[run]);
+    for (const double value : given_) added.erase(value);
+    return {added.begin(), added.end()};
+  }
+  /// Collective. The values of rank 0.
+  std::vector<double> on_all_ranks(std::vector<double> values) const {
     int size = static_cast<int>(values.size());
     MPI_Bcast(&size, 1, MPI_INT, 0, comm_);
     values.resize(static_cast<std::size_t>(size));
     MPI_Bcast(values.data(), size, MPI_DOUBLE, 0, comm_);
     return values;
+  }
+  std::string undetermined_in_first_and_last() {
+    results::StudyTable tried = *table_;
+    try {
+      for (const std::size_t run : {std::size_t{0}, tried.runs() - 1}) compute_run(scenes_, run, tried);
+    } catch (const Error&) {
+      return "";  // the search itself reports the failure
+    }
+    return undetermined(tried);
   }
   std::vector<double> speeds_to_add() {
     Refinement found = next_speeds(*table_, width_);
@@ -281,8 +320,10 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   SweepFindings* const found = findings ? &*findings : nullptr;
   Rounds rounds(comm, findings ? scene : given, scenes, model, findings ? findings->width_of_resonance() : 0.0,
                 stored_of(comm, given, model), notes);
-  describe(scene, scenes, model, rounds.copy_stored(), ranks, notes);
-  print_notes(comm, scene, notes);
+  const std::size_t known = rounds.copy_stored();
+  if (known == 0) rounds.check_search();
+  describe(scene, scenes, model, known, ranks, notes);
+  print_notes(comm, given, notes);
   if (findings && scenes.study().refine > 0.0) rounds.add(findings->unresolved_speeds());
 
   const DeferredSignals noted;

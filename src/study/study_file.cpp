@@ -9,7 +9,6 @@
 #include <map>
 #include <string_view>
 
-#include "results/earlier_copy.hpp"
 #include "results/sensitivity.hpp"
 #include "results/study_statistics.hpp"
 #include "results/sweep.hpp"
@@ -148,16 +147,12 @@ results::Recorder::Dataset digests_of(const results::StudyTable& table) {
 StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::RunModel& model,
                      const results::StudyTable& table, const std::vector<std::string>& notes)
     : comm_(comm), table_(table), model_(model), recorder_([&] {
-        int rank = 0;
-        MPI_Comm_rank(comm, &rank);
-        const results::EarlierCopy copy(place, rank == 0 && table.finished_runs() > 0);
         results::Recorder made(comm, std::move(place), layout_without_series(scene), attributes(comm, scene),
                                scene.options);
         record_model(scene, notes, made);
         results::record_limits(made, table.limits());
         if (!table.study().sweep) made.datasets(table.coordinates());
         made.datasets(results());
-        copy.remove();
         return made;
       }()) {
   const std::string folder = table.study().sweep ? "/sweep" : "/study";
@@ -171,7 +166,7 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
     recorder_.attributes(folder, {{"dimensions", dimensions}, {"axes", axes}});
   }
   recorder_.attributes(folder, results::attributes_of(model));
-  recorder_.rewrite({results().back()});  // on the disk, with all datasets above
+  recorder_.publish();
 }
 
 std::vector<results::Recorder::Dataset> StudyFile::results() const {
@@ -207,6 +202,7 @@ void StudyFile::finish(const StudyCourse& course, const std::vector<results::Ver
                        const SweepFindings* findings) {
   if (!recorder_.writes()) return;
   write();
+  recorder_.change_beside();
   const results::StudyStatistics statistics(table_);
   recorder_.datasets(statistics.datasets());
   if (statistics.groups() > 0) recorder_.attributes("/study/statistics", {{"confidence", table_.study().confidence}});

@@ -42,6 +42,12 @@ std::vector<double> row_of(std::size_t run, std::size_t runs, const CaseResult& 
   return row;
 }
 
+/// Stores why a run does not evaluate quantities of limits.
+void set_reasons(const CaseResult& result, results::StudyTable& table) {
+  for (std::size_t l = 0; l < result.evaluated.size(); ++l)
+    if (std::isnan(result.evaluated[l].value)) table.set_reason(l, result.evaluated[l].why);
+}
+
 /// The name of a group of a sweep, as "one of the runs of train A3 at 50 to 60 m/s (180 to 216 km/h)".
 std::string name_in_sweep(const Study& study, const std::vector<std::size_t>& group) {
   const auto speed = [&](std::size_t run) { return study.value(run, study.dimensions[study.speeds]); };
@@ -142,8 +148,7 @@ SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTabl
   work.compute = [&, wheels, greatest](std::size_t piece, const std::function<void(double)>& reached) {
     const auto ended = [&](std::size_t run, std::size_t runs, const CaseResult& result, const CaseRunner& runner) {
       if (!result.ended) return;
-      for (std::size_t l = 0; l < result.evaluated.size(); ++l)
-        if (std::isnan(result.evaluated[l].value)) table.set_reason(l, result.evaluated[l].why);
+      set_reasons(result, table);
       gather.send(row_of(run, runs, result, runner.probes(), wheels));
     };
     const auto progress = [&](double t) {
@@ -161,6 +166,16 @@ SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTabl
 }
 
 }  // namespace
+
+void compute_run(StudyScenes& scenes, std::size_t run, results::StudyTable& table) {
+  const bool wheels = table.find("least_wheel_force") != nullptr;
+  run_group(
+      scenes, {run}, [](double) {},
+      [&](std::size_t, std::size_t runs, const CaseResult& result, const CaseRunner& runner) {
+        set_reasons(result, table);
+        table.put(run, row_of(run, runs, result, runner.probes(), wheels).data() + 2, runs);
+      });
+}
 
 RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,
                         StudyFile& file) {

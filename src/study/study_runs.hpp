@@ -12,6 +12,9 @@
 
 namespace traverse::app {
 
+/// Computes one run on this rank and stores its results in the table.
+void compute_run(StudyScenes& scenes, std::size_t run, results::StudyTable& table);
+
 /// Collective. Computes the runs that are not `known` until the end or a failure, and stores their results in the table
 /// of rank 0. Returns the failure of the earliest run.
 RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,

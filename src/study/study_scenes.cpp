@@ -37,16 +37,17 @@ bool is_local(const Study& study) {
 
 Study study_of_sweep(const Scene& scene) {
   std::vector<double> speeds = scene.sweep->speeds;
-  if (speeds.empty()) speeds = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
+  if (speeds.empty()) speeds = {moving_speed(scene)};
   Study study = results::sweep_study(scene.sweep->trains, std::move(speeds));
   study.refine = scene.sweep->refine;
   return study;
 }
 
-/// A train and forces in one scene must have one speed.
+/// A train and forces that move in one scene must have one speed.
 void check_speeds(const Scene& scene) {
   if (scene.vehicles.empty() || scene.load.forces.empty()) return;
   if (!scene.train.courses.empty() || !scene.load.courses.empty()) return;  // each course has its own speed
+  if (scene.train.speed == 0.0 || scene.load.speed == 0.0) return;          // what stands is not varied
   for (const StudyDimension& d : scene.study->dimensions)
     if (is_speed(d) && !(names(d, "train_speed") && names(d, "load_speed")))
       throw InputError(
@@ -71,7 +72,7 @@ void StudyScenes::enumerate(const Study& study) {
   first_run_.clear();
   values_of_bases_.clear();
   first_of_bridge_.clear();
-  const double speed = scene_.vehicles.empty() ? scene_.load.speed : scene_.train.speed;
+  const double speed = moving_speed(scene_);
   std::map<std::vector<double>, std::size_t> known,
       bridges;  // indices of bases and bridges by the values that define them
   std::set<double> speeds;
@@ -83,6 +84,7 @@ void StudyScenes::enumerate(const Study& study) {
                    : is_seed(d)       ? Sets::own_seed
                    : is_of_traffic(d) ? Sets::traffic
                                       : Sets::bridge);
+  const bool varies_speed = std::ranges::any_of(study.dimensions, is_speed);
   for (std::size_t run = 0; run < study.runs(); ++run) {
     StudyRun one{0, study.sweep ? study.place(run, 0) : 0, 0, {speed, {}}};
     std::vector<double> of_base, of_bridge;
@@ -99,7 +101,8 @@ void StudyScenes::enumerate(const Study& study) {
         if (sets[i] == Sets::bridge) of_bridge.push_back(value);
       }
     }
-    if (!(one.own.speed > 0.0))
+    const bool stands = !scene_.vehicles.empty() && one.own.speed == 0.0 && !varies_speed;
+    if (!(one.own.speed > 0.0 || stands))
       throw InputError(fmt::format("study_vary: run {} has the speed {:g} m/s; allowed: above 0", run, one.own.speed));
     const auto [base, is_new] = known.try_emplace(of_base, first_run_.size());
     if (is_new) {

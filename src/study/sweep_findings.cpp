@@ -7,7 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "modes/modes.hpp"
 #include "results/sweep.hpp"
+#include "run/model_record.hpp"
 #include "run/norm_run.hpp"
 #include "study/resonances.hpp"
 
@@ -49,13 +51,12 @@ std::vector<double> SweepFindings::unresolved_speeds() const { return unresolved
 
 double SweepFindings::width_of_resonance() const {
   const SharedBeam& shared = *runner_.beam();
+  const auto ratios = shared.damping_ratios();
   double damping = 0.0;  // ratio
-  if (shared.modal) {
-    damping = shared.modal->sigma().front() / shared.modal->omega().front();
-  } else if (!frequencies_.empty()) {
-    const double omega = 2.0 * std::numbers::pi * frequencies_.front();
-    damping = 0.5 * (shared.rayleigh.a / omega + shared.rayleigh.b * omega);
-  }
+  if (!ratios.empty())
+    damping = ratios.front().beam + ratios.front().dampers;
+  else if (!frequencies_.empty())
+    damping = modes::BendingMode{2.0 * std::numbers::pi * frequencies_.front()}.ratio(shared.rayleigh);
   return std::max(2.0 * damping, least_width);
 }
 
@@ -69,6 +70,7 @@ void SweepFindings::add_to(std::vector<results::Verdict>& verdicts) const {
 }
 
 void SweepFindings::record(results::Recorder& recorder) const {
+  record_modes(*runner_.beam(), recorder);
   results::record(scene_.sweep->trains, resonances_, cancellations_, recorder);
   if (check_) check_->record(recorder);
 }

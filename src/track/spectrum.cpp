@@ -44,4 +44,14 @@ Spectrum fra(int grade) {
   return {0.25 * roughness[static_cast<std::size_t>(grade - 1)], 0.0, 0.8245, 1.5, 300.0};
 }
 
+std::optional<Spectrum> spectrum_of(std::string_view name) {
+  for (const SpectrumRow& row : spectra) {
+    if (row.grades.empty() && name == row.name) return row.make(' ');
+    if (name.size() == row.name.size() + 1 && name.starts_with(row.name) &&
+        row.grades.find(name.back()) != std::string_view::npos)
+      return row.make(name.back());
+  }
+  return {};
+}
+
 }  // namespace traverse::track

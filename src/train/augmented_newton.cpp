@@ -8,6 +8,10 @@
 namespace traverse::train {
 namespace {
 
+// 1/s2: in statics springs tie all masses, because coordinates such as the rotation of a roller may have no stiffness.
+// Newton's method loses a part of 1e-4 s2 times the square of a frequency, no accuracy.
+constexpr double static_tie = 1e-4;
+
 double dot3(const std::array<double, 3>& a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 std::array<double, 3> array3(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
@@ -46,13 +50,14 @@ bool AugmentedNewton::renew(MovingVehicle& vehicle, const StageShifts& shifts, c
     independent_ = mechanism.partition().independent;
   }
   if (pdd != nullptr) mechanism.recover(vehicle.state, vehicle.Q, pdd);
-  if (!mechanism.factor_augmented(vehicle.state, shifts.acceleration, -1.0, -shifts.rate, pdd != nullptr ? 1.0 : 0.0,
-                                  system_))
-    return false;
-  dq_.resize(mechanism.coordinates());
-  const auto r = static_cast<Eigen::Index>(rows.size());
   directions_.resize(rows.size());
   std::transform(rows.begin(), rows.end(), directions_.begin(), direction_of);
+  const double by_mass = shifts.statics() ? static_tie : shifts.acceleration;
+  mechanism.assemble_augmented(vehicle.state, by_mass, -1.0, -shifts.rate, pdd != nullptr ? 1.0 : 0.0, system_);
+  if (shifts.statics()) add_contacts(compliance.D);
+  if (!system_.factor()) return false;
+  dq_.resize(mechanism.coordinates());
+  const auto r = static_cast<Eigen::Index>(rows.size());
   compliance.H.resize(r, r);
   compliance.c.resize(r);
   for (Eigen::Index j = 0; j < r; ++j) {
@@ -62,6 +67,16 @@ bool AugmentedNewton::renew(MovingVehicle& vehicle, const StageShifts& shifts, c
     for (Eigen::Index i = 0; i < r; ++i) compliance.H(i, j) = directions_[static_cast<std::size_t>(i)].dot(dq_);
   }
   return true;
+}
+
+// K += G^T D G. The first column of D belongs to tangential rows.
+void AugmentedNewton::add_contacts(const RowTangent& D) {
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const Direction& own = directions_[i];
+    const auto row = static_cast<Eigen::Index>(i);
+    system_.add_to_body(own.body, D(row, 1), own.on_body, own.on_body);
+    if (D(row, 0) != 0.0) system_.add_to_body(own.body, D(row, 0), own.on_body, directions_[i - 1].on_body);
+  }
 }
 
 // R is a residual of all coordinates whose projection is R: with R at the independent ones and 0 at the others.

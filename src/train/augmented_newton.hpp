@@ -12,7 +12,8 @@ namespace traverse::train {
 class AugmentedNewton {
  public:
   /// Computes and factorises the matrix of the stage, with the curvature of the constraints at p'' unless that is null,
-  /// and compliance.H. False if its pivots have the wrong signs, so that the projected matrix is needed.
+  /// and compliance.H. False if its pivots have the wrong signs, so that the projected matrix is needed. In statics the
+  /// contacts' tangent compliance.D, of contacts with the ground only, is included.
   bool renew(MovingVehicle& vehicle, const StageShifts& shifts, const double* pdd, ContactRows rows,
              ContactCompliance& compliance);
   /// compliance.c = -G J^-1 R, with the projected residual R.
@@ -31,6 +32,7 @@ class AugmentedNewton {
     void add_to(double force, Eigen::VectorXd& r) const;
   };
   static Direction direction_of(const ContactRow& row);
+  void add_contacts(const RowTangent& D);
 
   multibody::AugmentedSystem system_;
   int partition_version_ = 0;

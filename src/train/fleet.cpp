@@ -72,7 +72,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       first.further = static_cast<int>(wheels.size());
       first.may_touch_several_points = c.may_touch_several_points;
       wheels.insert(wheels.end(), track::most_points - 1, c);
-      c.sign = -1.0;
+      c.factor = -1.0;
       wheels.insert(wheels.end(), track::most_points - 1, c);
     }
     add_pairs(static_cast<int>(k));
@@ -87,9 +87,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
              vehicle.mechanism.model().bodies[static_cast<std::size_t>(contact(b).body)].position.x();
     });
   }
-  for (const MovingVehicle& vehicle : vehicles)
-    for (const multibody::Driver& driver : vehicle.mechanism.model().drivers)
-      accelerations_jump_ = accelerations_jump_ || driver.value.jumps();
+  has_kinks_ = !kinks_of_motions().empty();
   set_own(0, static_cast<int>(vehicles.size()));
   start_rolling();
 }

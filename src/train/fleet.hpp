@@ -61,11 +61,11 @@ struct Contact {
   bool touched = false;                 // with a force in some stage of the last step
   bool released = false;                // opened by its damper while compressed; the elastic energy is lost
   std::array<int, 2> slots = {-1, -1};  // indices of the patches' elements in Fleet::elements(); -1: ground
-  double sign = 1.0;                    // sign of its force
+  double factor = 1.0;                  // of its force
   int active = 0;                       // the patch with the deepest penetration
   int slot() const { return slots[active]; }
   void keep(base::Bytes& bytes) {
-    bytes(law.local_compliance, touch, kinematics, force, approach_speed, touched, released, slots, sign, active);
+    bytes(law.local_compliance, touch, kinematics, force, approach_speed, touched, released, slots, factor, active);
   }
 };
 
@@ -76,8 +76,12 @@ struct PairContact : Contact {
 
 /// A wheel on the track. A wheel with a radius larger than that of the track's valleys, or one at a jump of the
 /// surface's height, may touch at several points (track::TouchingPoints). It has further entries: the other points from
-/// left to right, then the common overlaps of neighbouring points, whose forces are subtracted (sign -1). Unused
+/// left to right, then the common overlaps of neighbouring points, whose forces are subtracted (factor -1). Unused
 /// entries have no candidates, a negative penetration and no force; so has a wheel without a surface under it.
+///
+/// At a jump in height the point at the end of one surface, an edge, counts with its share: entirely if the end of the
+/// other surface is lower, not at all if it is higher. Between two level ends any share is an equilibrium of the
+/// contact, and the beams that they belong to determine it.
 struct WheelContact : Contact {
   int wheel = 0;                 // index of the wheel in its vehicle
   std::array<Patch, 2> patches;  // the surface under the wheel, and beyond a near kink
@@ -87,14 +91,26 @@ struct WheelContact : Contact {
   int further = 0;           // index of the first further entry of this wheel; 0: none
   bool is_further = false;
   bool may_touch_several_points = false;  // its radius is larger than that of the track's valleys
-  double minimum_station = 0.0;           // sign -1: station of the minimum between the points, m
-  bool at_height_jump = false;            // sign -1: the height jumps there; the patches are on its two sides
+  // Of a common overlap: station of the minimum between the points, m; whether the height jumps there, so that the
+  // patches are on its two sides; the share of the edge, whether it is held, and the height of the edge above the end
+  // of the other surface, m.
+  double minimum_station = 0.0;
+  bool at_height_jump = false;
+  double share = 1.0;
+  bool share_held = false;
+  double edge_height = 0.0;
 
   void keep(base::Bytes& bytes) {
     Contact::keep(bytes);
-    bytes(patches, candidates, roll_origin, minimum_station, at_height_jump);
+    bytes(patches, candidates, roll_origin, minimum_station, at_height_jump, share, edge_height);
   }
 };
+
+/// The force of a contact at its kinematics.
+contact::Force force_of(const Contact& contact);
+
+/// Two ends of surfaces at a smaller distance are level, m.
+inline constexpr double level = 1e-9;
 
 struct WheelLoad {
   double normal = 0.0, tangential = 0.0;  // N
@@ -176,10 +192,12 @@ class Fleet {
   std::string unsupported_body(const Fleet& start) const;
   /// Calls Mechanism::apply for a body of a vehicle of the train. InputError if that vehicle is linearised.
   void apply(int member, int body, const Eigen::Vector3d& action);
-  /// Called before a step, with the time of its middle: selects the prescribed accelerations of this step if they jump.
+  /// Called before a step, with the time of its middle: selects the prescribed motions of this step where they jump.
   /// True if one has jumped.
   bool begin_step(double middle);
-  /// Times at which actuators' tables have kinks or prescribed accelerations jump, s.
+  /// Times at which rates or accelerations of drivers and winches jump, s.
+  std::vector<double> kinks_of_motions() const;
+  /// These times, and those at which actuators' tables have kinks, s.
   std::vector<double> kinks_of_actions() const;
   /// Starts to count the rolling angles of wheels out of round. If a wheel's body is free to turn and turns (by
   /// friction, or with a given speed), the angle is that of the body; any other wheel rolls without sliding.
@@ -283,6 +301,8 @@ class Fleet {
   void reset_contact(WheelContact& c);
   bool touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find);
   bool touch_points(WheelContact& c, int per_node, const double* v, const double* w);
+  bool touch_jump(WheelContact& left, WheelContact& right, WheelContact& common, int per_node, const double* v,
+                  const double* w);
   void clear_touch(WheelContact& c) const;
   bool has_left_guide(const WheelContact& c) const;
   WheelContact& point(const WheelContact& first, int i) {
@@ -307,7 +327,7 @@ class Fleet {
   std::array<std::array<double, 2>, 2> ground_{};
   std::vector<int> course_;  // index of the course (one of several trains) of each of `vehicles`; -1: none
   std::vector<std::shared_ptr<const track::Profile>> profiles_;  // for each course; null: profile_
-  bool accelerations_jump_ = false;                              // whether a prescribed acceleration jumps at some time
+  bool has_kinks_ = false;                                       // whether a prescribed motion has kinks
   bool frozen_ = false;
   int failed_ = -1;
   double surface_height_ = 0.0;

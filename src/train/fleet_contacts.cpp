@@ -13,7 +13,15 @@ constexpr double at_end = 1e-10;  // m: distance from the end of a patch
 
 }  // namespace
 
-// Selects the candidate with the largest penetration; on the two sides of a jump in height the smallest.
+contact::Force force_of(const Contact& c) {
+  contact::Force f = contact::force(c.law, c.kinematics, c.approach_speed);
+  for (double* part : {&f.normal, &f.tangential, &f.normal_by_penetration, &f.normal_by_rate,
+                       &f.tangential_by_penetration, &f.tangential_by_rate, &f.tangential_by_sliding})
+    *part *= c.factor;
+  return f;
+}
+
+// Selects the candidate with the largest penetration.
 bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find) {
   const std::ptrdiff_t m = 2 * static_cast<std::ptrdiff_t>(per_node);
   const Eigen::Vector3d q = coordinates(c);
@@ -22,18 +30,53 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
   candidate.ahead = c.touch.ahead;
   if (c.candidates == 0) return true;
   double deepest = -std::numeric_limits<double>::infinity();
-  const double sign = c.at_height_jump ? -1.0 : 1.0;
   for (int i = 0; i < c.candidates; ++i) {
     const std::ptrdiff_t at = c.slots[i] < 0 ? 0 : m * c.slots[i];
     if (!train::touch(c.patches[i], profile(c), wheel(c).radius, q, qd, per_node, v + at, w + at, candidate, find))
       return false;
-    if (sign * candidate.kinematics.penetration <= deepest) continue;
-    deepest = sign * candidate.kinematics.penetration;
+    if (candidate.kinematics.penetration <= deepest) continue;
+    deepest = candidate.kinematics.penetration;
     c.active = i;
     c.touch = candidate;
   }
   c.law.local_compliance = c.touch.local_compliance;
   add_shape(c);
+  return true;
+}
+
+// The kinematics of the two ends at a jump in height: the common overlap is that of the end which is not the edge.
+// Where the edge does not count, its point is removed with the overlap; where it counts entirely and the other point is
+// at its end too, that point is.
+bool Fleet::touch_jump(WheelContact& left, WheelContact& right, WheelContact& common, int per_node, const double* v,
+                       const double* w) {
+  const bool left_at_end = left.touch.station > common.minimum_station - at_end,
+             right_at_end = right.touch.station < common.minimum_station + at_end;
+  std::array<Touch, 2> ends;
+  for (int i = 0; i < 2; ++i) {
+    const std::ptrdiff_t at = common.slots[i] < 0 ? 0 : 2 * static_cast<std::ptrdiff_t>(per_node) * common.slots[i];
+    ends[i].ahead = common.touch.ahead;
+    if (!train::touch(common.patches[i], profile(common), wheel(common).radius, coordinates(common), velocities(common),
+                      per_node, v + at, w + at, ends[i]))
+      return false;
+  }
+  const double right_above_left = ends[1].kinematics.penetration - ends[0].kinematics.penetration;
+  const bool has_edge = left_at_end || right_at_end;
+  const int other = has_edge ? (right_at_end ? 0 : 1) : (right_above_left > 0.0 ? 0 : 1);
+  common.active = other;
+  common.touch = ends[other];
+  common.law.local_compliance = common.touch.local_compliance;
+  add_shape(common);
+  common.edge_height = other == 0 ? right_above_left : -right_above_left;
+  if (!common.share_held && !(has_edge && std::abs(common.edge_height) <= level))
+    common.share = common.edge_height > 0.0 || !has_edge ? 1.0 : 0.0;
+  WheelContact &edge = other == 0 ? right : left, &inner = other == 0 ? left : right;
+  edge.factor = common.share;
+  common.factor = -common.share;
+  const bool inner_at_end = other == 0 ? left_at_end : right_at_end;
+  if (common.share == 0.0 || (common.share == 1.0 && inner_at_end)) {
+    clear_touch(common.share == 0.0 ? edge : inner);
+    clear_touch(common);
+  }
   return true;
 }
 
@@ -43,29 +86,27 @@ bool Fleet::touch_points(WheelContact& c, int per_node, const double* v, const d
   WheelContact* left = nullptr;
   for (int i = 0; i < track::most_points; ++i) {
     WheelContact& p = point(c, i);
+    p.factor = 1.0;
     if (p.candidates == 0) continue;
     if (!touch_patches(p, per_node, v, w, Find::closest_within)) return false;
     WheelContact* shared = i > 0 && shared_entry(c, i - 1).candidates > 0 ? &shared_entry(c, i - 1) : nullptr;
-    if (shared != nullptr) {
-      const bool keep_left = left->touch.kinematics.penetration >= p.touch.kinematics.penetration;
-      bool merged =
-          left->touch.station > shared->minimum_station - at_end || p.touch.station < shared->minimum_station + at_end;
-      if (shared->at_height_jump) {
-        if (!touch_patches(*shared, per_node, v, w, Find::closest)) return false;
-        merged = shared->touch.kinematics.penetration >= (keep_left ? p : *left).touch.kinematics.penetration;
-      }
-      if (merged) {
+    if (shared != nullptr && shared->at_height_jump) {
+      if (!touch_jump(*left, p, *shared, per_node, v, w)) return false;
+    } else if (shared != nullptr) {
+      shared->factor = -1.0;
+      if (left->touch.station > shared->minimum_station - at_end ||
+          p.touch.station < shared->minimum_station + at_end) {
+        const bool keep_left = left->touch.kinematics.penetration >= p.touch.kinematics.penetration;
         clear_touch(*shared);
         clear_touch(keep_left ? p : *left);
-        if (keep_left) continue;
-      } else if (!shared->at_height_jump) {
+      } else {
         shared->patches[0].low = left->touch.station;
         shared->patches[0].high = p.touch.station;
         shared->candidates = 1;
         if (!touch_patches(*shared, per_node, v, w, Find::farthest_within)) return false;
       }
     }
-    left = &p;
+    if (left == nullptr || p.touch.kinematics.penetration > -wheel(p).radius) left = &p;  // otherwise it is removed
   }
   return true;
 }
@@ -85,6 +126,7 @@ bool Fleet::touch(PairContact& c) const {
 bool Fleet::touch(int per_node, const double* v, const double* w) {
   for (WheelContact& c : wheels) {
     if (c.is_further || !owns(c) || vehicles[c.vehicle].converged) continue;
+    c.factor = 1.0;
     if (!(has_points(c) ? touch_points(c, per_node, v, w) : touch_patches(c, per_node, v, w, Find::closest)))
       return false;
   }
@@ -112,7 +154,7 @@ void Fleet::record_sides() {
 
 void Fleet::add_load(const Contact& c, double normal, double tangential, Eigen::VectorXd& Q) {
   Q.segment<3>(3 * c.body) -= normal * c.touch.normal_on_body + tangential * c.touch.tangent_on_body;
-  Q[3 * c.body] += 0.5 * c.sign * c.touch.local_compliance_by_x * normal * normal;
+  if (c.factor != 0.0) Q[3 * c.body] += 0.5 / c.factor * c.touch.local_compliance_by_x * normal * normal;
   if (c.other_body == multibody::ground) return;
   Q.segment<3>(3 * c.other_body) -= normal * c.touch.normal_on_other + tangential * c.touch.tangent_on_other;
 }
@@ -120,8 +162,7 @@ void Fleet::add_load(const Contact& c, double normal, double tangential, Eigen::
 void Fleet::contact_forces() {
   for (int i = 0; i < contacts(); ++i) {
     Contact& c = contact(i);
-    c.force = may_touch(i) ? contact::force(c.law, c.kinematics, c.approach_speed) : contact::Force{};
-    if (c.sign < 0.0) c.force = -c.force;
+    c.force = may_touch(i) ? force_of(c) : contact::Force{};
   }
 }
 
@@ -162,7 +203,7 @@ void Fleet::expected_loads(int per_node, std::vector<double>& loads) const {
 
 bool Fleet::touches(int i) const {
   const std::size_t k = static_cast<std::size_t>(i);
-  if (contact(i).law.kind == contact::LawKind::two_sided) return may_touch(i);
+  if (contact::pulls(contact(i).law.kind)) return may_touch(i);
   if (k >= wheels.size()) return contact(i).force.normal > 0.0;
   return wheels[k].is_further || load(wheels[k]).normal > 0.0;
 }
@@ -192,7 +233,7 @@ const contact::Kinematics& Fleet::kinematics(int i) const {
 
 contact::Kinematics Fleet::event_kinematics(int i) const {
   const auto k = static_cast<std::size_t>(i);
-  if (k >= wheels.size() || contact(i).law.kind != contact::LawKind::two_sided) return kinematics(i);
+  if (k >= wheels.size() || !contact::pulls(contact(i).law.kind)) return kinematics(i);
   const double x = coordinates(wheels[k]).x(), speed = velocities(wheels[k]).x();
   if (mesh_ != nullptr && !mesh_->ground_behind() && speed >= 0.0) return {mesh_->end() - x, -speed, 0.0};
   if (mesh_ != nullptr && !mesh_->ground_before() && speed <= 0.0) return {x - mesh_->start(), speed, 0.0};
@@ -219,7 +260,7 @@ double Fleet::contact_dissipation() const {
     elastic.damping = 0.0;
     elastic.hysteresis.reset();
     elastic.friction = 0.0;
-    const double stored = c.sign * contact::force(elastic, c.kinematics, 0.0).normal;
+    const double stored = c.factor * contact::force(elastic, c.kinematics, 0.0).normal;
     power +=
         (c.force.normal - stored) * c.kinematics.penetration_rate + c.force.tangential * c.kinematics.sliding_speed;
   }
@@ -239,7 +280,7 @@ double Fleet::contact_potential() const {
   double sum = 0.0;
   for (int i = 0; i < contacts(); ++i)
     if (!contact(i).released || contact(i).force.normal != 0.0)
-      sum += contact(i).sign * contact::potential(contact(i).law, contact(i).kinematics.penetration);
+      sum += contact(i).factor * contact::potential(contact(i).law, contact(i).kinematics.penetration);
   return sum;
 }
 

@@ -145,8 +145,8 @@ void Fleet::find_points(WheelContact& c) {
     const WheelContact& old = point(c, i);
     if (old.candidates == 0) continue;
     deepest = std::max(deepest, old.kinematics.penetration);
-    int nearest = 0;
-    for (int j = 1; j < found.count; ++j)
+    int nearest = std::min(i, found.count - 1);  // also where two points are at the same place
+    for (int j = 0; j < found.count; ++j)
       if (std::abs(found.points[j].station - old.patches[0].start) <
           std::abs(found.points[nearest].station - old.patches[0].start))
         nearest = j;
@@ -174,6 +174,7 @@ void Fleet::find_points(WheelContact& c) {
       find_sides(b, left.high);
     else
       find_patches(b, left.high, left.high, left.high, left.station, right.station);
+    if (b.minimum_station != left.high) b.share = 1.0;
     b.minimum_station = left.high;
     b.kinematics = old;
   }
@@ -184,7 +185,7 @@ void Fleet::find_points(WheelContact& c) {
 // Whether a guided wheel is beyond an end of the beam without a surface there.
 bool Fleet::has_left_guide(const WheelContact& c) const {
   const double x = coordinates(c).x();
-  return c.law.kind == contact::LawKind::two_sided &&
+  return contact::pulls(c.law.kind) &&
          ((x > mesh_->end() && !mesh_->ground_behind()) || (x < mesh_->start() && !mesh_->ground_before()));
 }
 
@@ -205,7 +206,9 @@ void Fleet::place_wheels() {
       find_points(c);
     else if (!c.is_further)
       find_patches(c, x, x - near, x + near, -unbounded, unbounded);
-    if (c.candidates == 0) reset_contact(c);
+    if (c.candidates > 0) continue;
+    reset_contact(c);
+    c.force = {};
   }
   for (const WheelContact& c : wheels)
     for (int i = 0; i < c.candidates; ++i)

@@ -33,6 +33,10 @@ void Fleet::copy_positions(const Fleet& other) {
     contact(i).kinematics = other.contact(i).kinematics;
     contact(i).law.local_compliance = other.contact(i).law.local_compliance;
   }
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    wheels[i].minimum_station = other.wheels[i].minimum_station;
+    wheels[i].share = other.wheels[i].share;
+  }
 }
 
 void Fleet::start_moving() {
@@ -73,23 +77,30 @@ std::string Fleet::unsupported_body(const Fleet& start) const {
   return text;
 }
 
-std::vector<double> Fleet::kinks_of_actions() const {
+std::vector<double> Fleet::kinks_of_motions() const {
   std::vector<double> kinks;
+  const auto add = [&](const base::TimeFunction& f) { kinks.insert(kinks.end(), f.kinks().begin(), f.kinks().end()); };
+  for (const MovingVehicle& vehicle : vehicles) {
+    for (const multibody::Driver& driver : vehicle.mechanism.model().drivers) add(driver.value);
+    for (const multibody::Spring& spring : vehicle.mechanism.model().springs)
+      if (spring.winding) add(*spring.winding);
+  }
+  return kinks;
+}
+
+std::vector<double> Fleet::kinks_of_actions() const {
+  std::vector<double> kinks = kinks_of_motions();
   for (const MovingVehicle& vehicle : vehicles)
     for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)
       for (const base::TimeFunction& f : actuator.action)
         for (double t : f.kinks()) kinks.push_back(t);
-  for (const MovingVehicle& vehicle : vehicles)
-    for (const multibody::Driver& driver : vehicle.mechanism.model().drivers)
-      if (driver.value.jumps())
-        for (double t : driver.value.kinks()) kinks.push_back(t);
   return kinks;
 }
 
 bool Fleet::begin_step(double middle) {
-  if (!accelerations_jump_) return false;
+  if (!has_kinks_) return false;
   bool jumped = false;
-  for (MovingVehicle& vehicle : vehicles) jumped = vehicle.mechanism.select_pieces(middle) || jumped;
+  for (MovingVehicle& vehicle : vehicles) jumped = vehicle.mechanism.select_sides(middle) || jumped;
   if (jumped) is_set_ = false;
   return jumped;
 }

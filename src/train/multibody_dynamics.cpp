@@ -85,7 +85,8 @@ void MultibodyDynamics::renew(MovingVehicle& vehicle, const StageShifts& shifts,
   curved_ = curved || has_friction || !constrained;
   shifts_ = shifts;
   partition_version_ = state.partition_version;
-  is_augmented_ = state.dependent_block.many_sensitivities() && !has_friction && !shifts.statics() &&
+  is_augmented_ = state.dependent_block.many_sensitivities() && !has_friction &&
+                  !(shifts.statics() && !vehicle.contacts.empty()) &&
                   augmented_.renew(vehicle, shifts, curved ? pdd_.data() : nullptr, rows, compliance);
   if (is_augmented_) return;
   vehicle.mechanism.compute_B(state);

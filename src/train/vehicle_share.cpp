@@ -22,9 +22,10 @@ void visit_observed(C& c, Visit visit) {
     for (auto& value : *direction) visit(value);
   for (auto* value : {&c.touch.xi, &c.touch.station, &c.touch.ahead}) visit(*value);
   visit(c.law.local_compliance);
+  visit(c.factor);
   visit(c.active);
 }
-constexpr int observed_numbers = 14 + 2 * most_element_unknowns + 3 + 2;
+constexpr int observed_numbers = 15 + 2 * most_element_unknowns + 3 + 2;
 
 }  // namespace
 

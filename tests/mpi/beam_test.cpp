@@ -145,7 +145,7 @@ TEST_P(CutBeam, SameModesToTheLastBit) {
   EXPECT_EQ(here.omega, there.omega);
   EXPECT_EQ(here.shape, there.shape);
   if (whole_.mesh().elements() > 1) {  // else there is one frequency of bending only
-    EXPECT_EQ(modes::distinct_pair(cut_), modes::distinct_pair(whole_));
+    EXPECT_EQ(modes::distinct_frequencies(cut_, 2), modes::distinct_frequencies(whole_, 2));
   }
 }
 

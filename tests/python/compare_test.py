@@ -46,13 +46,13 @@ class CompareTest(Drawn):
             rows = np.concatenate([file["options"][:], file["more"][:]])
             del file["options"]
             file["options"] = rows
-        figure = self.compared(paths, "Comparison of 2 results", "beam_mass not given", "beam_mass 2e4", "time (s)",
+        figure = self.compared(paths, "Comparison of 2 results", "beam_mass not given", "beam_mass 20 t/m", "time (s)",
                                "−2 (+100 %)", "1.2 (0 %)", "Options in which the files differ")
         picture_table.write(figure, self.folder / "both.csv")
         with open(self.folder / "both.csv", encoding="utf-8") as file:
-            self.assertIn("middle of span 2 (30 m): beam_mass 2e4 (mm)", file.readline())
+            self.assertIn("middle of span 2 (30 m): beam_mass 20 t/m (mm)", file.readline())
         curves = {name: values for ax in figure.axes[:1] for name, _, values, _ in ax.kept_curves}
-        for path, name in zip(paths, ("beam_mass not given", "beam_mass 2e4")):
+        for path, name in zip(paths, ("beam_mass not given", "beam_mass 20 t/m")):
             with h5py.File(path) as file:
                 greater = file["probes/deflection"][:, 1]
                 np.testing.assert_array_equal(curves[name], 1e3 * greater)
@@ -68,7 +68,7 @@ class CompareTest(Drawn):
                 rows = np.concatenate([file["options"][:], [[b"-vehicle_coach_wheels", b"front_wheel,rear_wheel"]]])
                 del file["options"]
                 file["options"] = rows
-        figure = self.compared(paths, "train_speed 50", "train_speed 60", "place of the first wheel or force (m)")
+        figure = self.compared(paths, "train_speed 180 km/h", "train_speed 216 km/h", "place of the first wheel or force (m)")
         with h5py.File(paths[0]) as file:
             np.testing.assert_allclose(figure.axes[0].kept_curves[0][1], file["vehicles/0/axle/position"][:, 0] + 1.0)
 
@@ -168,6 +168,34 @@ study: {vary: {load_speed: {from: 20.0, to: 80.0, step: 10.0}, beam_mass: [1.6e4
             peaks = np.abs(study["peak_deflection"][:]).max(axis=1).reshape(study["shape"][:].astype(int))
             speeds = str(study.attrs["axes"]).split(",").index("load_speed")
             np.testing.assert_allclose(kept[title][case.name], 1e3 * peaks.max(axis=1 - speeds))
+
+    def test_the_factor_of_judged_values_is_named(self):
+        def file(name, factor):
+            path = self.folder / f"{name}.h5"
+            with h5py.File(path, "w") as out:
+                texts(out, "options", [["-beam_EI", name]])
+                out["probes/x"] = [10.0]
+                out["supports/x"] = [0.0, 20.0]
+                out["sweep/speed"], out["sweep/hslm_a"] = [40.0, 50.0], [1.0]
+                out["sweep/peak_deflection"] = np.ones((1, 2, 1))
+                out["sweep/judged"] = factor * np.array([[[1.0, 1e-3], [2.0, 2e-3]]])
+                texts(out, "verdicts/quantity", [["deck_acceleration", "m/s2"], ["deflection_over_span", "1"]])
+                texts(out, "verdicts/clause", [["A2", ""]] * 2)
+                out["verdicts/limit"], out["verdicts/factor"] = [3.5, 1e-2], [factor, 1.0]
+            return path
+
+        title = "Greatest deck acceleration, low-pass filtered"
+        for factors in ((1.14, 1.14), (1.14, 1.05)):
+            cases = compare_data.opened_cases([file(f"{k + 1}e10", factor) for k, factor in enumerate(factors)])
+            self.assertEqual([case.name for case in cases], ["beam_EI 10,000 MN m²", "beam_EI 20,000 MN m²"])
+            kept = self.kept(cases)
+            if factors[0] == factors[1]:
+                self.assertEqual(list(kept[f"{title} × 1.14"]), [case.name for case in cases])
+            else:
+                self.assertEqual(list(kept[title]), [f"{case.name}, × {f}" for case, f in zip(cases, factors)])
+            np.testing.assert_allclose(kept["Deflection over span length"][f"{cases[0].name}"], [1.14, 2.28])
+            for case in cases:
+                case.results.file.close()
 
     def test_what_never_occurs_has_no_panel(self):
         cases, worst_over = self.cases("study"), compare_data.worst_over

@@ -1,5 +1,4 @@
-"""scripts/export.py for searches, sensitivity analyses, fits and screens: a row for each answer, effect, estimate, value and
-pair."""
+"""scripts/export.py for every kind of analysis: a row for each run, answer, effect, estimate, value, pair, mode and station."""
 
 import csv
 import os
@@ -42,6 +41,32 @@ class Answers(unittest.TestCase):
 
     def assert_column(self, column, values):
         np.testing.assert_array_equal(np.array(column, dtype=float), np.asarray(values, dtype=float))
+
+    def test_sweep(self):
+        results = self.run_and_export("scenes/hslm_sweep.yml", "-sweep_speed", "40,60,10", "-sweep_hslm_a", "1,2",
+                                      "-model_modes", "3", "-output_probes", "4,10")
+        rows = self.table("sweep.csv")
+        self.assert_column(rows["train"], [1, 1, 1, 2, 2, 2])
+        self.assert_column(rows["sweep/speed (m/s)"], [40, 50, 60, 40, 50, 60])
+        self.assert_column(rows["sweep/peak_deflection at 4 m (m)"], results["sweep/peak_deflection"][:, :, 0].ravel())
+        self.assertFalse([head for head in rows if head.startswith("sweep/x")])
+
+    def test_natural_modes(self):
+        results = self.run_and_export("scenes/r1_moving_force.yml", "-scene_analysis", "modes", "-beam_damping_ratios", "0.01")
+        undamped = self.table("modes_undamped.csv")
+        self.assert_column(undamped["frequency (Hz)"], results["modes/frequency"][:])
+        self.assert_column(self.table("modes_damped.csv")["damping_ratio (1)"], results["modes/damping_ratio"][:])
+        self.assert_column(self.table("modes_shapes.csv")["shape of mode 2 (1)"], results["modes/shape"][1])
+
+    def test_static_effects(self):
+        results = self.run_and_export("scenes/line_class_d2.yml")
+        effects = self.table("static_effects.csv")
+        self.assert_column(effects["moment under LM71, greatest (N m)"], results["static/moment"][1, :, 1])
+        self.assert_column(self.table("static_reactions.csv")["x (m)"], results["static/reaction_x"][:])
+
+    def test_forces_of_the_rail(self):
+        results = self.run_and_export("scenes/uic774_e13.yml")
+        self.assert_column(self.table("rail_forces_stress.csv")["x (m)"], results["rail_forces/x"][:])
 
     def test_search(self):
         results = self.run_and_export("studies/permitted_speeds.yml", "-sweep_hslm_a", "1,2", "-find_points", "5")

@@ -60,6 +60,7 @@ def write_sweep(path):
         put(file, "sweep/peak_deflection", np.arange(12.0).reshape(2, 3, 2), "m")
         put(file, "sweep/static_deflection", [[1.0, 2.0], [3.0, 4.0]], "m")
         put(file, "sweep/added", [0.0, 1.0, 0.0], "1")
+        file["sweep/x"] = file["probes/x"]
 
 
 def write_study(path):

@@ -94,6 +94,24 @@ Command: "mpirun" "mpi_tests"
 Test time =   1.00 sec
 Test Failed.
 """
+# As CTest 3.25 writes them: a test that skips itself, and one whose program does not exist.
+SKIPPED = """2/3 Testing: python.page_test
+Command: "/usr/bin/python3" "page_test.py"
+Output:
+Ran 0 tests in 0.004s
+<end of output>
+Test time =   0.18 sec
+----------------------------------------------------------
+Test Pass Reason:
+Skip regular expression found in output. Regex=[Ran 0 tests in]
+"python.page_test" end time: Nov 28 16:46 UTC
+"""
+MISSING = """Unable to find executable: /no/such
+3/3 Testing: benchmark.lanes
+Command: ""
+Test time =   0.00 sec
+Test Passed.
+"""
 
 
 class Summary(unittest.TestCase):
@@ -113,6 +131,13 @@ class Summary(unittest.TestCase):
         failed = [line for line in self.summary(BATCH + OTHERS) if line.startswith("Failed")]
         self.assertEqual(failed, ["Failed: unit.Band.Differs/0", "Failed: unit.Band.Stops, which did not end",
                                   "Failed: unit.Band.Waits, which did not start", "Failed: mpi.2_ranks.part_1"])
+
+    def test_a_test_that_skips_itself_has_not_failed(self):
+        self.assertEqual(self.summary(BATCH + SKIPPED)[-2:], ["2 skipped", "1 passed, 3 failed"])
+
+    def test_a_program_that_does_not_exist_has_failed(self):
+        lines = self.summary(BATCH + MISSING)
+        self.assertEqual(lines[-3:], ["Failed: benchmark.lanes, which did not start", "1 skipped", "1 passed, 4 failed"])
 
     def test_the_slowest_come_first(self):
         lines = self.summary(BATCH + OTHERS)

@@ -1,8 +1,11 @@
 """The rules of scripts/traverse-check: the flow chart of EN 1991-2 figure 6.9, track defects, and its conclusions."""
 
 import pathlib
+import re
 import sys
 import unittest
+
+import yaml
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from small_runs import SOURCE  # noqa: E402
@@ -12,6 +15,15 @@ from traverse_check import flow_chart, outcome, question, rules, track_defects  
 from traverse_report import language, limits  # noqa: E402
 
 BRIDGE = ("--span", "28", "--EI", "260 GN.m2", "--mass", "19 t/m", "--type", "prestressed", "--line-speed", "250 km/h")
+
+
+class LoadModels(unittest.TestCase):
+    def test_the_report_has_a_sketch_of_each(self):
+        text = (SOURCE / "include/traverse/options/norm_rules.hpp").read_text(encoding="utf-8")
+        rows = re.findall(r'{"(\w+)", "([^"]+)", (?:true|false), (?:true|false)}', text)
+        self.assertEqual(len(rows), text.split("load_models[] = {")[1].split("};")[0].count('{"'))
+        sketches = yaml.safe_load((SOURCE / "scripts/traverse_report/load_models.yml").read_text(encoding="utf-8"))
+        self.assertEqual([title for _, title in rows], list(sketches))
 
 
 class TrackDefects(unittest.TestCase):

@@ -55,6 +55,17 @@ class Runs(InFolder):
         self.refused(2, "not_there.yml", traverse.run, "not_there.yml")
         self.refused(4, "no results file", traverse.open, self.folder / "not_there.h5")
 
+    def test_ranks_are_a_number_of_processes(self):
+        for ranks in (-1, 0, "x", "2", 1.5, True, None, 10**9):
+            self.refused(2, "ranks = .*: allowed: a whole number", traverse.run, FORCES, ranks=ranks)
+
+    def test_what_computes_nothing_has_no_results(self):
+        kept = self.folder / "kept.h5"
+        traverse.run(FORCES, output=kept)
+        for options in ({"check": True}, {"version": True}):
+            for output in (None, kept):  # not the results of the earlier run either
+                self.refused(2, "without results", traverse.run, FORCES, output=output, **options)
+
     def test_a_sweep(self):
         results = traverse.run(FORCES | {"sweep": {"speed": [30.0, 50.0, 5.0]}})
         self.assertEqual(results["peak_deflection"].dims, ("hslm_a", "speed", "x"))

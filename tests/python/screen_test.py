@@ -110,7 +110,7 @@ class Screen(unittest.TestCase):
         with h5py.File(self.folder / "screen.h5", "r+") as file:
             file["screen/ratio"][0, 0] = 7.0  # a damaged row is computed again
         self.assert_equal(whole, self.screened("-screen_resume", "true"))
-        self.assertFalse((self.folder / "screen.h5.before").exists())
+        self.assertEqual(list(self.folder.glob("screen.h5.*")), [])
         done = self.start("-screen_resume", "true", "-screen_modes", "2")
         self.assertIn("contains another screen", done.stderr)
         self.assertNotEqual(done.returncode, 0)
@@ -129,6 +129,28 @@ class Screen(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         with h5py.File(self.folder / "screen_again.h5") as file:
             self.assert_equal(whole, {name: file[f"screen/{name}"][()] for name in MATRICES})
+
+    def test_names_of_files_are_no_options(self):
+        (self.folder / "trains").mkdir()
+        rows = "load_t, position\n20, 0\n20, 3\n"
+        (self.folder / "trains" / "a\nload: {speed: 1.0}\nb.csv").write_text(rows)
+        scene = self.start("-screen_fleet", "trains", "-screen_pair", r"short,a\nload: {speed: 1.0}\nb")
+        self.assertEqual((scene.returncode, scene.stderr), (0, ""))
+        self.assertEqual([line for line in scene.stdout.splitlines() if line.startswith("load:")], ["load:"])
+
+    def test_links_in_a_folder_of_trains(self):
+        (self.folder / "trains").mkdir()
+        for name, words in (("self.csv", "self.csv"), ("pipe.csv", "pipe.csv")):
+            path = self.folder / "trains" / name
+            path.symlink_to(name) if name == "self.csv" else os.mkfifo(path)
+            done = self.start("-screen_fleet", "trains")
+            self.assertEqual((done.returncode in range(1, 127), len(done.stderr.splitlines())), (True, 1), done.stderr)
+            self.assertIn(words, done.stderr)
+            self.assertNotIn("internal error", done.stderr)
+            path.unlink()
+        (self.folder / "loop").symlink_to("loop")
+        done = self.start("-screen_fleet", "loop")
+        self.assertEqual((done.returncode in range(1, 127), len(done.stderr.splitlines())), (True, 1), done.stderr)
 
     def test_ranks_change_nothing(self):
         self.assert_equal(self.screened(), self.screened(ranks=2))
@@ -160,6 +182,32 @@ class Screen(unittest.TestCase):
         self.refused("fleet.csv:3: spacing: -2.5", fleet=FLEET.replace("2.5; 15", "-2.5; 15", 1))
         (self.folder / "limits.yml").write_text('- {clause: "C", quantity: wheel_unloading, value: 0.6}\n')
         self.refused("a screen computes deck_acceleration and deflection_over_span")
+
+    def test_numbers_in_other_units_are_noted(self):
+        def noted(heading, **tables):
+            self.write(**tables)
+            text = self.screened()["text"]
+            checked = self.start("-check").stdout
+            self.write(stock=STOCK, fleet=FLEET)
+            said = [lines.split("\n")[0] for lines in text.split("unusual input\n  ")[1:]]
+            self.assertEqual(len(said) == 1, heading != "", text)
+            self.assertIn(heading, "".join(said))
+            self.assertIn("".join(said), checked)
+        noted("")
+        noted("short: the first frequency, 0.191 Hz, is below the range of railway bridges of 15 m",
+              stock=STOCK.replace("9.0e9", "9.0e6"))
+        noted("EI is possibly given in kN m2", stock=STOCK.replace("9.0e9", "9.0e6"))
+        noted("(and 1 more bridges)", stock=STOCK.replace("9.0e9", "9.0e6").replace("2.4e10", "2.4e7"))
+        noted("mass is possibly given in t/m", stock=STOCK.replace("12000", "12"))
+        noted("short: a damping ratio of 0.15 is 15 % of critical damping", stock=STOCK.replace("0.01,", "0.15,"))
+        noted("short: speed: 160 m/s is 576 km/h", stock=STOCK.replace("250 km/h", "160"))
+        noted("coaches: its heaviest axle has 15 kN", fleet=FLEET.replace("load_t", "load_kN"))
+
+    def test_a_decimal_comma_is_refused(self):
+        self.refused("stock.csv:2: commas and semicolons in one row", stock="name; spans; mass; EI; damping\n"
+                     "short; 15,5; 12000; 9.0e9; 0.01\n")
+        self.refused("fleet.csv:2: 4 cells, expected 3; a comma separates numbers, decimals need a point",
+                     fleet="name, spacing, load_t\nwagon, 1,8, 22\n")
 
     def test_python_returns_a_dataset(self):
         results = traverse.screen("stock.csv", "fleet.csv", "limits.yml", ("40 km/h", "250 km/h", "5 km/h"),
@@ -222,6 +270,24 @@ class Traffic(unittest.TestCase):
         self.assertEqual(self.traffic("--weighed", "record.csv", "--days", "2").returncode, 0)
         (of_record,) = self.damages().values()
         self.assertAlmostEqual(of_record / of_mix, 1.0, places=9)
+
+    def test_numbers_in_other_units_are_noted(self):
+        (self.folder / "mix.csv").write_text("name, count, speed\ncoaches, 40, 140\n")
+        done = self.traffic("--mix", "mix.csv", "--fleet", "fleet.csv")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("unusual input\n  coaches: 140 m/s is 504 km/h", done.stdout)
+        path = self.folder / "record.csv"
+        for row, why in (("0, 80, 60 100, 3.5", "80 m/s is 288 km/h"), ("0, 25, 6 10, 3.5", "an axle of 10 kN"),
+                         ("0, 25, 6000 10000, 3.5", "an axle of 1e\\+04 kN"), ("0, 25, 60 100, 3500", "3500 m between")):
+            path.write_text(f"time, speed, loads_kN, spacings\n{row}\n")
+            said = axle_tables.unusual(axle_tables.weighed(path), axle_tables.FAST_LORRY)
+            self.assertEqual(len(said), 1)
+            self.assertRegex(said[0], why)
+        path.write_text("time, speed, loads_kN, spacings\n0, 25, 60 100, 3.5\n1, 25, 8 6, 2.5\n")
+        self.assertEqual(axle_tables.unusual(axle_tables.weighed(path), axle_tables.FAST_LORRY), [])
+        path.write_text("time; speed; loads_kN; spacings\n0; 25,5; 60 100; 3,5\n")
+        with self.assertRaisesRegex(ValueError, "record.csv:2: commas and semicolons in one row"):
+            axle_tables.weighed(path)
 
     def test_records_are_read_and_refused(self):
         path = self.folder / "record.csv"

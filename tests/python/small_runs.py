@@ -38,10 +38,10 @@ class Computed(unittest.TestCase):
         cls.holder.cleanup()
 
     @classmethod
-    def compute(cls, name, text, *words):
-        """NAME.h5 of a scene's text."""
+    def compute(cls, name, text, *words, status=0):
+        """NAME.h5 of a scene's text, whose run ends with this status."""
         (cls.folder / f"{name}.yml").write_text(text, encoding="utf-8")
         run = subprocess.run([BINARY, "-options_file", f"{name}.yml", "-output_file", f"{name}.h5", *words],
                              cwd=cls.folder, capture_output=True, text=True)
-        if run.returncode != 0:
+        if run.returncode != status:
             raise AssertionError(run.stdout + run.stderr)

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "support/paths.hpp"
 #include "support/program.hpp"
@@ -85,6 +88,8 @@ struct Case {
   const char* found;
 };
 
+// SuspensionInKilonewtons: the frame hangs on springs of 1 m that 88.3 kN each extend by 44.1 m, instead of standing 1
+// m above their lower ends: 46.1 m.
 class Unusual : public testing::TestWithParam<Case> {};
 TEST_P(Unusual, IsFoundWhereItIs) {
   const Workplace workplace(usual);
@@ -110,6 +115,14 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"BothInThousands", {"-beam_mass", "20", "-beam_EI", "1.6e8"}, "beam_mass: 20 kg/m is small"},
         Case{"DampingInPerCent", {"-beam_damping_ratios", "0.5,0.5"}, "50 % of critical damping"},
         Case{"FastTrain", {"-train_speed", "155"}, "558 km/h"},
+        Case{"SpeedInKilometresAnHour", {"-train_speed", "144"}, "518.4 km/h"},
+        Case{"SoftContact", {"-vehicle_cart_a_stiffness", "1e6"}, "a: its contact is softer, 1e+06 N/m"},
+        Case{"SuspensionInKilonewtons",
+             {"-vehicle_cart_one_stiffness", "2e3", "-vehicle_cart_two_stiffness", "2e3"},
+             "the body frame is 46.1 m below its position"},
+        Case{"RadiusInMillimetres",
+             {"-vehicle_cart_a_radius", "500", "-vehicle_cart_b_radius", "500"},
+             "m above its position in the input"},
         Case{"FasterThanAny", {"-train_speed", "300"}, "1080 km/h"},
         Case{"FastSweep", {"-sweep_speed", "100,155,5"}, "558 km/h"},
         Case{"HeavyAxle", {"-vehicle_cart_frame_mass", "9e4"}, "46 t, on one axle"},
@@ -129,6 +142,109 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"OnTheMoon", {"-gravity", "1.62"}, "on earth it is 9.81"},
         Case{"WithoutEffect", {"-load_speed", "30"}, "load_speed has no effect"}),
     [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
+
+/// A bridge under a force, without damping.
+constexpr const char* forces = R"(
+beam: {spans: 30.0, EI: 1.6e11, mass: 2.0e4, elements_per_span: 8}
+load: {forces: 1.7e5, speed: 40.0}
+ts: {dt: 2.0e-3}
+)";
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What the program prints under "unusual input" of a scene.
+std::string unusual_of(const Workplace& workplace, const std::vector<std::string>& words) {
+  const Outcome outcome = workplace.run(words);
+  expect_success(outcome);
+  return section(outcome.out, "unusual input");
+}
+
+// The first frequency is pi/2/L^2 sqrt(EI/m) = 4.94 Hz: a/(2 omega) = 0.161 for a = 10 1/s, b omega/2 = 0.155 for b =
+// 0.01 s.
+TEST(UnusualInput, DampingHoweverItIsWritten) {
+  const Workplace workplace(forces);
+  const std::vector<std::pair<std::vector<std::string>, const char*>> cases = {
+      {{"-beam_damping_ratios", "0.2,0.2"}, "20 % of critical damping"},
+      {{"-beam_rayleigh", "10,0"}, "16.1 % of critical damping"},
+      {{"-beam_rayleigh", "0,0.01"}, "15.5 % of critical damping"},
+      {{"-model_modes", "3", "-model_damping_ratios", "0.3"}, "30 % of critical damping"}};
+  for (const auto& [words, found] : cases) {
+    SCOPED_TRACE(words[0] + " " + words[1]);
+    EXPECT_TRUE(contains(unusual_of(workplace, words), found)) << unusual_of(workplace, words);
+  }
+  EXPECT_EQ(unusual_of(workplace, {"-beam_rayleigh", "0.6,3e-4"}), "");
+}
+
+// Axles of 170 kN, given as 170 N: before the computation, once, and in the results file.
+TEST(UnusualInput, IsSaidByEveryVerb) {
+  const Workplace workplace(forces);
+  workplace.write("record.csv", "0 0\n0.3 -1e-6\n0.6 0\n");
+  const std::string found = "the largest load of a wheel or force is 170 N; forces are possibly given in kN";
+  const std::vector<std::vector<std::string>> verbs = {
+      {},
+      {"-scene_analysis", "static", "-load_positions", "15"},
+      {"-sweep_speed", "30,50,10"},
+      {"-study_vary_load_speed", "30,40", "-study_vary_beam_mass", "2e4,2.2e4"},
+      {"-study_vary_beam_mass_normal", "2e4,1e3", "-study_sensitivity", "local"},
+      {"-find_option", "load_speed", "-find_between", "30,50", "-find_quantity", "peak_deflection", "-find_equals",
+       "1"},
+      {"-fit_vary_beam_EI", "1e11,2e11", "-fit_to_middle_series", "record.csv", "-fit_to_middle_quantity", "deflection",
+       "-fit_to_middle_x", "15"}};
+  for (const std::vector<std::string>& verb : verbs) {
+    SCOPED_TRACE(verb.empty() ? "" : verb.front());
+    std::vector<std::string> words = {"-load_forces", "170",          "-beam_damping_ratios",
+                                      "0.01,0.01",    "-output_file", "a.h5"};
+    words.insert(words.end(), verb.begin(), verb.end());
+    const Outcome outcome = workplace.run(words);
+    const std::size_t first = outcome.out.find(found), heading = outcome.out.find("unusual input");
+    EXPECT_LT(heading, first) << outcome.out << outcome.err;
+    EXPECT_LT(first, std::min(outcome.out.find("modelled"), outcome.out.find("summary"))) << outcome.out << outcome.err;
+    EXPECT_EQ(outcome.out.find(found, first + 1), std::string::npos) << outcome.out;
+    EXPECT_TRUE(contains(bytes_of(workplace.path("a.h5")), found));  // among the texts of /model/notes
+  }
+}
+
+// A run that fails says before what is unusual.
+TEST(UnusualInput, IsSaidBeforeARunFails) {
+  const Workplace workplace(usual);
+  std::string heights;
+  for (int i = 0; i < 200; ++i)
+    heights += std::to_string(0.25 * i - 10.0) + "," + std::to_string(3.0 * std::sin(i)) + "\n";
+  workplace.write("profile.csv", heights);
+  const Outcome outcome = workplace.run({"-track_profile", "profile.csv"});
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_TRUE(contains(section(outcome.out, "unusual input"), "heights are possibly given in mm")) << outcome.out;
+}
+
+TEST(UnusualInput, ProfilesThatAreElsewhere) {
+  const Workplace workplace(usual);
+  const auto profile = [&](double from, double to, double end) {
+    std::string text;
+    for (double x = from; x < to; x += 1.0) text += std::to_string(x) + "," + std::to_string(1e-3 * std::sin(x)) + "\n";
+    workplace.write("profile.csv", text + std::to_string(to) + "," + std::to_string(end) + "\n");
+    return unusual_of(workplace, {"-track_profile", "profile.csv", "-check"});
+  };
+  EXPECT_TRUE(contains(profile(12340.0, 12540.0, 0.0), "goes from x = 12340 to 12540 m, but the wheels"));
+  EXPECT_TRUE(contains(profile(-500.0, -100.0, 0.0), "but the wheels and the bridge are between"));
+  EXPECT_TRUE(contains(profile(-20.0, 15.0, 1e-3), "goes from x = -20 to 15 m, the bridge from 0 to 30 m"));
+  EXPECT_FALSE(contains(profile(-20.0, 15.0, 0.0), "track_profile"));  // a local unevenness
+  EXPECT_FALSE(contains(profile(-20.0, 40.0, 1e-3), "track_profile"));
+}
+
+// Positions in km and speeds in km/h: d(v^2)/dx/2 = 45^2/(2 0.1) m/s2 in the first interval.
+TEST(UnusualInput, SpeedsOfARunningTimeProgram) {
+  const Workplace workplace(
+      "beam: {spans: 20.0, EI: 4.0e10, mass: 1.2e4, damping_ratios: 0.02}\n"
+      "load: {forces: 1.0e5, speed_file: speeds.csv, speed_over: position}\n");
+  workplace.write("speeds.csv", "0,0\n0.1,45\n0.5,80\n");
+  EXPECT_TRUE(
+      contains(unusual_of(workplace, {"-check"}), "load_speed_file: the speed changes by up to 1.012e+04 m/s2"));
+  workplace.write("speeds.csv", "0,0\n100,12.5\n500,22\n");
+  EXPECT_FALSE(contains(unusual_of(workplace, {"-check"}), "load_speed_file"));
+}
 
 TEST(Check, FindsNothingUnusualInWhatIsUsual) {
   const Workplace workplace(usual);

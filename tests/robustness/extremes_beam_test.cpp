@@ -202,5 +202,93 @@ TEST(Spring, FromOneToTenToTheFifteen) {
   }
 }
 
+// Held only by springs so soft that rounding of the elements' stiffness hides them: each option is named. With beds and
+// springs to all sides of that they are not.
+TEST(Spring, TooSoftForRounding) {
+  const std::string free =
+      "beam: {spans: [20.0], EI: 5.0e9, mass: 8.0e3, elements_per_span: 8}\nload: {forces: 1.0e5, speed: 40}\n";
+  const auto refused = [&](const Values& options, const std::string& option) {
+    SCOPED_TRACE(option);
+    for (const Values& analysis : {Values{}, Values{{"scene_analysis", "modes"}}, Values{{"model_modes", "3"}}})
+      expect_refused([&] { run_yaml(free, options + analysis); }, {option, "which rounding hides", "allowed: above"});
+  };
+  refused({{"support_stiffness", "1e-9,1e-9"}}, "support_stiffness:");
+  refused({{"support_stiffness", "1e9,1e-9"}}, "support_stiffness:");
+  const Values unsupported = {{"support_types", "free,free"}};
+  refused(unsupported + Values{{"foundation_vertical_bed_k", "1e-20"}}, "foundation_vertical_bed_k:");
+  refused(unsupported + Values{{"foundation_vertical_x", "3,17"}, {"foundation_vertical_k", "1e-20"}},
+          "foundation_vertical_k:");
+  refused({{"support_types", "pinned,free"}, {"foundation_rotational_x", "0"}, {"foundation_rotational_k", "1e-20"}},
+          "foundation_rotational_k:");
+}
+
+// A spring as stiff as no material is a rigid support.
+TEST(Spring, OfTenToTheThirty) {
+  Results rigid = run_yaml(beam(8), {{"ts_dt", "1e-3"}, {"load_speed", "40"}});
+  Results stiff = run_yaml(beam(8), {{"ts_dt", "1e-3"}, {"load_speed", "40"}, {"support_stiffness", "1e30,1e30"}});
+  EXPECT_LT(difference(stiff, rigid, "/probes/deflection"), 1e-6);
+  EXPECT_NO_THROW(run_yaml("beam: {spans: 25.0, EI: 8.323e9, mass: 2303.0}\nload: {forces: 1.0e5, speed: 40}\n",
+                           {{"support_stiffness", "1e30,1e30"}}));
+}
+
+TEST(Tension, ThatElementsDoNotResolveIsNamed) {
+  const std::string open = "beam: {spans: 25.0, EI: 8.323e9, mass: 2303.0}\nload: {forces: 1.0e5, speed: 40}\n";
+  expect_refused([&] { run_yaml(open, {{"beam_tension", "1e30"}}); }, {"beam_tension:", "elements"});
+  expect_refused(
+      [&] {
+        run_yaml(open, {{"foundation_shear_layer", "1e30"}});
+      },
+      {"foundation_shear_layer:", "elements"});
+  expect_refused(
+      [&] {
+        run_yaml(open, {{"foundation_rotational_bed_k", "1e30"}});
+      },
+      {"foundation_rotational_bed_k:", "elements"});
+}
+
+// --- sizes -----------------------------------------------------------------------------------------------------------
+
+// A beam of 10 mm bends by F L^3/(48 EI) = 0.083 mm, and turns by 0.025 rad, more than its length in metres. The
+// force passes in 48 of its first periods, so that it is static within 1 %.
+TEST(Size, OfTenMillimetres) {
+  const std::string small = "beam: {spans: 0.01, EI: 1.0e-4, mass: 1.0e-2}\nload: {forces: 0.4, speed: 0.1}\n";
+  for (const char* modes : {"0", "3"}) {
+    Results run = run_yaml(small, {{"model_modes", modes}});
+    EXPECT_NEAR(-run.attribute("/summary", "deflection"), 0.4 * 1e-6 / 48e-4, 0.01 * 0.4 * 1e-6 / 48e-4) << modes;
+  }
+}
+
+// The first period is 64,000 s: the steps follow from it. The peak is that of the series of modes.
+TEST(Size, OfAPeriodOfAlmostADay) {
+  const MovingForce exact{10.0, 1.0, 1.0e6, 1.0e-3, 1.0e-4};
+  double largest = 0.0;
+  for (double t = 0.0; t < 1.0e5; t += 50.0) largest = std::max(largest, exact.deflection(5.0, t));
+  Results run = run_yaml("beam: {spans: 10, EI: 1.0, mass: 1.0e6}\nload: {forces: 1.0e-3, speed: 1.0e-4}\n");
+  EXPECT_NEAR(-run.attribute("/summary", "deflection"), largest, 2e-3 * largest);
+}
+
+// --- loads -----------------------------------------------------------------------------------------------------------
+
+// Loads that cancel leave only rounding errors: their energies do not have to balance. Later the rest of the first
+// load enters, and the response is the sum of those of both loads.
+TEST(Loads, ThatCancel) {
+  const auto both = [](const std::string& distributed) {
+    return "beam: {spans: [20.0], EI: 5.0e9, mass: 8.0e3, damping_ratios: 0.01, elements_per_span: 4}\n"
+           "load: {distributed: [" +
+           distributed + "], speed: 40}\nts: {dt: 1.0e-3, max_time: 0.6}\n";
+  };
+  for (const char* modes : {"0", "3"}) {
+    const Values by{{"model_modes", modes}};
+    Results sum = run_yaml(both("-10, 0, 8.0e4, -5, 0, -8.0e4"), by), one = run_yaml(both("-10, 0, 8.0e4"), by),
+            other = run_yaml(both("-5, 0, -8.0e4"), by);
+    const auto &v = sum("/probes/deflection"), &a = one("/probes/deflection"), &b = other("/probes/deflection");
+    ASSERT_EQ(v.size(), a.size());
+    ASSERT_EQ(v.size(), b.size());
+    const double scale = std::abs(peak(a).first);
+    for (std::size_t i = 0; i < v.size(); ++i) ASSERT_NEAR(v[i], a[i] + b[i], 1e-9 * scale) << modes;
+    EXPECT_GT(std::abs(peak(v).first), 0.1 * scale);
+  }
+}
+
 }  // namespace
 }  // namespace traverse::test

@@ -51,6 +51,22 @@ TEST(Contact, OfAThousand) {
   EXPECT_NEAR(run("/vehicles/0/wheel/penetration")[0], std::pow(12.0 * 9.81 / 1e3, 2.0 / 3.0), 1e-6);
 }
 
+// The load presses the contact in by less than rounding of its radius: no force would be known to a thousandth.
+TEST(Contact, ThatRoundingHides) {
+  const Values linear = {{"vehicle_quarter_car_wheel_law", "linear"}};
+  for (const char* stiffness : {"1e19", "1e22", "1e30"})
+    expect_refused(
+        [&] {
+          crossing("1e-3", linear + Values{{"vehicle_quarter_car_wheel_stiffness", stiffness}});
+        },
+        {"vehicle_quarter_car_wheel_stiffness", "rounding hides", "allowed"});
+  expect_refused(
+      [&] {
+        crossing("1e-3", {{"vehicle_quarter_car_wheel_stiffness", "1e30"}});
+      },
+      {"vehicle_quarter_car_wheel_stiffness", "rounding hides", "N/m^1.5"});
+}
+
 // --- masses ----------------------------------------------------------------------------------------------------------
 
 // The wheel follows the beam at once: spring and contact in series, whatever the wheel's mass is.

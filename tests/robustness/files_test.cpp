@@ -244,6 +244,23 @@ TEST(ResultsPlace, IsNoLink) {
   EXPECT_FALSE(workplace.has("elsewhere"));
 }
 
+// The new results are another file: a copy that is a hard link keeps the earlier ones. Its permissions remain.
+TEST(ResultsPlace, OfAFileWithTwoNamesIsReplaced) {
+  const Workplace workplace(small_scene() + "ts_max_time: 0.1\noutput: {file: r.h5}\n");
+  expect_success(workplace.run());
+  const std::string before = text_of(workplace.path("r.h5"));
+  std::filesystem::create_hard_link(workplace.path("r.h5"), workplace.path("kept.h5"));
+  std::filesystem::permissions(workplace.path("r.h5"),
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  expect_success(workplace.run({"-ts_max_time", "0.2"}));
+  EXPECT_EQ(text_of(workplace.path("kept.h5")), before);
+  EXPECT_NEAR(Results(workplace.path("r.h5")).time().back(), 0.2, 1e-12);
+  EXPECT_EQ(std::filesystem::status(workplace.path("r.h5")).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  for (const auto& file : std::filesystem::directory_iterator(workplace.folder()))
+    EXPECT_EQ(file.path().filename().string().find(".part"), std::string::npos) << file.path();
+}
+
 TEST(ResultsPlace, OfAFileThatTheRunReads) {
   const Workplace workplace(small_scene());
   expect_success(workplace.run({"-output_file", "r.h5", "-ts_max_time", "0.1"}));
@@ -297,7 +314,7 @@ TEST(CheckpointPlace, IsNeverAnotherFile) {
 
 TEST(CheckpointPlace, IsNotThatOfTheResults) {
   const Workplace workplace(small_scene() + "ts_max_time: 0.1\n");
-  for (const char* file : {"r.h5", "./r.h5", "r.h5.part"})
+  for (const char* file : {"r.h5", "./r.h5"})
     expect_refusal(workplace, workplace.run({"-output_file", "r.h5", "-checkpoint_file", file}),
                    {"checkpoint_file = ", "results file r.h5"});
   expect_refusal(workplace, workplace.run({"-output_file", "r.part", "-checkpoint_file", "r"}),
@@ -331,16 +348,6 @@ TEST(CheckpointPlace, ThatIsTakenDuringTheRunIsLeft) {
   child.kill(SIGTERM);
   EXPECT_EQ(child.wait().status, 4);
   EXPECT_EQ(text_of(workplace.path("c")), "mine");
-}
-
-TEST(CopyAside, IsNeverAnotherFile) {
-  const Workplace workplace(small_scene() + "ts_max_time: 0.1\noutput: {file: r.h5}\n");
-  expect_success(workplace.run({"-ts_max_steps", "3"}));
-  workplace.write("r.h5.part", "mine");
-  const Outcome outcome = workplace.run({"-restart", "r.h5.checkpoint"});
-  EXPECT_EQ(outcome.status, 4);
-  EXPECT_NE(outcome.err.find("r.h5.part is there already"), std::string::npos) << outcome.err;
-  EXPECT_EQ(text_of(workplace.path("r.h5.part")), "mine");
 }
 
 // --- kept choices ----------------------------------------------------------------------------------------------------

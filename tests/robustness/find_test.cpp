@@ -46,6 +46,21 @@ TEST(Find, BadInputIsRefused) {
           {"find_quantity", "colour", "peak_deflection"});
 }
 
+// What no run determines is refused before the first one, and named.
+TEST(Find, WhatNoRunDeterminesIsRefused) {
+  const auto limited = [](const std::string& quantity, const std::vector<std::string>& more,
+                          const std::vector<std::string>& parts) {
+    const Workplace workplace(scene);
+    workplace.write("limits.yml", "- {clause: own, quantity: " + quantity + ", value: 1.0, text: own}\n");
+    std::vector<std::string> words = {"-limits", "limits.yml", "-find_option", "beam_EI", "-find_between", "1e9,2e9"};
+    words.insert(words.end(), more.begin(), more.end());
+    expect_refusal(workplace, workplace.run(words), parts);
+  };
+  limited("deck_acceleration", {"-output_lowpass", "none"}, {"no run determines deck_acceleration", "low-passed"});
+  limited("car_acceleration", {}, {"no run determines car_acceleration", "no vehicles"});
+  limited("joint_rotation", {}, {"no run determines joint_rotation", "no two decks"});
+}
+
 TEST(Find, NoValueIsAnAnswerWithTheClosestOne) {
   const Workplace workplace(scene);
   const Outcome outcome = workplace.run({"-find_option", "beam_EI", "-find_between", "1e9,2e9", "-find_quantity",

@@ -64,6 +64,9 @@ TEST(FitInput, IsRefusedInOneLine) {
       {fit_to("series: a.csv, quantity: deflection, x: 10, factor: 0"), {"fit_to_midspan_factor", "but 0"}},
       {fit_to("series: a.csv, quantity: deflection, x: 10, from: 0.95"), {"2 rows"}},
       {fit_to("series: a.csv, quantity: deflection, x: 10, lowpass: 40"), {"fit_to_midspan_lowpass", "below 25 Hz"}},
+      {fit_to("series: a.csv, quantity: deflection, x: 10, lowpass: 0.5"),
+       {"fit_to_midspan_lowpass", "from 1.02 Hz on"}},
+      {fit_to("series: comma.csv, quantity: deflection, x: 10"), {"comma.csv:1", "decimals need a point"}},
       {fit_to("series: uneven.csv, quantity: deflection, x: 10, lowpass: 5"), {"fit_to_midspan_lowpass", "equal"}},
       {fit_to("series: early.csv, quantity: deflection, x: 10"), {"fit_to_midspan_series", "before the scene"}},
       {fit_to("series: falling.csv, quantity: deflection, x: 10"), {"falling.csv:2", "increase strictly"}},
@@ -77,8 +80,112 @@ TEST(FitInput, IsRefusedInOneLine) {
     workplace.write("uneven.csv", "0 0\n0.02 1\n0.03 0\n0.06 0\n");
     workplace.write("falling.csv", "1 0\n0 1\n");
     workplace.write("word.csv", "1 0\n2 x\n");
+    workplace.write("comma.csv", "0,00;0,25\n0,02;0,50\n0,04;0,75\n");
     expect_refusal(workplace, workplace.run(), one.parts);
   }
+}
+
+// --- records in another unit, with another sign, clock or zero
+// -----------------------------------------------------------
+
+constexpr double span = 30.0, true_EI = 1.6e11, mass = 2.0e4, force = 1.7e5, speed = 40.0, damping = 0.02;
+
+/// The deflection of midspan by the first mode, 2 P/(m L) times the response of an oscillator to sin(Omega t), Omega =
+/// pi v/L, while the force crosses the span and 0.25 s later.
+double deflection(double t) {
+  const double pi = std::acos(-1.0), omega = std::pow(pi / span, 2) * std::sqrt(true_EI / mass),
+               drive = pi * speed / span;
+  const double a = omega * omega - drive * drive, b = 2.0 * damping * omega * drive, sum = a * a + b * b;
+  const double sine = a / sum, cosine = -b / sum, damped = omega * std::sqrt(1.0 - damping * damping);
+  // u = sine sin(drive t) + cosine cos(drive t) + exp(-zeta omega t) (p cos(damped t) + q sin(damped t)), at rest at 0
+  const auto forced = [&](double s) { return sine * std::sin(drive * s) + cosine * std::cos(drive * s); };
+  const auto rate = [&](double s) { return drive * (sine * std::cos(drive * s) - cosine * std::sin(drive * s)); };
+  const auto free = [&](double s, double u, double v) {
+    return std::exp(-damping * omega * s) *
+           (u * std::cos(damped * s) + (v + damping * omega * u) / damped * std::sin(damped * s));
+  };
+  const auto response = [&](double s) { return forced(s) - free(s, forced(0.0), rate(0.0)); };
+  const double end = span / speed, h = 1e-5;
+  const double u = t <= end ? response(t) : free(t - end, response(end), (response(end) - response(end - h)) / h);
+  return -2.0 * force / (mass * span) * u;
+}
+
+/// A fit of EI, from 0.8 of its true value, to the record factor*deflection(t) + offset at the times t + shift.
+struct Measured {
+  double factor = 1.0, shift = 0.0, offset = 0.0;
+  std::string words = "";
+  std::string bounds = "1.0e11, 3.0e11";
+};
+
+Outcome fitted(const Measured& measured) {
+  const Workplace workplace(
+      "beam: {spans: 30.0, EI: 1.28e11, mass: 2.0e4, elements_per_span: 8}\n"
+      "model: {modes: 1, damping_ratios: 0.02}\nload: {forces: 1.7e5, speed: 40.0}\n"
+      "fit: {vary: {beam_EI: [" +
+      measured.bounds + "]}, to: {middle: {series: a.csv, quantity: deflection, x: 15" + measured.words +
+      "}}}\noutput: {file: fit.h5}\n");
+  std::string text;
+  for (int i = 0; i <= 100; ++i)
+    text += std::to_string(0.01 * i + measured.shift) + ", " +
+            std::to_string(1e6 * (measured.factor * deflection(0.01 * i) + measured.offset)) + "e-6\n";
+  workplace.write("a.csv", text);
+  return workplace.run();
+}
+
+TEST(FitRecord, AsItShouldBeIsFittedWithoutAWord) {
+  const Outcome outcome = fitted({});
+  expect_success(outcome);
+  EXPECT_EQ(outcome.out.find("unusual input"), std::string::npos) << outcome.out;
+  const std::size_t at = outcome.out.find("beam_EI    ");
+  ASSERT_NE(at, std::string::npos) << outcome.out;
+  EXPECT_NEAR(std::stod(outcome.out.substr(at + 7)), true_EI, 1e-3 * true_EI) << outcome.out;
+}
+
+TEST(FitRecord, ThatNoValueExplainsIsRefusedBeforeTheFit) {
+  const struct {
+    Measured measured;
+    std::vector<std::string> parts;
+  } cases[] = {
+      {{.factor = 1e3}, {"fit_to_middle_series: the record is", "is its unit m?", "fit_to_middle_factor 0.001?"}},
+      {{.factor = 1e2, .words = ", factor: 10"}, {"fit_to_middle_series", "fit_to_middle_factor 0.01?"}},
+      {{.factor = 1e-3}, {"fit_to_middle_series", "fit_to_middle_factor 1000?"}},
+      {{.factor = -1e3, .words = ", align: true"}, {"fit_to_middle_series", "fit_to_middle_factor 0.001?"}},
+      {{.shift = 12.37}, {"fit_to_middle_series", "but shows their passage", "fit_to_middle_align true, or false"}},
+  };
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.parts.back());
+    const Outcome outcome = fitted(one.measured);
+    EXPECT_EQ(outcome.status, 2) << outcome.out;
+    for (const std::string& part : one.parts) EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.out.find("estimates"), std::string::npos) << outcome.out;
+  }
+}
+
+TEST(FitRecord, WithAnotherSignClockOrZeroIsDoubted) {
+  const struct {
+    Measured measured;
+    const char* found;
+  } cases[] = {
+      {{.factor = -1.0}, "the record has the opposite sign of the computed series (correlation -"},
+      {{.shift = 0.3}, "if the clock of the record is 0."},
+      {{.offset = 1e-3}, "the record has a constant of 0.00"},
+  };
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.found);
+    const Outcome outcome = fitted(one.measured);
+    const std::size_t at = outcome.out.find(one.found);
+    EXPECT_LT(outcome.out.find("unusual input"), at) << outcome.out << outcome.err;
+    EXPECT_LT(at, outcome.out.find("modelled")) << outcome.out << outcome.err;
+  }
+}
+
+// A minimum beyond the bounds is no estimate.
+TEST(FitRecord, OutsideTheBoundsIsNoSuccess) {
+  const Outcome outcome = fitted({.bounds = "1.0e11, 1.4e11"});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_NE(outcome.err.find("no minimum within its bounds: beam_EI at a bound"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("at a bound"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("results  fit.h5"), std::string::npos) << outcome.out;
 }
 
 TEST(Fit, ThatIsEndedKeepsWhatItKnows) {

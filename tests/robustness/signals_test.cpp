@@ -86,7 +86,7 @@ TEST(Output, ToAReaderThatGoes) {
   const Outcome outcome = in_shell(workplace, "{ \"$0\" \"$@\"; echo status $? >&2; } | head -1", {});
   ASSERT_FALSE(outcome.timed_out);
   EXPECT_EQ(outcome.err, "status 141\n");
-  EXPECT_EQ(outcome.out, "modelled\n");
+  EXPECT_EQ(outcome.out, "unusual input\n");  // there is no damping
   EXPECT_GT(Results(workplace.path("r.h5")).time().size(), 1U);
 }
 

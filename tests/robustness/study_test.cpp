@@ -87,6 +87,9 @@ TEST(StudyInput, SensitivityAnalysesNeedDistributionsAndSamples) {
   refused("beam_mass: [1000, 2000]", {"-study_sensitivity", "sobol"},
           {"study_sensitivity", "no option has a distribution"});
   refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "sobol"}, {"study_draws is missing"});
+  for (const char* method : {"sobol", "morris"})
+    refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", method, "-study_draws", "1"},
+            {"study_draws", "no scatter", "from 2"});
   refused("beam_mass: {normal: [1.0e3, 5.0]}", {"-study_sensitivity", "all"}, {"study_sensitivity", "morris"});
   refused("beam_mass: {normal: [1.0, 5.0]}", {"-study_sensitivity", "morris", "-study_draws", "9"},
           {"study_vary_beam_mass_normal", "value of the design"});
@@ -162,8 +165,20 @@ TEST(StudyResumes, AfterAKill) {
     Results resumed(file);
     for (const char* set : {"/study/peak_deflection", "/study/peak_acceleration_time", "/study/finished"})
       EXPECT_EQ(resumed(set), whole(set)) << set;
-    EXPECT_FALSE(workplace.has(name + ".before"));
   }
+}
+
+// The user's files beside the results, of whatever name.
+TEST(StudyResumes, WithNoOtherFile) {
+  const Workplace workplace(study("beam_mass: [1.0e3, 2.0e3]"));
+  expect_success(workplace.run({"-output_file", "r.h5"}));
+  workplace.write("users", "mine");
+  std::filesystem::create_symlink("users", workplace.path("r.h5.before"));
+  std::filesystem::create_directory(workplace.path("r.h5.part"));
+  expect_success(workplace.run({"-output_file", "r.h5", "-study_resume", "-study_vary_beam_mass", "2e3,3e3"}));
+  EXPECT_TRUE(std::filesystem::is_symlink(workplace.path("r.h5.before")));
+  EXPECT_EQ(std::filesystem::file_size(workplace.path("users")), 4u);
+  EXPECT_TRUE(std::filesystem::is_directory(workplace.path("r.h5.part")));
 }
 
 // More values of the same quantities: only those are run that are new.

@@ -9,6 +9,7 @@
 
 #include "beam/beam.hpp"
 #include "beam/shape.hpp"
+#include "beam/support_line.hpp"
 
 namespace traverse {
 namespace {
@@ -18,6 +19,31 @@ using beam::BeamModel;
 using beam::Distribution;
 using beam::Support;
 using test::model_of;
+
+// --- the line through the supports
+
+TEST(SupportLine, GoesThroughSupportsAndSpringsAtSpanEnds) {
+  const std::vector<double> ground = {0.01, 0.05, -0.03, 0.0};
+  BeamModel model = model_of({10.0, 20.0, 5.0}, 2, false);
+  const auto height = [&](double x) { return beam::support_line(model, x).height(ground); };
+  model.supports = {Support::pinned, Support::roller, Support::roller, Support::free};
+  EXPECT_NEAR(height(5.0), 0.03, 1e-15);
+  EXPECT_NEAR(height(10.0), 0.05, 1e-15);
+  EXPECT_NEAR(height(20.0), 0.01, 1e-15);
+  EXPECT_NEAR(height(35.0), -0.05, 1e-15);  // beyond the last support
+  model.supports[1] = Support::free;
+  EXPECT_NEAR(height(15.0), -0.01, 1e-15);
+  model.foundation.vertical.push_back({.x = 10.0, .k = 1.0e8});
+  EXPECT_NEAR(height(15.0), 0.03, 1e-15);
+  model.supports[2] = Support::clamped;
+  EXPECT_NEAR(height(35.0), -0.03, 1e-15);  // it does not turn
+  model.foundation.vertical.clear();
+  model.supports = {Support::free, Support::clamped, Support::free, Support::free};
+  EXPECT_NEAR(height(0.0), 0.05, 1e-15);
+  EXPECT_NEAR(height(35.0), 0.05, 1e-15);
+  model.supports[1] = Support::free;
+  EXPECT_EQ(height(20.0), 0.0);
+}
 
 // --- shape functions
 

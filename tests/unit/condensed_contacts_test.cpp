@@ -135,7 +135,7 @@ class Contacts : public testing::Test {
     for (int i = 0; i < rows(); ++i) {
       const train::Contact& c = *contacts_.row(i).contact;
       const contact::Force f = contact::force(c.law, kinematics(i, delta), c.approach_speed);
-      F[i] = c.sign * (contacts_.row(i).normal ? f.normal : f.tangential);
+      F[i] = c.factor * (contacts_.row(i).normal ? f.normal : f.tangential);
     }
     return F;
   }
@@ -145,10 +145,10 @@ class Contacts : public testing::Test {
       const train::Contact& c = *contacts_.row(i).contact;
       const contact::Force f = contact::force(c.law, kinematics(i, delta), c.approach_speed);
       if (contacts_.row(i).normal) {
-        D(i, i) = c.sign * (f.normal_by_penetration + shift_ * f.normal_by_rate);
+        D(i, i) = c.factor * (f.normal_by_penetration + shift_ * f.normal_by_rate);
       } else {
-        D(i, i - 1) = c.sign * (f.tangential_by_penetration + shift_ * f.tangential_by_rate);
-        D(i, i) = c.sign * shift_ * f.tangential_by_sliding;
+        D(i, i - 1) = c.factor * (f.tangential_by_penetration + shift_ * f.tangential_by_rate);
+        D(i, i) = c.factor * shift_ * f.tangential_by_sliding;
       }
     }
     return D;
@@ -285,7 +285,7 @@ TEST_F(Contacts, OfTheSignThatTakesAway) {
   prepare(400.0, 1.6e5, {3});
   add_vehicle({0, 0, 0}, contact::LawKind::hertz, 0.3);
   train::Contact& between = fleet_.wheels[2];
-  between.sign = -1.0;
+  between.factor = -1.0;
   between.kinematics.penetration *= 0.5;
   between.touch.kinematics.penetration = between.kinematics.penetration;
   between.force = -contact::force(between.law, between.kinematics, 0.0);

@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <numbers>
+#include <string>
 
+#include "support/paths.hpp"
 #include "traverse/contact/law.hpp"
 
 namespace traverse::contact {
@@ -70,6 +74,50 @@ void expect_derivatives(const Law& law, const Kinematics& k, double approach) {
   near(f.tangential_by_penetration, difference(da, 0, 0).second, 0.0);
   near(f.tangential_by_rate, difference(0, dr, 0).second, 1.0);
   near(f.tangential_by_sliding, difference(0, 0, ds).second, 0.0);
+}
+
+// --- the table of laws
+
+TEST(ContactLaws, AreReadByTheirNames) {
+  for (const LawRow& row : law_rows) {
+    if (row.name.empty()) continue;
+    EXPECT_EQ(law_kind(row.name), row.kind);
+    EXPECT_FALSE(row.words.empty());
+  }
+  EXPECT_FALSE(law_kind("").has_value());
+  EXPECT_FALSE(law_kind("other").has_value());
+}
+
+TEST(ContactLaws, AreInTheGuide) {
+  std::ifstream file(TRAVERSE_SOURCE_DIR "/doc/guide/contacts.md");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  for (const LawRow& row : law_rows)
+    EXPECT_TRUE(row.name.empty() || text.find("`law: " + std::string(row.name) + "`") != std::string::npos) << row.name;
+}
+
+// The slope of the force, its integral and its inverse belong to each other, whatever the law.
+TEST(ContactLaws, EachIsConsistent) {
+  for (const LawRow& row : law_rows) {
+    if (row.name.empty()) continue;
+    Law law;
+    law.kind = row.kind;
+    law.stiffness = 3.0e8;
+    for (const double compliance : {0.0, 2.0e-9}) {
+      law.local_compliance = compliance;
+      const double alpha = 2.0e-4, d = 1e-8;
+      const auto at = [&](double penetration) { return force(law, {penetration, 0.0, 0.0}, 0.0); };
+      const Force f = at(alpha);
+      EXPECT_NEAR(f.normal_by_penetration, (at(alpha + d).normal - at(alpha - d).normal) / (2.0 * d),
+                  1e-6 * f.normal_by_penetration)
+          << row.name;
+      EXPECT_NEAR(f.normal, (potential(law, alpha + d) - potential(law, alpha - d)) / (2.0 * d), 1e-6 * f.normal)
+          << row.name;
+      EXPECT_NEAR(static_penetration(law, f.normal), surface_penetration(law, alpha), 1e-9 * alpha) << row.name;
+    }
+    law.local_compliance = 0.0;
+    EXPECT_GT(impact_duration(law, 1000.0, 0.1), 0.0) << row.name;
+    EXPECT_EQ(force(law, {-1e-4, 0.0, 0.0}, 0.0).normal < 0.0, row.pulls) << row.name;
+  }
 }
 
 TEST(ContactLaw, DerivativesMatchDifferences) {

@@ -108,6 +108,24 @@ TEST(ForceLaw, NeverPullsOrPushesWhereItIsLoose) {
   EXPECT_EQ(tension(rich_law(0.05, Side::both), 0.06, -5.0).tension, 0.0);
 }
 
+// A rope of k and c: slack at e <= 0; taut but without tension where its ends approach faster than the damper allows.
+// Tension times rate is what is stored and what is dissipated.
+TEST(ForceLaw, SlackRope) {
+  constexpr double k = 4.0e5, c = 3.0e4;
+  const ForceLaw rope{Polyline::line(k), Polyline::line(c), 0.0, Side::tension};
+  for (const double e : {-0.02, -1e-6, 1e-3, 0.02})
+    for (const double rate : {-2.0, -0.01, 0.0, 0.01, 2.0}) {
+      SCOPED_TRACE(std::to_string(e) + " m, " + std::to_string(rate) + " m/s");
+      const Tension t = tension(rope, e, rate);
+      const double expected = e > 0.0 ? std::max(0.0, k * e + c * rate) : 0.0;
+      EXPECT_NEAR(t.tension, expected, 1e-9 * k);
+      EXPECT_NEAR(stored_energy(rope, e), e > 0.0 ? 0.5 * k * e * e : 0.0, 1e-9);
+      EXPECT_NEAR(t.dissipation, expected > 0.0 ? c * rate * rate : e > 0.0 ? -k * e * rate : 0.0, 1e-6);
+      EXPECT_GE(t.dissipation, 0.0);
+      EXPECT_NEAR(t.tension * rate, (e > 0.0 ? k * e * rate : 0.0) + t.dissipation, 1e-6);
+    }
+}
+
 TEST(ForceLaw, TheDamperComesOnSteadily) {
   const ForceLaw law = rich_law(0.05, Side::compression);
   const double e = -0.05 - 0.4e-9, h = 1e-11, rate = -0.2;

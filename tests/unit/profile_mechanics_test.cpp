@@ -3,9 +3,14 @@
 
 #include <cmath>
 #include <complex>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
+#include "support/paths.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/track/profile.hpp"
 
@@ -271,9 +276,41 @@ TEST(Profile, IsoSpectrumLevel) {
   EXPECT_NEAR(power / seeds, expected, 0.2 * expected);
 }
 
+/// The names of all spectra that users may write.
+std::vector<std::string> spectrum_names() {
+  std::vector<std::string> names;
+  for (const SpectrumRow& row : spectra) {
+    if (row.grades.empty()) names.emplace_back(row.name);
+    for (const char grade : row.grades) names.push_back(std::string(row.name) + grade);
+  }
+  return names;
+}
+
+std::vector<Spectrum> all_spectra() {
+  std::vector<Spectrum> all;
+  for (const std::string& name : spectrum_names()) all.push_back(spectrum_of(name).value());
+  return all;
+}
+
+TEST(Spectrum, IsFoundByItsName) {
+  EXPECT_EQ(spectrum_names().size(), 13U);
+  EXPECT_EQ(spectrum_of("iso8608_C")->strength, iso8608('C').strength);
+  EXPECT_EQ(spectrum_of("fra_4")->strength, fra(4).strength);
+  EXPECT_EQ(spectrum_of("german_high")->strength, german(true).strength);
+  for (const char* name :
+       {"", "none", "iso8608_", "iso8608_F", "iso8608_AB", "german", "german_low1", "fra_0", "fra_7"})
+    EXPECT_FALSE(spectrum_of(name).has_value()) << name;
+}
+
+TEST(Spectrum, IsInTheGuide) {
+  std::ifstream file(TRAVERSE_SOURCE_DIR "/doc/guide/roughness.md");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  for (const SpectrumRow& row : spectra) EXPECT_NE(text.find(std::string(row.name)), std::string::npos) << row.name;
+}
+
 // The spectra's closed integrals against Simpson's rule, and their values where the literature can be read off.
 TEST(Spectrum, PowerIsTheIntegralOfTheDensity) {
-  for (const Spectrum& s : {iso8608('B'), german(false), german(true), fra(1), fra(6)}) {
+  for (const Spectrum& s : all_spectra()) {
     for (double low : {0.01, 0.3, 7.0}) {
       const double high = 1.7 * low;
       const int n = 200;  // even

@@ -10,17 +10,31 @@
 namespace traverse::app {
 namespace {
 
+/// Passages of the only probe, at ascending times.
+struct Passages {
+  std::vector<double> times;
+  std::vector<beam::StationPassage> now{};
+  std::size_t next = 0;
+  /// Those since the last call.
+  const std::vector<beam::StationPassage>& until(double t) {
+    now.clear();
+    for (; next < times.size() && times[next] <= t; ++next) now.push_back({0, times[next]});
+    return now;
+  }
+};
+
 /// The extremes of one probe's curve f, all quantities the same, sampled every dt until 1 s and at `extra`.
 template <class ExtremumTracker>
 ResponseExtremes peaks_of_curve(ExtremumTracker f, double dt, const std::vector<double>& passages = {}) {
-  ResponseExtremes peaks({passages}, 1);
+  ResponseExtremes peaks(1, 1);
   std::vector<double> times = passages;
   for (int i = 0; i * dt <= 1.0; ++i) times.push_back(i * dt);
   std::sort(times.begin(), times.end());
+  Passages passed{passages};
   for (const double t : times) {
     beam::Response response;
-    response.deflection = response.acceleration = response.moment = f(t);
-    peaks.add(t, {&response, 1}, {{f(t)}});
+    response.relative_deflection = response.acceleration = response.moment = f(t);
+    peaks.add(t, {&response, 1}, {{f(t)}}, passed.until(t));
   }
   peaks.finish();
   return peaks;
@@ -28,7 +42,7 @@ ResponseExtremes peaks_of_curve(ExtremumTracker f, double dt, const std::vector<
 
 // Two events of a crossing may be 1e-12 s apart. Between such instants the slope is that of rounding.
 TEST(ResponseExtremes, InstantsThatNearMakeNoParabola) {
-  ResponseExtremes peaks({}, 1);
+  ResponseExtremes peaks(0, 1);
   const double crest = 1.03, step = 0.1;
   const auto force = [&](double t) { return 1e5 * (2.0 - (t - crest) * (t - crest)); };
   for (double t = 0.0; t < 2.0; t += step) {
@@ -43,7 +57,7 @@ TEST(ResponseExtremes, InstantsThatNearMakeNoParabola) {
 
 // A force that jumps within a short step makes no parabola through the three samples beside it.
 TEST(ResponseExtremes, AJumpMakesNoParabola) {
-  ResponseExtremes peaks({}, 1);
+  ResponseExtremes peaks(0, 1);
   const double jump = 0.505, before = 100.0, after = 110.0;
   for (const double t : {0.3, 0.4, 0.5, jump, 0.6, 0.7, 0.8}) {
     const double now[] = {t < jump ? before : after - 10.0 * (t - jump)};
@@ -87,7 +101,7 @@ TEST(ResponseExtremes, LieBetweenSamples) {
 
 // Filtered rows have extremes between their instants too; where a curve still rises at the last row none is known.
 TEST(ResponseExtremes, OfFilteredRows) {
-  ResponseExtremes peaks({{}, {}}, 0);
+  ResponseExtremes peaks(2, 0);
   const double h = 0.01;
   std::vector<double> rows;
   for (int k = 0; k * h <= 1.0; ++k) {
@@ -116,7 +130,7 @@ TEST(ResponseExtremes, BehindAKinkThatRelaxes) {
   const double kink = 0.4321;
   for (const double b : {1e-4, 3e-3, 0.05}) {
     for (const double dt : {0.03, 0.003}) {
-      ResponseExtremes peaks({{kink}}, 0, b);
+      ResponseExtremes peaks(1, 0, b);
       std::vector<double> times = {kink};
       for (int i = 0; i * dt <= 1.0; ++i) times.push_back(i * dt);
       std::sort(times.begin(), times.end());
@@ -151,14 +165,15 @@ TEST(ResponseExtremes, BesideAJump) {
   const double jump = 0.4321;
   for (const double b : {0.0, 1e-4, 2e-3})
     for (const bool ends_there : {true, false}) {
-      ResponseExtremes peaks({{jump}}, 0, b);
+      ResponseExtremes peaks(1, 0, b);
       std::vector<double> times;
       for (int i = 0; i <= 30; ++i) times.push_back(i / 30.0);
       if (ends_there) times.push_back(jump);
       std::sort(times.begin(), times.end());
+      Passages passed{std::vector<double>(1, jump)};
       for (const double t : times) {
         const beam::Response response = jumping(t, jump, b);
-        peaks.add(t, {&response, 1}, {});
+        peaks.add(t, {&response, 1}, {}, passed.until(t));
       }
       peaks.finish();
       const double way = b > 0.0 ? b * std::log(3.0 / b) : 0.0;

@@ -239,7 +239,7 @@ TEST(SceneTrack, Profiles) {
   EXPECT_PRED2(any_contains, scene_with({{"track_profile_shape", "spline"}}).notes,
                "track_profile_shape has no effect");
   EXPECT_PRED2(contains, refused_with("track_profile", "fra_7"), "fra_1 to fra_6");
-  EXPECT_PRED2(contains, refused_with("track_profile", "german_medium"), "german_low, german_high");
+  EXPECT_PRED2(contains, refused_with("track_profile", "german_medium"), "german_low (rails), german_high (rails)");
   EXPECT_PRED2(any_contains, scene_with({{"track_wavelengths", "1, 3"}}).notes, "track_wavelengths has no effect");
   EXPECT_PRED2(any_contains, scene_with({{"track_bump_start", "10"}}).notes, "track_bump_start has no effect");
   EXPECT_PRED2(contains, refused_with("track_profile", "iso8608_F"), "iso8608_A to iso8608_E");

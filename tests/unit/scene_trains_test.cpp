@@ -42,6 +42,18 @@ TEST(SceneTrains, LoadsRunEitherWay) {
   EXPECT_GT(s.load.positions[2], 80.0) << "further axles follow on the right";
 }
 
+TEST(SceneTrains, WhatStandsOnTheBridgeAtTheStartIsSaid) {
+  const auto notes = [](const std::string& more) { return scene_of(beam_yaml + more).notes; };
+  EXPECT_PRED2(any_contains, notes("load: {forces: 1e5*4, positions: [80, 30, 0, -9], speed: 20}\n"),
+               "on the bridge at the start: 1 force; the run begins in the static equilibrium under them");
+  EXPECT_PRED2(any_contains, notes(vehicle_yaml + "train: {vehicles: car, speed: 20, positions: 40}\n"),
+               "on the bridge at the start: 1 wheel;");
+  EXPECT_PRED2(any_contains, notes("load: {distributed: [1, 4, 1e4], speed: 20}\n"), "1 force;");
+  EXPECT_PRED2(any_contains, notes("load: {forces: 1e5, speed: 0}\nts: {max_time: 1}\n"), "1 force;") << "at rest";
+  EXPECT_FALSE(any_contains(notes("load: {forces: 1e5*2, positions: [0, -9], speed: 20}\n"), "at the start"));
+  EXPECT_FALSE(any_contains(notes("load: {forces: 1e5, positions: 80, speed: -20}\n"), "at the start"));
+}
+
 TEST(SceneTrains, WhatIsRefused) {
   const test::TemporaryFolder folder;
   const std::string brake = folder.write("brake.csv", "0,20\n2,0\n"), both = folder.write("both.csv", "0,20\n2,-1\n");

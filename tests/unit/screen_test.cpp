@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -62,7 +63,65 @@ class Draws {
   std::uint64_t next_ = 0;
 };
 
+/// The largest acceleration of a simple span at 301 places and every two-hundredth of the highest mode's period, by the
+/// method of Runge and Kutta for three modes.
+double largest_acceleration(const Bridge& bridge, const Formation& formation, double v) {
+  constexpr int modes = 3, places = 300;
+  const double L = bridge.spans[0], pi = std::numbers::pi;
+  std::array<double, modes> omega{}, q{}, rate{};
+  for (int n = 0; n < modes; ++n) omega[n] = std::pow((n + 1) * pi / L, 2) * std::sqrt(bridge.EI / bridge.mass);
+  const double size = std::sqrt(2.0 / (bridge.mass * L)), h = 2.0 * pi / omega[modes - 1] / 200.0;
+  const auto acceleration = [&](int n, double t, double value, double slope) {
+    double force = 0.0;
+    for (std::size_t k = 0; k < formation.loads.size(); ++k)
+      if (const double x = v * t - formation.distance[k]; x > 0.0 && x < L)
+        force -= formation.loads[k] * size * std::sin((n + 1) * pi * x / L);
+    return force - 2.0 * bridge.damping * omega[n] * slope - omega[n] * omega[n] * value;
+  };
+  double largest = 0.0;
+  const double end = (formation.distance.back() + L) / v + 4.0 * pi / omega[0];
+  for (double t = 0.0; t < end; t += h) {
+    std::array<double, modes> now{};
+    for (int n = 0; n < modes; ++n) {
+      now[n] = acceleration(n, t, q[n], rate[n]);
+      const double r1 = rate[n], a1 = now[n], r2 = r1 + 0.5 * h * a1,
+                   a2 = acceleration(n, t + 0.5 * h, q[n] + 0.5 * h * r1, r2), r3 = r1 + 0.5 * h * a2,
+                   a3 = acceleration(n, t + 0.5 * h, q[n] + 0.5 * h * r2, r3), r4 = r1 + h * a3,
+                   a4 = acceleration(n, t + h, q[n] + h * r3, r4);
+      q[n] += h / 6.0 * (r1 + 2.0 * r2 + 2.0 * r3 + r4);
+      rate[n] += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    }
+    for (int i = 1; i < places; ++i) {
+      double sum = 0.0;
+      for (int n = 0; n < modes; ++n) sum += size * std::sin((n + 1) * pi * i / places) * now[n];
+      largest = std::max(largest, std::abs(sum));
+    }
+  }
+  return largest;
+}
+
 }  // namespace
+
+// The places of the stations do not matter: against a fine grid of places and instants, which misses up to 5e-4.
+TEST(Screen, FindsPeaksBetweenItsStations) {
+  Draws draws(6);
+  for (int i = 0; i < 4; ++i) {
+    Bridge bridge = draws.bridge();
+    bridge.spans.resize(1);
+    bridge.speed = 100.0;
+    bridge.of_acceleration = 1.0;
+    bridge.of_deflection = 0.0;
+    Formation formation = draws.formation();
+    formation.speed = 100.0;
+    const double speed = draws.between(20.0, 70.0), expected = largest_acceleration(bridge, formation, speed);
+    for (const int parts : {2, 10, 17}) {
+      const BridgeModel model(bridge, 3, parts, {speed}, 20.0);
+      const double found = Pairs(model).passages(formation).front();
+      EXPECT_GE(found, (1.0 - 1e-4) * expected) << parts;
+      EXPECT_LE(found, (1.0 + 5e-4) * expected) << parts;
+    }
+  }
+}
 
 TEST(Screen, ModesOfOneAndOfEqualSpansHaveTheirKnownWavenumbers) {
   const std::vector<double> one = {12.0}, two = {12.0, 12.0};

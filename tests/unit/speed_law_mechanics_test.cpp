@@ -74,12 +74,12 @@ TEST(SpeedLaw, RefusesWhatCannotRun) {
 
 TEST(SpeedLaw, HoldsAPieceAtItsEnd) {
   base::TimeFunction way = SpeedLaw::over_time({0.0, 2.0, 4.0}, {20.0, 10.0, 10.0}).from(3.0);
-  EXPECT_TRUE(way.jumps());
-  way.select_piece(1.0);
+  EXPECT_EQ(way.kinks(), (std::vector<double>{0.0, 2.0, 4.0}));
+  way.select_side(1.0);
   EXPECT_DOUBLE_EQ(way.acceleration(2.0), -5.0) << "of the step that ends there";
   EXPECT_DOUBLE_EQ(way.value(2.0), 33.0);
-  EXPECT_TRUE(way.select_piece(3.0));
-  EXPECT_FALSE(way.select_piece(3.5));
+  EXPECT_TRUE(way.select_side(3.0));
+  EXPECT_FALSE(way.select_side(3.5));
   EXPECT_DOUBLE_EQ(way.acceleration(2.0), 0.0) << "of the step that begins there";
   EXPECT_DOUBLE_EQ(way.value(2.0), 33.0);
 }

@@ -107,6 +107,87 @@ TEST(Chains, PolygonDrive) {
   EXPECT_LT(energy_error(run), 1e-6);
 }
 
+/// A step of options/vehicles/escalator_steps.yml on its two rollers, whose axles the chain moves along the track: the
+/// height y of the front axle and the pitch phi, each part at (dx, dy) from that axle.
+class PitchingStep {
+ public:
+  PitchingStep(double along, double across) : along_(along), across_(across) {
+    for (const Part& p : parts) {
+      const Eigen::Vector2d x(0.0, -p.dy), y(1.0, p.dx);
+      M_ += p.mass * (x * x.transpose() + y * y.transpose());
+      M_(1, 1) += p.inertia;
+    }
+    for (const double dx : {0.0, -0.3}) K_ += 1.0e6 * Eigen::Vector2d(1.0, dx) * Eigen::RowVector2d(1.0, dx);
+    s_.head<2>() = K_.inverse() * load(0.0);
+  }
+  /// phi'' while the axles accelerate by a, m/s2.
+  double pitch_acceleration(double a) const { return rate(s_, a)[3]; }
+  /// Runge and Kutta.
+  void advance(double a, double h) {
+    const Eigen::Vector4d k1 = rate(s_, a), k2 = rate(s_ + 0.5 * h * k1, a), k3 = rate(s_ + 0.5 * h * k2, a),
+                          k4 = rate(s_ + h * k3, a);
+    s_ += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+
+ private:
+  struct Part {
+    double dx, dy, mass, inertia;
+  };
+  static constexpr Part parts[] = {{0.0, 0.0, 7.0, 0.01}, {-0.15, 0.1, 16.0, 0.5}, {-0.3, 0.0, 1.0, 0.01}};
+
+  Eigen::Vector2d load(double a) const {
+    Eigen::Vector2d forces = Eigen::Vector2d::Zero();
+    for (const Part& p : parts)
+      forces -= p.mass * (across_ * Eigen::Vector2d(1.0, p.dx) + (along_ + a) * Eigen::Vector2d(0.0, -p.dy));
+    return forces;
+  }
+  Eigen::Vector4d rate(const Eigen::Vector4d& s, double a) const {
+    Eigen::Vector4d r;
+    r << s.tail<2>(), M_.inverse() * (load(a) - K_ * (s.head<2>() + 5.0e-4 * s.tail<2>()));
+    return r;
+  }
+
+  double along_, across_;  // gravity along and across the track, m/s2
+  Eigen::Matrix2d M_ = Eigen::Matrix2d::Zero(), K_ = Eigen::Matrix2d::Zero();
+  Eigen::Vector4d s_ = Eigen::Vector4d::Zero();
+};
+
+// The steps of the scene pitch after each jerk: T = M (g sin(a) + dv/dt) - m h phi'' for each step behind.
+TEST(Chains, StepsPitch) {
+  Results run = run_scene("escalator_chain", {{"ts_max_time", "0.4"}});
+  constexpr double teeth = 16.0, pitch = 0.4 / 3.0, speed = 0.5, period = pitch / speed, piece = period / 8.0;
+  constexpr int substeps = 2000;  // of a piece of the table
+  const double omega = 2.0 * std::numbers::pi / (teeth * period);
+  const double radius = 0.5 * pitch / std::sin(std::numbers::pi / teeth), steep = std::hypot(1.0, 0.57735);
+  const auto v = [&](double t) { return omega * radius * std::cos(omega * t - std::numbers::pi / teeth); };
+  PitchingStep step(gravity * 0.57735 / steep, gravity / steep);
+  const std::vector<double> time = run.time();
+  double error = 0.0, by_pitch = 0.0;
+  std::size_t sample = 1;
+  for (int k = 0; sample < time.size(); ++k) {
+    const double start = piece * (k % 8), a = (v(start + piece) - v(start)) / piece, h = piece / substeps;
+    for (int i = 0; i < substeps && sample < time.size(); ++i) {
+      const double t = piece * k + h * i;
+      if (time[sample] < t + 0.5 * h) {
+        const double pull = -16.0 * 0.1 * step.pitch_acceleration(a);
+        for (const int link : {0, 7, 18}) {
+          const std::vector<double>& reaction = run("/vehicles/0/link" + std::to_string(link) + "/reaction");
+          const double weight = 24.0 * gravity * 0.57735 / steep, behind = 19 - link;
+          const bool jumps = i < 2 || i > substeps - 2;
+          if (!jumps)
+            error = std::max(error, std::abs(reaction[3 * sample] / behind - weight - 24.0 * a - pull) / weight);
+        }
+        by_pitch = std::max(by_pitch, std::abs(pull) * 19.0);
+        ++sample;
+      }
+      step.advance(a, h);
+    }
+  }
+  EXPECT_GT(by_pitch, 5.0);
+  RecordProperty("error", text(error));
+  EXPECT_LT(error, 2e-5);
+}
+
 // Twenty steps are few enough for the projected matrices, thirty are not: the rear of both chains moves alike.
 TEST(Chains, SparseAndProjectedEquationsAgree) {
   Results few = escalator_chain("8"), many = escalator_chain("40");

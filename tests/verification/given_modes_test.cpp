@@ -151,6 +151,20 @@ TEST(GivenModes, MovingForceInClosedForm) {
   EXPECT_LT(relative_difference(run("/outputs/moment"), moments), 1e-9);
 }
 
+// Section forces are unknown: the jump of the shear beside a force that stands on a probe at the end of a step is no
+// peak.
+TEST(GivenModes, HaveNoSectionForces) {
+  TemporaryFolder folder;
+  const std::string file = folder.write("modes.csv", as_text(yang_yau(2)));
+  Results run = run_yaml("bridge: {modes_file: " + file + "}\nload: {forces: 1e5, speed: 60}\noutput: {probes: 12.0}\n",
+                         {{"ts_dt", "1e-3"}, {"ts_max_time", "0.4"}, {"step_probes", "true"}});
+  EXPECT_GT(std::abs(run.attribute("/summary", "deflection")), 0.0);
+  for (const char* name : {"moment", "shear", "axial_force"})
+    EXPECT_TRUE(std::isnan(run.attribute("/summary", name))) << name;
+  for (const char* name : {"/probes/moment", "/probes/shear", "/envelope/moment", "/envelope/shear"})
+    EXPECT_THROW(run(name), std::runtime_error) << name;
+}
+
 /// A slab of 20 m: two modes of bending and two of torsion, which move the tracks at 2.2 m on either side.
 Sines slab() {
   const double arm = 2.2;

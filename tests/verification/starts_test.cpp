@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "support/scene_run.hpp"
@@ -97,6 +98,78 @@ output: {interval: 0.001}
   // The car's weight, 1.04 m above the axles, turns it further by as much as m g h/(2 k a^2).
   const double turn = 40.0 * slope / 6.0, further = 20.0e3 * g * 1.04 / (2.0 * 1.0e6 * 36.0);
   EXPECT_NEAR(run.column("/vehicles/0/car/velocity", 2).front(), turn, further * std::abs(turn));
+}
+
+/// A rigid bar without damping on a spring under each end.
+constexpr double bar = 8.0, bar_mass = 1.6e4, spring = 2.0e7;  // m, kg, N/m
+const std::string rigid_bar = R"(
+beam: {spans: 8.0, EI: 1.0e13, mass: 2.0e3, damping_ratios: 0.0, elements_per_span: 4}
+support: {types: [free, free]}
+foundation: {vertical: {x: [0.0, 8.0], k: 2.0e7}}
+ts: {dt: 1.0e-3}
+output: {interval: 1.0e-3, probes: [0.0, 3.0, 8.0]}
+)";
+
+/// Its deflection at x under a force and a moment (counter-clockwise) that come onto the left end at t = 0 with the
+/// speed v.
+double bar_deflection(double x, double t, double v, double force, double moment) {
+  const double heave = std::sqrt(2.0 * spring / bar_mass), turning_stiffness = 0.5 * spring * bar * bar;
+  const double pitch = std::sqrt(turning_stiffness / (bar_mass * bar * bar / 12.0));
+  const double down = force / (2.0 * spring) * (1.0 - std::cos(heave * t));
+  const double arm = v * t - 0.5 * bar + 0.5 * bar * std::cos(pitch * t) - v / pitch * std::sin(pitch * t);
+  const double turn = (force * arm - moment * (1.0 - std::cos(pitch * t))) / turning_stiffness;  // clockwise
+  return -down - turn * (x - 0.5 * bar);
+}
+
+// What arrives at the first instant is not on the bridge before: it begins undeflected. Seen before: the equilibrium
+// under the force, by elements and by modes.
+TEST(Starts, WhatArrivesAtTheFirstInstantBeginsOutside) {
+  const double v = 20.0, end = bar / v, force = 1.0e5;
+  struct Case {
+    std::string load;
+    bool leftwards;
+    double moment;
+    Values options;
+  };
+  const std::vector<Case> cases = {
+      {"load: {forces: 1.0e5, speed: 20.0}\n", false, 0.0, {}},
+      {"load: {forces: 1.0e5, speed: 20.0}\n", false, 0.0, {{"model_modes", "2"}}},
+      {"load: {forces: 1.0e5, positions: 8.0, speed: -20.0}\n", true, 0.0, {}},
+      {"load: {forces: 1.0e5, moments: 3.0e5, speed: 20.0}\n", false, 3.0e5, {}},
+  };
+  for (const Case& one : cases) {
+    Results run = run_yaml(rigid_bar + one.load + "scene: {tail: 0.0}\n", one.options);
+    const std::vector<double> t = run.time();
+    const std::vector<double>& x = run("/probes/x");
+    for (std::size_t p = 0; p < x.size(); ++p) {
+      const std::vector<double> deflection = run.column("/probes/deflection", p);
+      for (std::size_t i = 0; i < t.size() && t[i] < end; ++i)
+        ASSERT_NEAR(deflection[i], bar_deflection(one.leftwards ? bar - x[p] : x[p], t[i], v, force, one.moment), 5e-6)
+            << one.load << "x = " << x[p] << ", t = " << t[i];
+    }
+  }
+}
+
+TEST(Starts, SweepsBeginOutsideToo) {
+  Results sweep = run_yaml(rigid_bar + "load: {forces: 1.0e5}\nsweep: {speed: [20.0, 20.0, 1.0]}\nscene: {tail: 0.0}\n",
+                           {{"model_modes", "2"}});
+  const std::array x = {0.0, 3.0, 8.0};
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    double exact = 0.0;
+    for (double t = 0.0; t <= bar / 20.0; t += 1e-5)
+      exact = std::max(exact, std::abs(bar_deflection(x[p], t, 20.0, 1.0e5, 0.0)));
+    EXPECT_NEAR(sweep("/sweep/peak_deflection")[p], exact, 2e-3 * exact) << x[p];
+  }
+}
+
+// A force at rest on the end stands there: F/k.
+TEST(Starts, WhatRestsOnAnEndStandsThere) {
+  for (const double place : {0.0, 8.0}) {
+    Results run = run_yaml(rigid_bar + "ts: {max_time: 0.1}\n",
+                           {{"load_forces", "1e5"}, {"load_positions", fmt::format("{}", place)}, {"load_speed", "0"}});
+    for (const double deflection : run.column("/probes/deflection", place == 0.0 ? 0 : 2))
+      ASSERT_NEAR(deflection, -1.0e5 / spring, 1e-6);
+  }
 }
 
 }  // namespace

@@ -63,6 +63,57 @@ TEST(Settlement, ClampedEnds) {
   EXPECT_NEAR(std::abs(R[2]), 0.5 * force * L, 1e-9 * force * L);
 }
 
+Values with(Values first, const Values& more) {
+  first.insert(first.end(), more.begin(), more.end());
+  return first;
+}
+
+// Determinate beams that settle turn and bend nothing: peaks, limits and amplifications are those without settlement,
+// also of a tip beyond the last support and of a cantilever.
+TEST(Settlement, DeflectionsAreRelativeToTheSupports) {
+  const Values moving = {{"scene_analysis", "transient"}, {"load_forces", "1e5"},      {"load_speed", "30"},
+                         {"beam_damping_ratios", "0.02"}, {"output_interval", "0.01"}, {"ts_dt", "2e-3"}};
+  const std::string overhang =
+                        "beam: {spans: [20.0, 5.0], EI: 8.0e9, mass: 2303.0, elements_per_span: 4}\n"
+                        "support: {types: [pinned, roller, free]}\noutput: {probes: [10.0, 25.0]}\n",
+                    cantilever =
+                        "beam: {spans: 10.0, EI: 8.0e9, mass: 2303.0, elements_per_span: 4}\n"
+                        "support: {types: [clamped, free]}\noutput: {probes: [5.0, 10.0]}\n";
+  for (const auto& [scene, settlement] :
+       {std::pair(one_span, "0,-0.02"), {overhang, "-0.02,0,0"}, {overhang, "0.01,-0.02,0"}, {cantilever, "-0.02,0"}}) {
+    Results level = run_yaml(scene, moving),
+            settled = run_yaml(scene, with(moving, {{"support_settlement", settlement}}));
+    for (const char* name : {"deflection", "static_deflection", "amplification"})
+      EXPECT_NEAR(settled.attribute("/summary", name) / level.attribute("/summary", name), 1.0, 1e-8) << settlement;
+    EXPECT_LT(relative_difference(settled("/envelope/deflection"), level("/envelope/deflection")), 1e-8);
+    EXPECT_LT(relative_difference(settled("/shape/deflection"), level("/shape/deflection")), 1e-8);
+    EXPECT_LT(relative_difference(settled("/probes/relative_deflection"), level("/probes/deflection")), 1e-8);
+    EXPECT_GT(relative_difference(settled("/probes/deflection"), level("/probes/deflection")), 0.1);
+  }
+}
+
+// A continuous beam that settles bends: its middle support goes down by s, and the spans depart from the lines to it.
+TEST(Settlement, BendingOfContinuousBeamsCounts) {
+  Results run = run_yaml(two_spans, {{"support_settlement", "0,-0.01,0"}});
+  const double at_support = -0.01 * 12.5 / L, in_space = -0.01 * 12.5 * (3.0 * L * L - 12.5 * 12.5) / (2.0 * L * L * L);
+  EXPECT_NEAR(run("/probes/relative_deflection")[1], in_space - at_support, 1e-12);
+  EXPECT_NEAR(run("/probes/relative_deflection")[2], 0.0, 1e-15);
+}
+
+// Batches of runs have the same peaks as single runs of a bridge that has settled.
+TEST(Settlement, InABatch) {
+  const std::string scene =
+      "beam: {spans: [25.0, 25.0], EI: 8.0e9, mass: 2303.0, elements_per_span: 6, "
+      "damping_ratios: 0.02}\nsupport: {settlement: [0.0, -0.02, 0.0]}\n"
+      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      "/options/vehicles/manchester.yml}}\n"
+      "train: {vehicles: coach, speed: 40.0}\nts: {dt: 1.0e-3}\nmodel: {vehicles: linear}\n"
+      "output: {interval: 0.01, probes: [12.5, 25.0]}\n";
+  Results sweep = run_yaml(scene, {{"sweep_speed", "40,44"}}), single = run_yaml(scene);
+  EXPECT_NEAR(sweep("/sweep/peak_deflection")[0], std::abs(single.attribute("/summary", "deflection")), 1e-7);
+  EXPECT_NEAR(sweep("/sweep/static_deflection")[0], single.attribute("/summary", "static_deflection"), 1e-9);
+}
+
 // On a bed the ground does not go down with the support: one span of many elements against the exact chain, whose end
 // is pushed down by the reaction that was found.
 TEST(Settlement, BesideABed) {
@@ -79,11 +130,6 @@ TEST(Settlement, BesideABed) {
 
 const Values warm_top = {{"beam_temperature_gradient", "10.0"}, {"beam_temperature_depth", "2.0"}};
 constexpr double warm_curvature = 1.2e-5 * 10.0 / 2.0;
-
-Values with(Values first, const Values& more) {
-  first.insert(first.end(), more.begin(), more.end());
-  return first;
-}
 
 TEST(Temperature, GradientBetweenClampedEnds) {
   Results run = run_yaml(one_span, with(warm_top, {{"support_types", "clamped"}}));

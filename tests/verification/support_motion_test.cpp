@@ -115,10 +115,12 @@ TEST_P(ShakenBridge, ModalSeries) {
   Results run =
       run_yaml(bridge + "load: {forces: 0, speed: 0}\nts: {max_time: 1.0, dt: 1.0e-3}\n", {{"support_motion", file}});
   const std::vector<double> time = run.time(), deflection = run("/probes/deflection"), moment = run("/probes/moment"),
-                            displacement = run("/supports/displacement");
+                            displacement = run("/supports/displacement"), relative = run("/probes/relative_deflection");
+  double greatest_relative = 0.0, error_of_relative = 0.0;
   double greatest = 0.0, greatest_moment = 0.0, error = 0.0, error_of_moment = 0.0;
   model.run(time, 2e-5, [&](std::size_t i, const Coordinates& s) {
     double z = model.share_at(0.5 * span) * s[modes + 1], M = 0.0;
+    const double line = z;
     for (int n = 0; n < modes; ++n) {
       const double shape = std::sin((n + 1) * pi / 2.0);
       z += shape * s[n];
@@ -127,12 +129,18 @@ TEST_P(ShakenBridge, ModalSeries) {
     greatest = std::max(greatest, std::abs(z));
     greatest_moment = std::max(greatest_moment, std::abs(M));
     error = std::max(error, std::abs(deflection[i] - z));
+    greatest_relative = std::max(greatest_relative, std::abs(z - line));
+    error_of_relative = std::max(error_of_relative, std::abs(relative[i] - (z - line)));
     error_of_moment = std::max(error_of_moment, std::abs(moment[i] - M));
     for (std::size_t end : {0U, 1U}) EXPECT_NEAR(displacement[2 * i + end], model.shares[end] * s[modes + 1], 1e-9);
   });
   RecordProperty("error", text(error / greatest));
   RecordProperty("moment_error", text(error_of_moment / greatest_moment));
   EXPECT_LT(error, 5e-5 * greatest);
+  EXPECT_LT(error_of_relative, 1e-4 * greatest_relative);
+  const double peak = std::abs(run.attribute("/summary", "deflection"));  // between the samples, too
+  EXPECT_GT(peak, greatest_relative * (1.0 - 1e-4));
+  EXPECT_LT(peak, greatest_relative * 1.1);
   EXPECT_LT(error_of_moment, 1e-4 * greatest_moment);
   double unbalanced = 0.0, reaction = 0.0;
   for (const double force : run("/balance/residual")) unbalanced = std::max(unbalanced, std::abs(force));
@@ -143,6 +151,36 @@ TEST_P(ShakenBridge, ModalSeries) {
 
 INSTANTIATE_TEST_SUITE_P(SupportMotion, ShakenBridge,
                          ::testing::Values(std::array{1.0, 1.0}, std::array{0.0, 1.0}, std::array{1.0, -0.5}));
+
+/// One span whose supports move while a force creeps over it: with the deflection of statics, whatever they do.
+Results crept(const std::string& motion, const std::string& limit = "1/3000") {
+  const TemporaryFolder folder;
+  return run_yaml(
+      bridge + "load: {forces: 1.0e5, positions: -1, speed: 0.5}\nts: {max_time: 44, dt: 1.0e-2}\n",
+      {{"support_motion", folder.write("motion.csv", motion)},
+       {"support_motion_values", "displacement"},
+       {"output_interval", "0.1"},
+       {"limits", folder.write("limits.yml", "- {clause: A, quantity: deflection_over_span, value: " + limit +
+                                                 "}\n- {clause: B, quantity: amplification, value: 2}\n")}});
+}
+
+// Supports that lift or tilt the span by 20 mm deflect nothing: the force alone does, P L^3/(48 EI).
+TEST(SupportMotion, LiftAndTiltDeflectNothing) {
+  constexpr double statics = 1.0e5 * span * span * span / (48.0 * EI);
+  for (const char* motion : {"0,0,0\n1,0,0\n20,0.01,0.01\n39,0.02,0.02\n44,0.02,0.02\n",
+                             "0,0,0\n1,0,0\n20,0.01,-0.01\n39,0.02,-0.02\n44,0.02,-0.02\n"}) {
+    Results run = crept(motion);
+    EXPECT_NEAR(std::abs(run.attribute("/summary", "deflection")), statics, 2e-3 * statics);
+    EXPECT_NEAR(run.attribute("/summary", "static_deflection"), statics, 1e-6 * statics);
+    EXPECT_NEAR(run.attribute("/summary", "amplification"), 1.0, 2e-3);
+    EXPECT_NEAR(run("/envelope/deflection")[0], -statics, 2e-3 * statics);
+    EXPECT_NEAR(run("/verdicts/value")[0], statics / span, 2e-3 * statics / span);
+    EXPECT_GT(run("/verdicts/margin")[0], -1.0);
+    EXPECT_NEAR(run("/verdicts/value")[1], 1.0, 2e-3);
+    EXPECT_NEAR(peak(run("/shape/deflection")).first, -statics, 2e-3 * statics);
+    EXPECT_GT(std::abs(peak(run("/supports/displacement")).first), 0.019);
+  }
+}
 
 // An oscillator comes from the ground, which moves with the first support, crosses, and leaves onto the ground.
 TEST(SupportMotion, OscillatorCrosses) {
@@ -186,6 +224,8 @@ TEST(SupportMotion, SlowMotionOfOneSupport) {
       "beam: {spans: [20, 20], EI: 8.0e9, mass: 9000, elements_per_span: 6, damping_ratios: [0.05, 0.05]}\n"
       "load: {forces: 0, speed: 0}\nts: {max_time: 40, dt: 1.0e-2}\noutput: {interval: 1.0, probes: [10, 20]}\n",
       {{"support_motion", file}, {"support_motion_values", "displacement"}});
+  EXPECT_NEAR(run.attribute("/summary", "deflection"), (0.6875 - 0.5) * 0.01, 1e-5);  // from the line to the support
+  EXPECT_EQ(run.attribute("/summary", "deflection_place"), 10.0);
   const std::vector<double> moment = run("/probes/moment"), deflection = run("/probes/deflection"),
                             motion = run("/supports/displacement");
   for (std::size_t i = 2; i < run.time().size(); ++i) {
@@ -249,6 +289,51 @@ TEST(SupportMotion, AlongTheBeam) {
   EXPECT_LT(error, 3e-4 * greatest);
   EXPECT_LT(error_of_force, 3e-4 * greatest_force);
   EXPECT_LT(energy_error(run), 1e-6);
+}
+
+// A record that is cut while it accelerates: at its end the acceleration of the supports jumps. The step ends there,
+// and the sample has the acceleration before the jump, of the supports and of the beam.
+TEST(SupportMotion, RecordThatEndsWhileItAccelerates) {
+  const TemporaryFolder folder;
+  const std::string cut = folder.write("cut.csv", "0,0\n0.0503,2.0\n");
+  const auto run = [&](const char* end, const Values& options) {
+    return run_yaml(bridge + "load: {forces: 0, speed: 0}\n",
+                    options + Values{{"support_motion", cut}, {"ts_max_time", end}});
+  };
+  Results exact = run("0.3", {{"ts_dt", "5e-5"}}), rough = run("0.3", {{"ts_dt", "1e-3"}}),
+          fine = run("0.3", {{"ts_dt", "2.5e-4"}});
+  const auto error = [&](Results& one) {
+    return relative_difference(one("/probes/deflection"), exact("/probes/deflection"));
+  };
+  EXPECT_GT(std::log2(error(rough) / error(fine)) / 2.0, 3.5);
+  Results at_end = run("0.1006", {{"ts_dt", "1e-4"}, {"output_interval", "0.0503"}}),
+          before = run("0.0502", {{"ts_dt", "1e-4"}, {"output_interval", "0.0502"}});
+  EXPECT_NEAR(at_end("/supports/acceleration")[2], 2.0, 1e-9);
+  EXPECT_NEAR(at_end("/probes/acceleration")[1], before("/probes/acceleration")[1], 0.01);
+}
+
+// A table holds its last value. A displacement that would stop at once is refused, two equal rows let it rest.
+TEST(SupportMotion, DisplacementHoldsItsLastValue) {
+  const TemporaryFolder folder;
+  const Values displacement = {{"support_motion_values", "displacement"}};
+  const std::string scene = bridge + "load: {forces: 0, speed: 0}\nts: {max_time: 1.0, dt: 1.0e-3}\n";
+  const std::string moving = folder.write("moving.csv", "0,0\n0.1,0.01\n0.3,-0.005\n0.5,0.01\n");
+  const std::string message = message_of([&] { run_yaml(scene, displacement + Values{{"support_motion", moving}}); });
+  EXPECT_TRUE(contains(message, "support_motion: the table ends at 0.5 s, where the displacement would stop at once"));
+  Results rests = run_yaml(
+      scene, displacement + Values{{"support_motion",
+                                    folder.write("rests.csv", "0,0\n0.1,0.01\n0.3,-0.005\n0.5,0.01\n0.6,0.01\n")}});
+  const std::vector<double> time = rests.time(), place = rests("/supports/displacement");
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (time[i] < 0.6) continue;
+    EXPECT_NEAR(place[2 * i], 0.01, 1e-15);
+  }
+  EXPECT_LT(peak(place).first, 0.01 + 0.3 * 0.015);  // a little beyond the greatest row
+  const std::string uneven = folder.write("uneven.csv", "0,0\n0.5,0\n0.501,0.01\n1,0.01\n");
+  EXPECT_TRUE(contains(message_of([&] {
+                         run_yaml(scene, displacement + Values{{"support_motion", uneven}});
+                       }),
+                       "support_motion: the cubic spline between the rows 1 and 2 reaches"));
 }
 
 // The runs of a study have the motion, too, also with linear vehicles.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "support/curve.hpp"
 #include "support/runge_kutta.hpp"
@@ -134,6 +135,110 @@ TEST(SurfaceSteps, WheelTurnsAboutTheCornerWhereTheSurfaceEnds) {
     EXPECT_NEAR(y[i], circle - flight * (fall + 0.5 * g * flight), 2e-3) << x[i];
   }
   EXPECT_LT(energy_error(run), 1e-4);
+}
+
+/// A wheel of 5 t on a beam with a soft bearing at one end; the ground begins beside it.
+constexpr double span = 16.0, r = 0.5, weight = 5000.0 * g, bearing = 6.0e6;  // m, N, N/m
+const std::string soft_end = R"(
+beam: {spans: [16.0], EI: 1.0e13, mass: 2500.0, elements_per_span: 4}
+vehicle:
+  q:
+    bodies: [b]
+    drivers: [level]
+    wheels: [w]
+    b: {mass: 5000.0, inertia: 10.0, position: [0.0, 0.5]}
+    level: {body: b, coordinate: phi, value: 0.0}
+    w: {body: b, radius: 0.5}
+train: {vehicles: q, speed: 10.0}
+scene: {analysis: static}
+output: {probes: [0.0, 16.0]}
+)";
+
+struct Resting {
+  double sinking = 0.0, force = 0.0;  // of the beam's end, m; of the wheel, N
+};
+
+/// The wheel at rest at a distance before the soft end of a rigid beam, by bisection. It touches the beam and the edge
+/// of the ground beside it; what both overlap, down to the beam's lower end, counts once.
+Resting at_rest(double before, const std::function<double(double)>& law) {
+  const double x = span - before;
+  struct Sum {
+    double up = 0.0, on_end = 0.0, all = 0.0;  // on the wheel, on the beam's end, of all magnitudes; N
+  };
+  const auto forces = [&](double d, double y) {
+    Sum sum;
+    const auto add = [&](double sign, double at, double height, double arm) {
+      const double away = std::hypot(x - at, y - height), f = sign * law(r - away);
+      sum.up += f * (y - height) / away;
+      sum.on_end += arm * f * (y - height) / away;
+      sum.all += f;
+    };
+    const double slope = d / span, station = std::min((x - y * slope) / (1.0 + slope * slope), span);
+    add(1.0, station, -slope * station, station / span);
+    add(1.0, span, 0.0, 0.0);
+    add(-1.0, span, -d, 1.0);
+    return sum;
+  };
+  const auto zero_of = [](double low, double high, const auto& falling) {
+    for (int i = 0; i < 100; ++i) {
+      const double middle = 0.5 * (low + high);
+      (falling(middle) > 0.0 ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  };
+  const auto height = [&](double d) {
+    return zero_of(0.5 * r, 1.1 * r, [&](double y) { return forces(d, y).up - weight; });
+  };
+  const double d = zero_of(0.0, 0.02, [&](double one) { return forces(one, height(one)).on_end - bearing * one; });
+  return {d, forces(d, height(d)).all};
+}
+
+TEST(SurfaceSteps, WheelsStandBesideASoftEnd) {
+  const auto linear = [](double depth) { return depth > 0.0 ? 2.0e6 * depth : 0.0; };
+  const auto hertz = [](double depth) { return depth > 0.0 ? 1.0e9 * std::pow(depth, 1.5) : 0.0; };
+  for (const bool is_hertz : {false, true})
+    for (const bool at_left : {false, true})
+      for (const double before : {0.05, 0.03, 0.005, 0.001, 1e-4, -1e-4, -0.001, -0.02})
+        for (const char* vehicles : {"full", "linear"}) {
+          Resting exact = {0.0, weight};
+          if (before > 0.0) exact = is_hertz ? at_rest(before, hertz) : at_rest(before, linear);
+          Results run = run_yaml(soft_end, {{"support_types", at_left ? "roller,pinned" : "pinned,roller"},
+                                            {"support_stiffness", at_left ? "6e6,0" : "0,6e6"},
+                                            {"train_positions", fmt::format("{}", at_left ? before : span - before)},
+                                            {"vehicle_q_w_law", is_hertz ? "hertz" : "linear"},
+                                            {"vehicle_q_w_stiffness", is_hertz ? "1e9" : "2e6"},
+                                            {"model_vehicles", vehicles}});
+          EXPECT_NEAR(run.column("/probes/deflection", at_left ? 0 : 1).back(), -exact.sinking,
+                      1e-3 * exact.sinking + 1e-10)
+              << before << vehicles << is_hertz << at_left;
+          EXPECT_NEAR(run("/vehicles/0/w/normal_force").back(), exact.force, 1e-5 * weight) << before << vehicles;
+        }
+}
+
+// A wheel that has passed a step touches at one point again. Seen before: the force of its last second point was added
+// to those of all later steps of linear vehicles, 101 kN between stored samples.
+TEST(SurfaceSteps, LinearVehiclesForgetPointsThatTheyHaveLeft) {
+  const std::string passing = soft_end + "support: {types: [pinned, roller], stiffness: [0, 5.0e7]}\n";
+  for (const bool leftwards : {false, true})
+    for (const char* step : {"5e-4", "3e-4", "2e-4"}) {
+      Values options = {{"scene_analysis", "transient"},
+                        {"model_vehicles", "linear"},
+                        {"ts_dt", step},
+                        {"vehicle_q_w_law", "linear"},
+                        {"vehicle_q_w_stiffness", "2e6"},
+                        {"scene_tail", "0.1"},
+                        {"train_speed", leftwards ? "-19" : "19"},
+                        {"train_positions", leftwards ? "1" : "15"}};
+      if (leftwards)
+        options.insert(options.end(), {{"support_types", "roller,pinned"}, {"support_stiffness", "5e7,0"}});
+      Results run = run_yaml(passing, options);
+      const std::vector<double>& force = run("/vehicles/0/w/normal_force");
+      const double greatest = *std::max_element(force.begin(), force.end()),
+                   least = *std::min_element(force.begin(), force.end());
+      EXPECT_NEAR(run.attribute("/summary", "greatest_wheel_force"), greatest, 1e-3 * weight) << step << leftwards;
+      EXPECT_NEAR(run.attribute("/summary", "least_wheel_force"), least, 1e-3 * weight) << step << leftwards;
+      EXPECT_LT(greatest, 1.1 * weight);
+    }
 }
 
 }  // namespace

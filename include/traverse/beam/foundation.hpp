@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct PointFoundation {
   double c = 0.0;
   bool from_left = false;  // between two separate spans or at a hinge: it holds the left side
   FoundationLaw law = {};
-  double depth = 0.0;  // depth of a longitudinal point below the beam's axis, m; only at span ends
+  double depth = 0.0;            // depth of a longitudinal point below the beam's axis, m; only at span ends
+  std::string_view option = {};  // that defines k; empty: foundation_KIND_k
 };
 
 /// A bed along the whole beam: k and c of a point per length, both >= 0.
@@ -33,6 +35,7 @@ struct Bed {
   Distribution k;
   Distribution c;
   FoundationLaw law = {};
+  std::string_view option = {};  // that defines k; empty: foundation_KIND_k
 };
 
 /// Each kind is assembled into its own matrix. The force on the beam is -k v - c dv/dt. Foundations with a nonlinear
@@ -67,6 +70,12 @@ inline constexpr std::array foundation_kinds = {
     FoundationKind{.name = "rotational_bed", .direction = Direction::rotational, .bed = &Foundation::rotational_bed},
 };
 inline constexpr std::size_t foundation_kind_count = foundation_kinds.size();
+
+/// The option that defines the stiffness of a point or bed of this kind.
+template <class Part>
+std::string stiffness_option(const FoundationKind& kind, const Part& part) {
+  return part.option.empty() ? "foundation_" + std::string(kind.name) + "_k" : std::string(part.option);
+}
 
 /// The index of a kind in the table. Throws InputError if there is no kind of this name.
 std::size_t foundation_kind(std::string_view name);

@@ -163,4 +163,8 @@ std::vector<RigidMotion> rigid_motions(const BeamModel& model);
 /// treated as a resistance; the static solution determines whether it acts.
 std::string floating_motion(const BeamModel& model);
 
+/// Throws InputError that names the option if only springs resist a rigid motion and are so soft that rounding of the
+/// stiffness of the elements hides them.
+void check_springs(const BeamModel& model);
+
 }  // namespace traverse::beam

@@ -2,12 +2,50 @@
 // friction (eqs. 45, 48, 49 of the paper as corrected in doc/theory.md).
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 namespace traverse::contact {
 
+/// A new kind needs a row below and a case in each switch over the kinds; the compiler names them.
 enum class LawKind { hertz, linear, two_sided, other };
+
+/// What the program knows of a kind of contact law beside its formulas.
+struct LawRow {
+  LawKind kind;
+  std::string_view name;   // that the user writes; empty: only a program can define it
+  std::string_view words;  // for -help: the force over the penetration a
+  bool pulls;              // it acts at all penetrations, so that the contact never opens
+};
+
+/// In the order of LawKind.
+inline constexpr LawRow law_rows[] = {
+    {LawKind::hertz, "hertz", "k a^1.5", false},
+    {LawKind::linear, "linear", "k a", false},
+    {LawKind::two_sided, "two_sided", "k a that also pulls", true},
+    {LawKind::other, "", "", false},
+};
+
+/// The row of a kind.
+constexpr const LawRow& row_of(LawKind kind) { return law_rows[static_cast<std::size_t>(kind)]; }
+
+static_assert(std::size(law_rows) == static_cast<std::size_t>(LawKind::other) + 1, "each kind has a row");
+static_assert(std::ranges::all_of(law_rows, [](const LawRow& row) { return &row_of(row.kind) == &row; }),
+              "the rows are in the order of the kinds");
+
+/// Whether contacts of a kind act at all penetrations.
+constexpr bool pulls(LawKind kind) { return row_of(kind).pulls; }
+
+/// The kind that the user names so; none for any other name.
+constexpr std::optional<LawKind> law_kind(std::string_view name) {
+  for (const LawRow& row : law_rows)
+    if (!name.empty() && row.name == name) return row.kind;
+  return {};
+}
 
 /// An elastic contact law that a program defines itself: a force over the penetration, which starts at zero and
 /// increases. examples/contact_law has one.

@@ -8,9 +8,30 @@
 
 namespace traverse::options {
 
+/// A load model of EN 1991-2, clause 6.3. src/norm/load_models.cpp has its loads.
+struct LoadModelRow {
+  std::string_view name;   // name in the option
+  std::string_view title;  // name in results: "LM71"
+  bool classified;         // the classification factor alpha applies to it, 6.3.2 (3)
+  bool compared;           // 6.4.6.5 compares the dynamic effects of trains with it
+};
+
+inline constexpr LoadModelRow load_models[] = {
+    {"lm71", "LM71", true, true},
+    {"sw0", "SW/0", true, true},
+    {"sw2", "SW/2", false, false},
+};
+
+/// The row of a name in the option; null for any other name.
+constexpr const LoadModelRow* load_model_row(std::string_view name) {
+  for (const LoadModelRow& row : load_models)
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
 /// The options for the static effects of trains and load models, and for the check of 6.4.6.5.
 struct NormRules {
-  std::vector<std::string> load_models;  // lm71, sw0, sw2
+  std::vector<std::string> load_models;  // names of load_models
   double alpha = 1.0;                    // classification factor of LM71 and SW/0, 6.3.2 (3)
   bool careful = false;                  // true: careful maintenance of the track, Phi2; false: Phi3
   std::optional<double> length;          // L_Phi of the whole bridge, m; default: computed from the spans

@@ -27,7 +27,7 @@ struct NumericalModel {
   double window_tolerance = -1.0;  // relative motion below which parts far from the train are excluded; -1: auto
   bool local_compliance = false;   // bridge elements deflect between their nodes under wheels
   bool step_kinks = true;          // steps end where wheels pass kinks of the surface
-  bool step_probes = false;        // steps end where wheels pass probes, and peaks are searched at every step
+  bool step_probes = false;        // steps end where wheels pass probes
 
   bool operator==(const NumericalModel&) const = default;
 };

@@ -152,8 +152,13 @@ struct Scene {
   }
   /// Whether the bridge consists of given modes, without elements.
   bool by_given_modes() const { return beam && beam->given; }
-  /// Whether the motion is exact in time: modes under moving forces alone, but not single runs of given modes.
   bool supports_move() const { return !support_motion.empty() || !support_motion_along.empty(); }
+  /// Whether supports move vertically or have settled: then the relative deflections differ from those in space.
+  bool supports_displaced() const {
+    return !support_motion.empty() ||
+           (beam && std::any_of(beam->settlement.begin(), beam->settlement.end(), [](double s) { return s != 0.0; }));
+  }
+  /// Whether the motion is exact in time: modes under moving forces alone, but not single runs of given modes.
   bool exact_in_time() const {
     return model.modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep);
   }
@@ -166,6 +171,13 @@ std::vector<double> wheels_at_start(const Scene& scene);
 
 /// The greater of the speeds of trains and forces, m/s; 0 without both.
 double greatest_speed(const Scene& scene);
+
+/// The speed of what moves where neither a sweep nor a study gives it: of the train, or of the forces beside a train
+/// that stands, m/s.
+double moving_speed(const Scene& scene);
+/// Sets the speed (m/s) of one run of a sweep or study. What stands, with the speed 0, remains at rest, and courses
+/// keep their own speeds.
+void set_speed(Scene& scene, double speed);
 
 /// Whether a program has given a wheel or a contact of bodies a law of its own (contact::LawKind::other).
 bool has_own_contact_law(const Scene& scene);

@@ -5,6 +5,9 @@
 // one-sided (Omega > 0 only): its integral over a band is the mean square height of the waves in the band.
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 namespace traverse::track {
 
 struct Spectrum {
@@ -34,5 +37,23 @@ Spectrum german(bool high_disturbance);
 /// rad/m (after Hamid and others, Analytical descriptions of track geometry variations, FRA/ORD-83/03.1; in Fryba,
 /// Dynamics of Railway Bridges, 1996). Used as a one-sided density, as above. 1.5 to 300 m.
 Spectrum fra(int grade);
+
+/// A spectrum that users name, or several that differ by their grade.
+struct SpectrumRow {
+  std::string_view name;     // that the user writes, before the grade if there are several
+  std::string_view grades;   // a letter each; empty: a single spectrum
+  std::string_view surface;  // for -help
+  Spectrum (*make)(char grade);
+};
+
+inline constexpr SpectrumRow spectra[] = {
+    {"iso8608_", "ABCDE", "roads", iso8608},
+    {"german_low", "", "rails", [](char) { return german(false); }},
+    {"german_high", "", "rails", [](char) { return german(true); }},
+    {"fra_", "123456", "rails", [](char grade) { return fra(grade - '0'); }},
+};
+
+/// The spectrum with this name; none for other names.
+std::optional<Spectrum> spectrum_of(std::string_view name);
 
 }  // namespace traverse::track

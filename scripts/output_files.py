@@ -1,0 +1,199 @@
+"""Files that the scripts write: each is new, or Traverse has written it before; never a link, a folder or an input.
+
+Every file is written under another name in its folder and renamed when it is complete. Traverse recognises its files by
+their content: pictures, pages and workbooks name it as their program, texts begin with a line that names it and has a digest
+of the other lines, and a table has the head that is written now, apart from numbers.
+"""
+
+import contextlib
+import csv
+import errno
+import hashlib
+import mmap
+import os
+import pathlib
+import re
+import stat
+import sys
+import tempfile
+import zipfile
+
+import checked_results
+
+PROGRAM = "Traverse"
+TEXTS = ("txt", "yml")
+TEXT = f"# Written by {PROGRAM}, digest"  # the beginning of a text
+GENERATOR = f'<meta name="generator" content="{PROGRAM}">'
+METADATA = {"png": {"Software": PROGRAM}, "pdf": {"Creator": PROGRAM}, "svg": {"Creator": PROGRAM}}
+# The first bytes of a kind of file, and what Traverse writes into it.
+CONTENTS = {
+    "png": (rb"\x89PNG\r\n", rb"Software\0Traverse"),
+    "pdf": (rb"%PDF-", rb"/Creator \((Traverse|traverse-report)\)"),
+    "svg": (rb"<\?xml", rb"<dc:title>Traverse</dc:title>"),
+    "html": (rb"<!DOCTYPE html>", re.escape(GENERATOR.encode())),
+    "xdmf": (rb"<\?xml", rb'<Information Name="program" Value="Traverse"'),
+    "gif": (rb"GIF8", rb"\x21\xfe\x08Traverse\x00\x3b\Z"),
+    "mp4": (rb"....ftyp", rb"Traverse"),
+    "md": (rb"# Gallery\n", rb"`/usr/bin/python3 scripts/gallery\.py` writes this page"),
+}
+# Kinds of HDF5 files, and the program that they name.
+RESULTS = {"results": "traverse", "exported": "traverse export"}
+TAKEN = "is there already and was not written by Traverse as such a file, or was changed since: move it, or name another"
+
+
+class OutputError(ValueError):
+    """A file that must not be written, in one line that names it."""
+
+
+def kind_of(path, allowed):
+    """The kind of a file by the ending of its name."""
+    kind = pathlib.Path(path).suffix[1:].lower()
+    if kind not in allowed:
+        raise OutputError(f"{path}: allowed: {', '.join('.' + one for one in allowed)}")
+    return kind
+
+
+def first_line(text):
+    """The first line of a text that has the other lines."""
+    return f"{TEXT} {hashlib.sha256(text.encode()).hexdigest()[:16]}\n"
+
+
+def same_head(line, head):
+    """Whether a line is the head of a table, apart from numbers: stations and speeds may differ."""
+    def bare(names):
+        return {re.sub(r"[-+]?\d[\d.,]*(e[-+]?\d+)?", "#", name) for name in names}
+    return bare(next(csv.reader([line]), [])) == bare(map(plain_cell, head))
+
+
+def is_of_traverse(path, kind, head):
+    """Whether Traverse has written an ordinary file as an output of this kind."""
+    try:
+        if kind == "csv":
+            with open(path, encoding="utf-8", newline="") as file:
+                return head is None or same_head(file.readline(1 << 20).rstrip("\r\n"), head)
+        if kind in TEXTS:
+            with open(path, encoding="utf-8", newline="") as file:
+                return file.readline(100) == first_line(file.read())
+        if kind == "xlsx":
+            with zipfile.ZipFile(path) as book, book.open("docProps/core.xml") as about:
+                return f">{PROGRAM}</dc:creator>".encode() in about.read(1 << 16)
+        if kind in RESULTS:
+            with checked_results.opened(path) as file:
+                return file.attrs.get("program") == RESULTS[kind]
+        first, content = CONTENTS[kind]
+        with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            return bool(re.match(first, data, re.DOTALL)) and bool(re.search(content, data))
+    except (OSError, ValueError, KeyError, csv.Error, zipfile.BadZipFile):
+        return False
+
+
+def identity(path):
+    """What tells whether another file has been put there; None: there is none."""
+    try:
+        found = os.lstat(path)
+    except FileNotFoundError:
+        return None
+    return found.st_dev, found.st_ino, found.st_mtime_ns, found.st_size
+
+
+def check(path, kind, inputs=(), head=None):
+    """OutputError unless a file may be written: it is no link and none of the inputs, and it is new, empty or of
+    Traverse. head: of a table; None if it is not known yet: write_table() will compare it."""
+    try:
+        found = os.lstat(path)
+    except FileNotFoundError:
+        found = None
+    except OSError as error:
+        raise OutputError(f"{path}: {error.strerror}") from None
+    folder = pathlib.Path(path).parent
+    if found is None and not folder.is_dir():
+        raise OutputError(f"{path}: there is no folder {folder}")
+    if found is not None and stat.S_ISLNK(found.st_mode):
+        raise OutputError(f"{path} is a link: name an ordinary file")
+    if found is not None and not stat.S_ISREG(found.st_mode):
+        raise OutputError(f"{path} is no ordinary file: name another one")
+    if not os.access(folder, os.W_OK | os.X_OK) or (found is not None and not os.access(path, os.W_OK)):
+        raise OutputError(f"{path}: {os.strerror(errno.EACCES)}")
+    if found is None:
+        return
+    for name in inputs:
+        with contextlib.suppress(OSError):
+            if os.path.samestat(os.stat(name), found):
+                raise OutputError(f"{path} is read by this command: name another file")
+    if found.st_size > 0 and not is_of_traverse(path, kind, head):
+        raise OutputError(f"{path} {TAKEN}")
+
+
+def check_or_exit(script, *words):
+    """Like check(), for a script that ends with the message."""
+    try:
+        check(*words)
+    except OutputError as error:
+        sys.exit(f"{script}: {error}")
+
+
+def put_in_place(temporary, path, before):
+    """Renames a complete file, unless another one has been put there meanwhile."""
+    if before is None:
+        with contextlib.suppress(OSError):
+            os.link(temporary, path)  # fails if there is a file
+            os.unlink(temporary)
+            return
+    if identity(path) != before:
+        raise OutputError(f"{path} was made or changed meanwhile by another program")
+    os.replace(temporary, path)
+
+
+@contextlib.contextmanager
+def written(path, kind, inputs=(), head=None):
+    """Gives the name of a new file in the same folder, which becomes `path` after the block has ended without an
+    error."""
+    check(path, kind, inputs, head)
+    before = identity(path)
+    mode = stat.S_IMODE(os.stat(path).st_mode) if before else 0o666 & ~current_umask()
+    handle, temporary = tempfile.mkstemp(f".{kind}", ".traverse_", pathlib.Path(path).parent)
+    os.close(handle)
+    try:
+        yield pathlib.Path(temporary)
+        os.chmod(temporary, mode)
+        put_in_place(temporary, path, before)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(temporary)
+
+
+def current_umask():
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask
+
+
+def write_text(path, text):
+    """Writes a text, .txt or .yml, under a first line that names Traverse."""
+    with written(path, kind_of(path, TEXTS)) as temporary:
+        temporary.write_bytes((first_line(text) + text).encode())
+
+
+def plain_cell(value):
+    """A cell that no spreadsheet takes for a formula: a text that begins as one has an apostrophe before it."""
+    if isinstance(value, str) and value[:1] in ("=", "+", "-", "@", "\t", "\r"):
+        try:
+            float(value)
+        except ValueError:
+            return "'" + value
+    return value
+
+
+def write_table(path, head, rows, inputs=()):
+    """Writes a CSV file."""
+    with written(path, "csv", inputs, head) as temporary, open(temporary, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(map(plain_cell, head))
+        table.writerows([plain_cell(value) for value in row] for row in rows)
+
+
+def save_figure(figure, path, inputs=(), **how):
+    """Writes a picture in the format of its ending."""
+    kind = kind_of(path, METADATA)
+    with written(path, kind, inputs) as temporary:
+        figure.savefig(temporary, format=kind, metadata=METADATA[kind], **how)
