@@ -183,7 +183,11 @@ void Beam::assemble(const Slice& slice) {
   beam_stiffness_ = beam_stiffness.matrix(comm_, pattern);
   stiffness_ = sprung ? stiffness.matrix(comm_, pattern) : shared(beam_stiffness_);
   if (sprung) springs_ = springs.matrix(comm_, springs);
-  if (!own.empty()) foundation_damping_ = damping.matrix(comm_, pattern);
+  if (own.empty()) return;
+  foundation_damping_ = damping.matrix(comm_, pattern);
+  PetscReal norm = 0.0;
+  base::check(MatNorm(foundation_damping_, NORM_INFINITY, &norm));
+  if (norm == 0.0) foundation_damping_ = base::Handle<Mat>();  // springs alone
 }
 
 void Beam::add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,

@@ -74,7 +74,7 @@ class Beam {
   Mat mass() const { return mass_; }                      // M_aa, with the mass of a layered track
   Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
   Mat springs() const { return springs_; }                // K* without the beams: foundation, track layers; or null
-  Mat dampers() const { return foundation_damping_; }     // damping of foundation and track layers; or null
+  Mat dampers() const { return foundation_damping_; }     // damping of foundation and track layers; null: none
   Mat beam_mass() const { return beam_mass_; }            // mass of the bridge alone
   Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
   Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...

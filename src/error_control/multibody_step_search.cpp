@@ -75,6 +75,7 @@ class Runs {
       coupling::Observation observation;
       passage.run(
           [&](const integrate::Instant& now) {
+            if (!integrate::is_stored(now.purpose)) return;
             passage.system().observe(now.time, now.y, now.acceleration, observation);
             add(passage.system().fleet(), curves);
           },

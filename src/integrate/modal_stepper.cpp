@@ -149,7 +149,7 @@ void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample,
     stored += 0.5 * v[k] * force_[k];
   }
   MPI_Allreduce(MPI_IN_PLACE, &stored, 1, MPI_DOUBLE, MPI_SUM, system_.comm());
-  if (steps_ == 0) at_start_ = stored;
+  if (!begun_) at_start_ = stored;
 
   std::fill_n(w, n, 0.0);
   std::fill_n(a, n, 0.0);

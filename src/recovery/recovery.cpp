@@ -246,12 +246,21 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
     add_sleepers(s, values.data(), at, out[i]);
     at += 4 * s.sleepers.size();
   }
-  for (const ElementLoad& load : loads) {
+  for (const ElementLoad& given : loads) {
+    const ElementLoad load = in_own_element(given);
     for (const Place& place : sections_of(load.element)) sections_[place.section].add_load(load, out[place.section]);
     if (std::abs(load.speed) > standing_speed) add_beside(load, out);
   }
   for (std::size_t i = 0; i < sections_.size(); ++i)
     out[i].relative_deflection = out[i].deflection - sections_[i].support_line;
+}
+
+ElementLoad Recovery::in_own_element(ElementLoad load) const {
+  if (load.xi >= 0.0 && load.xi <= 1.0) return load;
+  const Station at = line_.mesh.locate(x_of(load));
+  load.element = at.element;
+  load.xi = at.xi;
+  return load;
 }
 
 std::span<const Recovery::Place> Recovery::sections_of(int element) const {

@@ -117,6 +117,8 @@ class Recovery {
 
   void gather(const double* v, const double* w, const double* a);
   Response evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
+  /// The load as one of the element at its place: a wheel may already be beyond the element that it was assigned to.
+  ElementLoad in_own_element(ElementLoad load) const;
   void add_beside(const ElementLoad& load, std::vector<Response>& out) const;
   void add_sleepers(const RecoverySection& s, const Values* values, const double* sleepers, Response& r) const;
 

@@ -7,12 +7,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
-#include <functional>
-#include <numeric>
 #include <unordered_set>
 
 #include "traverse/base/error.hpp"
@@ -21,10 +18,6 @@ namespace traverse::results::hdf5 {
 
 namespace {
 
-constexpr hsize_t kChunkRows = 256;
-constexpr hsize_t kChunkBytes = 1 << 20;
-constexpr hsize_t kMaxChunks = 60;           // a node of the index has 64
-constexpr hsize_t kMaxChunkBytes = 1 << 15;  // limit of chunks that are enlarged for that
 constexpr off_t kEndOffset = 40;        // position of the file's end in superblock version 0, 8 bytes, little-endian
 constexpr std::size_t kMaxOpen = 2000;  // datasets at the same time, of 20 kB each
 constexpr std::size_t kMaxCompact = 1 << 12;  // bytes stored in the dataset's object header
@@ -312,104 +305,6 @@ Id File::hold_open(Id dataset) {
   if (open_ == kMaxOpen) return {};
   ++open_;
   return dataset;
-}
-
-Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, const Rows& rows)
-    : name_(std::move(name)),
-      shape_{0},
-      width_(std::accumulate(row.begin(), row.end(), std::size_t{1},
-                             [](std::size_t a, hsize_t b) { return a * static_cast<std::size_t>(b); })) {
-  shape_.insert(shape_.end(), row.begin(), row.end());
-  if (rows.existing == 0)
-    make(file, unit, rows.expected);
-  else
-    cut(file, rows.existing);
-  digest_ = base::Digest(rows.digest);
-  buffer_.reserve(width_ * rows.buffered);
-}
-
-// If the process is killed while HDF5 splits the index of the chunks, the index is damaged. Therefore the expected
-// chunks fit into one node of it.
-void Series::make(File& file, const std::string& unit, hsize_t expected) {
-  auto max_shape = shape_;
-  max_shape[0] = H5S_UNLIMITED;
-  auto chunk = shape_;
-  const hsize_t row = sizeof(double) * width_, default_rows = std::clamp<hsize_t>(kChunkBytes / row, 1, kChunkRows);
-  chunk[0] = std::max(default_rows, std::min(expected / kMaxChunks + 1, kMaxChunkBytes / row));
-
-  const Id space(file.check(H5Screate_simple(static_cast<int>(shape_.size()), shape_.data(), max_shape.data())));
-  const Id creation(file.check(H5Pcreate(H5P_DATASET_CREATE)));
-  file.check(H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
-  file.check(H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER));
-  Id dataset(file.check(H5Dcreate2(file.id(), name_.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
-                                   creation.get(), file.rows_access())));
-  file.label(dataset, name_, unit);
-  dataset_ = file.hold_open(std::move(dataset));
-}
-
-void Series::cut(File& file, hsize_t rows) {
-  Id dataset(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access())));
-  const Id space(file.check(H5Dget_space(dataset.get())));
-  std::vector<hsize_t> existing(shape_.size());
-  const bool fits = H5Sget_simple_extent_ndims(space.get()) == static_cast<int>(shape_.size()) &&
-                    H5Sget_simple_extent_dims(space.get(), existing.data(), nullptr) >= 0 && existing[0] >= rows &&
-                    std::equal(existing.begin() + 1, existing.end(), shape_.begin() + 1);
-  if (!fits) fail(file.path(), "the results to take up are not those of the checkpoint");
-  shape_[0] = rows;
-  file.check(H5Dset_extent(dataset.get(), shape_.data()));
-  dataset_ = file.hold_open(std::move(dataset));
-}
-
-void Series::write(File& file) {
-  if (buffer_.empty()) return;
-  if (dataset_.get() >= 0) return append(file, dataset_);
-  append(file, Id(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access()))));
-}
-
-void Series::append(File& file, const Id& dataset) {
-  const hsize_t rows = buffer_.size() / width_;
-  std::vector<hsize_t> start(shape_.size(), 0), count = shape_;
-  start[0] = shape_[0];
-  count[0] = rows;
-  shape_[0] += rows;
-  file.check(H5Dset_extent(dataset.get(), shape_.data()));
-  const Id file_space(file.check(H5Dget_space(dataset.get())));
-  const Id memory_space(file.check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
-  file.check(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
-  file.check(
-      H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, buffer_.data()));
-  file.secure_space();  // HDF5 may write metadata when its cache is full
-  digest_.add(buffer_);
-  buffer_.clear();
-}
-
-std::vector<std::uint64_t> digests_of(const std::string& path, const std::vector<std::string>& names, hsize_t rows) {
-  const auto check = [&](hid_t result) {
-    if (result < 0) throw FileError(path + ": HDF5 cannot read it: the file is damaged");
-    return result;
-  };
-  const Id file = open_whole(path);
-  std::vector<std::uint64_t> digests;
-  std::vector<double> block;
-  for (const std::string& name : names) {
-    const Id data(check(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT))), file_space(check(H5Dget_space(data.get())));
-    std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(file_space.get()))));
-    check(H5Sget_simple_extent_dims(file_space.get(), shape.data(), nullptr));
-    if (shape.empty() || shape[0] < rows) check(H5I_INVALID_HID);
-    const hsize_t width = std::accumulate(shape.begin() + 1, shape.end(), hsize_t{1}, std::multiplies<>());
-    base::Digest digest;
-    std::vector<hsize_t> start(shape.size(), 0), count = shape;
-    for (; start[0] < rows; start[0] += count[0]) {
-      count[0] = std::min(std::max<hsize_t>(kChunkBytes / (sizeof(double) * width), 1), rows - start[0]);
-      block.resize(count[0] * width);
-      const Id memory_space(check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
-      check(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
-      check(H5Dread(data.get(), H5T_NATIVE_DOUBLE, memory_space.get(), file_space.get(), H5P_DEFAULT, block.data()));
-      digest.add(block);
-    }
-    digests.push_back(digest.value());
-  }
-  return digests;
 }
 
 }  // namespace traverse::results::hdf5

@@ -79,7 +79,7 @@ TEST(Energy, MovingForceAndTheVibrationItLeaves) {
 
 TEST(Energy, ForcesOnABridgeWithWeightAndFoundation) {
   expect_balance(run_yaml(R"(
-beam: {spans: [20.0, 25.0], elements_per_span: 6, EI: 8.33e9, mass: 2303.0, damping_ratios: [0.01, 0.029], self_weight: true}
+beam: {spans: [20.0, 25.0], elements_per_span: 6, EI: 8.33e9, mass: 2303.0, damping_ratios: [0.01, 0.018], self_weight: true}
 support: {types: [pinned, free, guided]}
 foundation:
   vertical: {x: [7.0, 20.0], k: [1.0e7, 8.0e7], c: [2.0e5, 1.0e4]}

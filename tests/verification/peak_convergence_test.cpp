@@ -98,24 +98,35 @@ TEST_P(PeakConvergence, WithTheStep) {
   }
 }
 
-// The shear beside wheels that stand on a simple beam, and under one of them: P (L - x) / L and so on, at every
-// instant.
-TEST(ShearAtRest, IsTheSameAtEveryInstant) {
-  constexpr double P = 5000.0 * 9.81, L = 22.0;
-  for (const char* vehicles : {"full", "linear"}) {
+constexpr double P = 5000.0 * 9.81, L = 22.0;  // N, m
+
+/// Wheels stand on a simple beam at these positions: the shear at the probes at 2, 8, 11 and 15 m, at every instant.
+void expect_shear_at_rest(const std::string& vehicles, const std::string& positions, std::array<double, 4> exact) {
+  for (const char* model : {"full", "linear"}) {
     Results run =
         run_yaml("beam: {spans: 22.0, EI: 1.6e9, mass: 700.0, elements_per_span: 8, damping_ratios: 0.01}\n" + wheel +
-                     "train: {vehicles: [car, car], positions: [11.0, 4.0], speed: 0.0}\n" +
+                     fmt::format("train: {{vehicles: [{}], positions: [{}], speed: 0.0}}\n", vehicles, positions) +
                      "ts: {max_time: 0.4, dt: 5.0e-3}\noutput: {interval: 0.02, probes: [2.0, 8.0, 11.0, 15.0]}\n",
-                 {{"model_vehicles", vehicles}});
-    const double left = P * (11.0 + 18.0) / L, middle = left - P, right = middle - P;
-    const std::array<double, 4> exact = {left, middle, right, right};  // a wheel at the probe counts as left of it
+                 {{"model_vehicles", model}});
     for (std::size_t p = 0; p < exact.size(); ++p) {
-      for (const double shear : run.column("/probes/shear", p)) EXPECT_NEAR(shear, exact[p], 1e-4 * P) << p;
-      EXPECT_NEAR(run("/envelope/shear")[2 * p], exact[p], 1e-4 * P) << p;
-      EXPECT_NEAR(run("/envelope/shear")[2 * p + 1], exact[p], 1e-4 * P) << p;
+      for (const double shear : run.column("/probes/shear", p)) EXPECT_NEAR(shear, exact[p], 1e-4 * P) << model << p;
+      EXPECT_NEAR(run("/envelope/shear")[2 * p], exact[p], 1e-4 * P) << model << p;
+      EXPECT_NEAR(run("/envelope/shear")[2 * p + 1], exact[p], 1e-4 * P) << model << p;
     }
   }
+}
+
+// By symmetry the deck is level at the middle, and the wheel touches it exactly at the probe: it counts as left of it.
+TEST(ShearAtRest, IsThatOnTheRightOfAWheelAtTheProbe) {
+  expect_shear_at_rest("car, car, car", "11.0, 4.0, 18.0", {1.5 * P, 0.5 * P, -0.5 * P, -0.5 * P});
+}
+
+// The deck slopes under a wheel whose centre is above the probe: the wheel touches it 0.05 mm beside the probe, where
+// the deck is higher. The probe is at a node, so that this is another element than on its other side.
+TEST(ShearAtRest, IsThatOnTheSideOfTheContactPoint) {
+  const double left = P * (11.0 + 18.0) / L, middle = left - P, right = middle - P;
+  expect_shear_at_rest("car, car", "11.0, 4.0", {left, middle, middle, right});
+  expect_shear_at_rest("car, car", "11.0, 18.0", {-right, -right, -middle, -middle});
 }
 
 }  // namespace

@@ -165,8 +165,10 @@ TEST(Starts, SweepsBeginOutsideToo) {
 // A force at rest on the end stands there: F/k.
 TEST(Starts, WhatRestsOnAnEndStandsThere) {
   for (const double place : {0.0, 8.0}) {
-    Results run = run_yaml(rigid_bar + "ts: {max_time: 0.1}\n",
-                           {{"load_forces", "1e5"}, {"load_positions", fmt::format("{}", place)}, {"load_speed", "0"}});
+    Results run = run_yaml(rigid_bar, {{"ts_max_time", "0.1"},
+                                       {"load_forces", "1e5"},
+                                       {"load_positions", fmt::format("{}", place)},
+                                       {"load_speed", "0"}});
     for (const double deflection : run.column("/probes/deflection", place == 0.0 ? 0 : 2))
       ASSERT_NEAR(deflection, -1.0e5 / spring, 1e-6);
   }

@@ -85,7 +85,8 @@ TEST(Settlement, DeflectionsAreRelativeToTheSupports) {
             settled = run_yaml(scene, with(moving, {{"support_settlement", settlement}}));
     for (const char* name : {"deflection", "static_deflection", "amplification"})
       EXPECT_NEAR(settled.attribute("/summary", name) / level.attribute("/summary", name), 1.0, 1e-8) << settlement;
-    EXPECT_LT(relative_difference(settled("/envelope/deflection"), level("/envelope/deflection")), 1e-8);
+    EXPECT_LT(relative_difference(settled.column("/envelope/deflection", 0), level.column("/envelope/deflection", 0)),
+              1e-8);
     EXPECT_LT(relative_difference(settled("/shape/deflection"), level("/shape/deflection")), 1e-8);
     EXPECT_LT(relative_difference(settled("/probes/relative_deflection"), level("/probes/deflection")), 1e-8);
     EXPECT_GT(relative_difference(settled("/probes/deflection"), level("/probes/deflection")), 0.1);
@@ -109,7 +110,7 @@ TEST(Settlement, InABatch) {
       "/options/vehicles/manchester.yml}}\n"
       "train: {vehicles: coach, speed: 40.0}\nts: {dt: 1.0e-3}\nmodel: {vehicles: linear}\n"
       "output: {interval: 0.01, probes: [12.5, 25.0]}\n";
-  Results sweep = run_yaml(scene, {{"sweep_speed", "40,44"}}), single = run_yaml(scene);
+  Results sweep = run_yaml(scene, {{"sweep_speed", "40,44,4"}}), single = run_yaml(scene);
   EXPECT_NEAR(sweep("/sweep/peak_deflection")[0], std::abs(single.attribute("/summary", "deflection")), 1e-7);
   EXPECT_NEAR(sweep("/sweep/static_deflection")[0], single.attribute("/summary", "static_deflection"), 1e-9);
 }

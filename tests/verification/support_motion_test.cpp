@@ -333,7 +333,7 @@ TEST(SupportMotion, DisplacementHoldsItsLastValue) {
   EXPECT_TRUE(contains(message_of([&] {
                          run_yaml(scene, displacement + Values{{"support_motion", uneven}});
                        }),
-                       "support_motion: the cubic spline between the rows 1 and 2 reaches"));
+                       ": the cubic spline between the rows 1 and 2 reaches"));
 }
 
 // The runs of a study have the motion, too, also with linear vehicles.
