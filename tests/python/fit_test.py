@@ -13,6 +13,7 @@ import numpy as np
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
 PROGRAM = os.environ.get("TRAVERSE_BINARY", str(SOURCE / "build" / "traverse"))
 sys.path[:0] = [str(SOURCE / "benchmarks"), str(SOURCE / "scripts"), str(SOURCE / "python")]
+import checked_results  # noqa: E402
 import fit_draws  # noqa: E402
 import picture  # noqa: E402
 import traverse  # noqa: E402
@@ -95,7 +96,7 @@ class Module(InFolder):
         self.assertEqual(results["series_midspan_measured"].dims, ("series_midspan_time",))
         self.assertTrue(np.all(np.linalg.eigvalsh(results["correlation"].values) > 0.0))
         out = self.folder / "fit.png"
-        with contextlib.redirect_stdout(io.StringIO()), picture.opened(self.folder / "fit.h5") as file:
+        with contextlib.redirect_stdout(io.StringIO()), checked_results.opened(self.folder / "fit.h5") as file:
             picture.draw(picture.Results(file), out, formats=["png", "csv"])
         self.assertGreater(out.stat().st_size, 20000)
         self.assertIn("midspan: deflection at 13 m: measured (mm)", out.with_suffix(".csv").read_text().splitlines()[0])
