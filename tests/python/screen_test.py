@@ -70,6 +70,9 @@ class Screen(unittest.TestCase):
         with h5py.File(self.folder / "screen.h5") as file:
             return {name: file[f"screen/{name}"][()] for name in MATRICES} | {"text": done.stdout}
 
+    def sweep_of_pair(self, **options):
+        return traverse.run(self.folder / "pair.yml", beam_elements_per_span=40, sweep_instants=100, **options)
+
     def assert_equal(self, one, other):
         for name in MATRICES:
             np.testing.assert_array_equal(one[name], other[name], err_msg=name)
@@ -93,11 +96,16 @@ class Screen(unittest.TestCase):
                     scene = self.start("-screen_pair", f"{bridge},{formation}")
                     self.assertEqual(scene.returncode, 0, scene.stderr)
                     (self.folder / "pair.yml").write_text(scene.stdout)
-                    sweep = traverse.run(self.folder / "pair.yml", beam_elements_per_span=40, sweep_instants=100)
+                    sweep = self.sweep_of_pair()
                     peaks = sweep["peak_acceleration"].max([d for d in sweep["peak_acceleration"].dims if d != "speed"])
-                    self.assertLess(abs(float(peaks.max()) / (0.01 * found["ratio"][b, f]) - 1.0), 2e-5)
                     at = float(peaks.idxmax("speed"))
                     self.assertAlmostEqual(at, found["governing_speed"][b, f], places=9)
+                    # The sweep has a probe at every hundredth of a span; the peak is beside the best of them.
+                    places = sweep["peak_acceleration"].max([d for d in sweep["peak_acceleration"].dims if d != "x"])
+                    best = float(places.idxmax("x"))
+                    near = self.sweep_of_pair(output_probes=list(np.linspace(best - 0.24, best + 0.24, 25)))
+                    peak = float(near["peak_acceleration"].max())
+                    self.assertLess(abs(peak / (0.01 * found["ratio"][b, f]) - 1.0), 2e-5)
 
     def test_an_interrupted_screen_goes_on(self):
         whole = self.screened()
