@@ -15,8 +15,10 @@ bool System::contacts_are_known(double t) const {
 void System::observe(double t, const double* y, const double* a, Observation& out, bool all) {
   const bool known = contacts_are_known(t), residual_grows = known && train_->residual_may_grow();
   const bool from_passes = known && !all && !residual_grows;
-  // Without passes, accept() has set vehicles and contacts to this instant, except for accelerations and reactions.
-  const bool sufficient = from_passes || (t == evaluated_time_ && (is_evaluated_ || (!all && !by_passes_)));
+  // Without passes, accept() has set vehicles and contacts to this instant, except for accelerations and reactions, and
+  // for those of vehicles of other ranks.
+  const bool accepted = is_evaluated_ || (!all && !by_passes_);
+  const bool sufficient = from_passes || (t == evaluated_time_ && accepted && !share_.distributed());
   if (!sufficient) evaluate_fleet(t, y);
   out.loads.clear();
   out.bridge_loads.clear();

@@ -223,7 +223,11 @@ void ElementStructure::add_dissipation(const BeamMotion::Dissipation& now) {
   const double trapezoid = 0.5 * unmeasured_ * (measured_.power + now.power);
   const double correction = unmeasured_ * unmeasured_ / 12.0 * (measured_.rate - now.rate);
   dissipated_ += trapezoid;
-  if (motion_->proportional() && std::abs(correction) < std::abs(trapezoid)) dissipated_ += correction;
+  if (motion_->proportional()) {
+    double whole[2] = {trapezoid, correction};  // of all ranks, which decide alike
+    MPI_Allreduce(MPI_IN_PLACE, whole, 2, MPI_DOUBLE, MPI_SUM, beam().comm());
+    if (std::abs(whole[1]) < std::abs(whole[0])) dissipated_ += correction;
+  }
   measured_ = now;
   unmeasured_ = 0.0;
 }
