@@ -124,16 +124,6 @@ double impact_duration(const Law& law, double mass, double speed) {
   return duration_of_impact(*law.elastic, mass, speed);
 }
 
-Force operator-(const Force& f) {
-  return {-f.normal,
-          -f.tangential,
-          -f.normal_by_penetration,
-          -f.normal_by_rate,
-          -f.tangential_by_penetration,
-          -f.tangential_by_rate,
-          -f.tangential_by_sliding};
-}
-
 namespace {
 
 // Newton's method for r in r^2 + s*k*r^3 = penetration, s the local compliance. The function is convex, so that the

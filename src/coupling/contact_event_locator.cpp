@@ -19,12 +19,13 @@ ContactEventLocator::ContactEventLocator(const System& system, const train::Chan
       tolerance_(tolerance),
       time_tolerance_(system.contacts().tolerance_of(change.contact, tolerance)),
       end_(to) {
-  ends_before_ = change.gain || (leaves() && change.time - from > time_tolerance_);
+  ends_before_ = ends_before();
   if (!ends_before_ && !change.hidden && to - change.time <= time_tolerance_) found_ = true;
 }
 
-bool ContactEventLocator::leaves() const {
-  return !change_.gain && system_.fleet().contact(change_.contact).law.kind == contact::LawKind::two_sided;
+bool ContactEventLocator::ends_before() const {
+  const bool pulls = contact::pulls(system_.fleet().contact(change_.contact).law.kind);
+  return change_.gain || (pulls && change_.time - from_ > time_tolerance_);
 }
 
 contact::Kinematics ContactEventLocator::current_kinematics() const {
@@ -57,7 +58,7 @@ void ContactEventLocator::update(double at, const std::optional<train::Change>& 
     change_ = *change;
     time_tolerance_ = system_.contacts().tolerance_of(change_.contact, tolerance_);
     high_kinematics_ = current_kinematics();
-    if (other_contact) ends_before_ = change_.gain || (leaves() && change_.time - from_ > time_tolerance_);
+    if (other_contact) ends_before_ = ends_before();
     if (other_contact) low_ = system_.contacts().separations().time();
     if (other_contact) low_kinematics_ = system_.contacts().separations().kinematics(change_.contact);
     if (!ends_before_ && !change_.hidden && at - change_.time <= time_tolerance_) return end_at(at);

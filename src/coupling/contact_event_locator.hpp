@@ -23,7 +23,7 @@ class ContactEventLocator {
 
  private:
   contact::Kinematics current_kinematics() const;
-  bool leaves() const;
+  bool ends_before() const;
   double nearest() const;
   void end_at(double end);
 

@@ -85,7 +85,7 @@ std::optional<train::Change> ContactEvents::change(double t, double tolerance) c
 
 bool ContactEvents::leaves_guide(double tolerance) const {
   for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
-    if (fleet_.contact(i).law.kind != contact::LawKind::two_sided || !separations_.touching(i)) continue;
+    if (!contact::pulls(fleet_.contact(i).law.kind) || !separations_.touching(i)) continue;
     const contact::Kinematics& to_end = separations_.kinematics(i);
     if (to_end.penetration_rate < 0.0 && -to_end.penetration >= tolerance * to_end.penetration_rate) return true;
   }

@@ -300,8 +300,7 @@ void Stepper::check_bounds(double t, const double* y) const {
   if (t == 0.0 && deflects_too_much)
     throw SolverError(
         "at rest the beam deflects by more than its length or turns over: what holds it is far too soft for its loads; "
-        "look at the "
-        "units of beam_EI, the foundation's k and the loads");
+        "look at the units of beam_EI, the foundation's k and the loads");
   if (!std::isfinite(sum) || deflects_too_much)
     throw StepTooLong("the motion has grown beyond all bounds by t = " + std::to_string(t) +
                       " s: the step is too long for this integrator; use a smaller -ts_dt or an implicit -ts_type");

@@ -88,8 +88,7 @@ void read_support_motion(const options::Options& o, Scene& scene) {
   if (has_peaks && scene.supports_displaced())
     scene.notes.push_back(
         fmt::format("the supports {}: greatest deflections, their limits, envelopes and amplifications are relative to "
-                    "the straight "
-                    "lines between the supports",
+                    "the straight lines between the supports",
                     scene.support_motion.empty() ? "have settled" : "move"));
 }
 

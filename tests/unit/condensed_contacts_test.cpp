@@ -288,7 +288,7 @@ TEST_F(Contacts, OfTheSignThatTakesAway) {
   between.factor = -1.0;
   between.kinematics.penetration *= 0.5;
   between.touch.kinematics.penetration = between.kinematics.penetration;
-  between.force = -contact::force(between.law, between.kinematics, 0.0);
+  between.force = train::force_of(between);
   couple();
   expect_dense(true);
   EXPECT_LT(between.force.normal, 0.0);

@@ -105,9 +105,6 @@ double exact_hysteresis(double restitution);
 /// restitution is larger than e.
 double lankarani_nikravesh_hysteresis(double restitution);
 
-/// The force and all its derivatives with the opposite sign.
-Force operator-(const Force& f);
-
 /// approach_speed: approach speed of the present impact, m/s; only a hysteresis uses it (0: no impact, no damping).
 Force force(const Law& law, const Kinematics& kinematics, double approach_speed);
 
