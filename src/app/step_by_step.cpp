@@ -35,53 +35,48 @@ Scene StepByStep::chosen(Scene scene, Accuracy& accuracy, std::vector<std::strin
 }
 
 StepByStep::StepByStep(const Scene& scene)
-    : scene_(chosen(scene, accuracy_, notes_)),
-      shared_(PETSC_COMM_SELF, scene_, notes_),
-      recorder_(PETSC_COMM_SELF, "", {}, {}, {}) {
+    : scene_(chosen(scene, accuracy_, notes_)), shared_(PETSC_COMM_SELF, scene_, notes_) {
   prepare(scene_, accuracy_, shared_, notes_);
-  passage_.emplace(scene_, shared_, notes_);
-  passage_->start(notes_);
-  outputs_.emplace(outputs_of({scene_, passage_->system().fleet(), shared_.bridge()}));
+  simulation_.emplace(scene_, shared_, Wants{.stored = true}, notes_);
+  outputs_.emplace(outputs_of({scene_, simulation_->system().fleet(), shared_.bridge()}));
   if (shared_.beam) shared_.beam->release_matrices();
-  watch_.emplace(scene_, passage_->system(), shared_.bridge(), recorder_);
-  passage_->begin([this](const integrate::Instant& instant) { see(instant); });
+  simulation_->begin({this});
 }
 
-void StepByStep::see(const integrate::Instant& instant) {
-  watch_->sample(instant);
+void StepByStep::sample(const integrate::Instant& instant) {
   if (!is_stored(instant.purpose)) return;
   time_ = instant.time;
-  outputs_->fill(watch_->observed(), values_);
+  outputs_->fill(simulation_->evaluation().observed(), values_);
 }
 
-double StepByStep::interval() const { return passage_->plan().interval * static_cast<double>(passage_->plan().stored); }
+bool StepByStep::step(double t, long /*steps*/) { return t < wanted_ - same_sample * interval(); }
+
+double StepByStep::interval() const {
+  return simulation_->plan().interval * static_cast<double>(simulation_->plan().stored);
+}
 
 void StepByStep::advance(double t) {
   if (failed_) throw SolverError("the passage has failed before and goes no further");
   const double slack = same_sample * interval();
   if (!(t <= end() + slack))
     throw InputError(fmt::format("{:g} s is beyond the end of the scene, {:g} s (ts_max_time)", t, end()));
-  const double wanted = std::min(std::ceil(t / interval() - same_sample) * interval(), end());
-  if (wanted <= time_ + slack) return;
+  wanted_ = std::min(std::ceil(t / interval() - same_sample) * interval(), end());
+  if (wanted_ <= time_ + slack) return;
   failed_ = true;
-  passage_->run([this](const integrate::Instant& instant) { see(instant); },
-                [&](double now, long) {
-                  watch_->step(now);
-                  return now < wanted - slack;
-                });
-  if (time_ < wanted - slack)
+  simulation_->run({this});
+  if (time_ < wanted_ - slack)
     throw SolverError(fmt::format("the passage ended at {:g} s, at the limit of ts_max_steps", time_));
   failed_ = false;
 }
 
-void StepByStep::check_takes_forces() const {
-  if (passage_->exact_in_time())
+void StepByStep::check_takes_forces() {
+  if (simulation_->passage().exact_in_time())
     throw InputError("forces cannot be set where modes move exactly in time: model_modes 0");
 }
 
 void StepByStep::apply_to_body(int vehicle, const std::string& body, const Eigen::Vector3d& action) {
   check_takes_forces();
-  const std::vector<train::Member>& members = passage_->system().fleet().members;
+  const std::vector<train::Member>& members = simulation_->system().fleet().members;
   if (vehicle < 0 || vehicle >= static_cast<int>(members.size()))
     throw InputError(
         fmt::format("there is no vehicle {}: they count from 0, and there are {}", vehicle, members.size()));
@@ -90,13 +85,13 @@ void StepByStep::apply_to_body(int vehicle, const std::string& body, const Eigen
   const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const auto& b) { return b.name == body; });
   if (found == bodies.end()) throw InputError(fmt::format("vehicle {} ({}) has no body {}", vehicle, type.name, body));
   if (!action.allFinite()) throw InputError("a force has to be a finite number");
-  passage_->system().apply_to_body(vehicle, static_cast<int>(found - bodies.begin()), action);
+  simulation_->system().apply_to_body(vehicle, static_cast<int>(found - bodies.begin()), action);
 }
 
 void StepByStep::apply_to_beam(double x, double force) {
   check_takes_forces();
   if (!std::isfinite(force)) throw InputError("a force has to be a finite number");
-  passage_->system().apply_to_beam(x, force);
+  simulation_->system().apply_to_beam(x, force);
 }
 
 }  // namespace traverse::app

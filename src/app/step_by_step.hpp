@@ -6,22 +6,20 @@
 #include <vector>
 
 #include "prepare.hpp"
-#include "results/recorder.hpp"
 #include "run/outputs.hpp"
-#include "run/passage.hpp"
-#include "run/run_observer.hpp"
+#include "run/simulation.hpp"
 
 namespace traverse::app {
 
 /// Runs on this process alone. The time steps are equal to the steps of `run` for the same scene. The results are equal
 /// too if no force is set.
-class StepByStep {
+class StepByStep : private Observer {
  public:
   /// Sets up the state at t = 0. Throws Error like `run`, and InputError for a scene without motion in time.
   explicit StepByStep(const Scene& scene);
 
   double time() const { return time_; }  // s, time of the present sample
-  double end() const { return passage_->plan().end_time; }
+  double end() const { return simulation_->plan().end_time; }
   double interval() const;  // s between samples
 
   /// Advances to the first sample at or after t, s; does nothing if it is already reached. Throws InputError if t is
@@ -40,18 +38,17 @@ class StepByStep {
 
  private:
   static Scene chosen(Scene scene, Accuracy& accuracy, std::vector<std::string>& notes);
-  void see(const integrate::Instant& instant);
-  void check_takes_forces() const;
+  void sample(const integrate::Instant& instant) override;
+  bool step(double t, long steps) override;
+  void check_takes_forces();
 
   std::vector<std::string> notes_;
   Accuracy accuracy_;
   Scene scene_;
   SharedBeam shared_;
-  results::Recorder recorder_;  // has no file
-  std::optional<Passage> passage_;
+  std::optional<Simulation> simulation_;
   std::optional<Outputs> outputs_;
-  std::optional<RunObserver> watch_;
-  double time_ = 0.0;
+  double time_ = 0.0, wanted_ = 0.0;  // s: the present sample; the end of the steps under way
   std::vector<double> values_;
   bool failed_ = false;
 };

@@ -15,8 +15,8 @@
 #include "ensemble/batch_obstacle.hpp"
 #include "ensemble/greatest_peaks.hpp"
 #include "integrate/modal_peaks.hpp"
-#include "run/run_observer.hpp"
 #include "run/signals.hpp"
+#include "run/simulation.hpp"
 #include "run/step_cost.hpp"
 
 namespace traverse::app {
@@ -194,80 +194,67 @@ double CaseRunner::cost_of_all() const {
 }
 
 CaseResult CaseRunner::run(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached) {
-  return by_modes_only() ? run_by_modes(train, {&run, 1}).front() : run_by_elements(train, run, reached);
+  return by_modes_only() ? run_by_modes(train, {&run, 1}).front()
+                         : run_by_elements(scene_of(train, run), train, run, reached);
 }
 
-CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
+CaseResult CaseRunner::run_by_elements(const Scene& scene, std::size_t train, const CaseRun& run,
                                        const std::function<void(double)>& reached) {
   std::vector<std::string> ignored;
-  const Scene& scene = scene_of(train, run);
   // Stored factorisations of other runs have shifts that are equal except for rounding: results would depend on the
   // earlier runs of this rank.
   beam_->statics->delete_step_factors();
-  Passage passage(scene, *beam_, ignored);
-  passage.start(ignored);
-  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
-  RunObserver observer(scene, passage.system(), beam_->bridge(), none);
-  if (cutoff_frequency_ > 0.0 && filter_obstacle(cutoff_frequency_, passage.plan(), scene.output.probes.size()).empty())
-    observer.keep_accelerations({cutoff_frequency_, passage.plan(), scene.output.probes});
-  const Output& out = scene.output;
-  const std::size_t wheels = wheels_at_start(scene).size();
-  if (filters_wheels(scene) && filter_obstacle(out.wheel_low_pass, passage.plan(), wheels, "wheels").empty())
-    observer.keep_wheel_forces({out.wheel_low_pass, out.unloading_level, passage.plan(), wheels});
-  if (scene.has_run_limits()) observer.check_limits();
   const double covered_until = run.speed > 0.0 ? scene.model.trial_distance / run.speed : scene.model.trial_distance;
-  observer.check_extrapolation(covered_until);
-  CaseResult result;
-  result.peaks.resize(scene.output.probes.size());
-  const auto sample = [&](const integrate::Instant& instant) { observer.sample(instant); };
-  const auto step = [&](double t, long) {
-    observer.step(t);
+  Simulation simulation(scene, *beam_,
+                        {.limits = scene.has_run_limits(),
+                         .wheel_filter = true,
+                         .deck_cutoff = cutoff_frequency_,
+                         .trials_until = covered_until},
+                        ignored);
+  ObserverBy until_signal({}, [&](double t, long) {
     if (reached) reached(t);
     return caught_signal() == 0;
-  };
-  passage.run(sample, step);
-  result.ended = caught_signal() == 0;
-  if (!result.ended) return result;
-  if (passage.system().linearisation_residual() > scene.model.residual_limit)
-    return run_with_mechanisms(train, run, reached);
-  check_balance(scene, observer.extremes());
-  const ResponseExtremes& peaks = observer.finished_peaks();
+  });
+  simulation.run({&until_signal});
+  CaseResult result;
+  result.peaks.resize(scene.output.probes.size());
+  if (caught_signal() != 0) return result;
+  if (simulation.system().linearisation_residual() > scene.model.residual_limit) {
+    Scene with_mechanisms = scene;
+    with_mechanisms.model.vehicles = VehicleModel::full;
+    return run_by_elements(with_mechanisms, train, run, reached);
+  }
+  simulation.evaluation().check_balance();
+  const Result found = simulation.result();
   for (std::size_t p = 0; p < result.peaks.size(); ++p) {
     const auto peak = [&](Quantity q) {
-      const Extreme& found = peaks.largest_of_each(q)[p];
-      return base::Extreme{std::abs(found.value), found.time};
+      const Extreme& extreme = found.peaks.largest_of_each(q)[p];
+      return base::Extreme{std::abs(extreme.value), extreme.time};
     };
     result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
   }
-  if (scene.has_run_limits())
-    for (const results::Verdict& verdict : observer.verdicts(observer.finish()))
-      result.evaluated.push_back(verdict.found);
-  const results::Summary& extremes = observer.finished_extremes();
-  result.least_wheel_force = extremes.least_wheel_force;
-  result.greatest_wheel_force = extremes.greatest_wheel_force;
-  result.contact_losses = extremes.contact_losses;
-  result.longest_loss = extremes.longest_loss;
-  result.outside_trials = observer.has_uncovered_event(scene.model.trials_lost_contact ? covered_until : 0.0);
-  std::vector<double>& static_deflection = static_deflection_[train];
-  if (static_deflection.empty() || !passage.system().weights().pass_together(observer.paths())) {
-    static_deflection.clear();
-    for (const double x : scene.output.probes) {
-      if (caught_signal() != 0) break;
-      static_deflection.push_back(passage.system().weights().static_peak(x, observer.paths(), observer.last_time()));
-    }
-  }
+  for (const results::Verdict& verdict : found.verdicts) result.evaluated.push_back(verdict.found);
+  result.least_wheel_force = found.summary.least_wheel_force;
+  result.greatest_wheel_force = found.summary.greatest_wheel_force;
+  result.contact_losses = found.summary.contact_losses;
+  result.longest_loss = found.summary.longest_loss;
+  result.outside_trials = found.has_uncovered_event(scene.model.trials_lost_contact ? covered_until : 0.0);
+  set_static_deflection(train, simulation);
+  result.static_deflection = static_deflection_[train];
   result.ended = caught_signal() == 0;
-  result.static_deflection = static_deflection;
   return result;
 }
 
-// The linearisation residual exceeds its limit.
-CaseResult CaseRunner::run_with_mechanisms(std::size_t train, const CaseRun& run,
-                                           const std::function<void(double)>& reached) {
-  scene_.model.vehicles = VehicleModel::full;
-  CaseResult result = run_by_elements(train, run, reached);
-  scene_.model.vehicles = VehicleModel::linear;
-  return result;
+// Trains whose wheels keep their distances have the same static deflections in all runs.
+void CaseRunner::set_static_deflection(std::size_t train, Simulation& simulation) {
+  std::vector<double>& static_deflection = static_deflection_[train];
+  const train::WheelPaths& paths = simulation.evaluation().paths();
+  coupling::QuasiStaticResponse& weights = simulation.system().weights();
+  if (!static_deflection.empty() && weights.pass_together(paths)) return;
+  static_deflection.clear();
+  for (const double x : scene_.output.probes)
+    if (caught_signal() == 0)
+      static_deflection.push_back(weights.static_peak(x, paths, simulation.evaluation().time()));
 }
 
 const modal_engine::MovingForcePassages& CaseRunner::passages_of(std::size_t train) {

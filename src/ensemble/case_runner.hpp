@@ -15,9 +15,11 @@
 #include "ensemble/moving_force_limits.hpp"
 #include "modal_engine/moving_force_batch.hpp"
 #include "results/verdict.hpp"
-#include "run/passage.hpp"
+#include "run/shared_beam.hpp"
 
 namespace traverse::app {
+
+class Simulation;
 
 /// Results of a run.
 struct CaseResult : base::PassagePeaks {
@@ -88,8 +90,10 @@ class CaseRunner {
  private:
   /// Sets the parameters of one run in the scene.
   const Scene& scene_of(std::size_t train, const CaseRun& run);
-  CaseResult run_by_elements(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
-  CaseResult run_with_mechanisms(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
+  /// The run of a scene with these parameters; with mechanisms if linear vehicles are not accurate enough.
+  CaseResult run_by_elements(const Scene& scene, std::size_t train, const CaseRun& run,
+                             const std::function<void(double)>& reached);
+  void set_static_deflection(std::size_t train, Simulation& simulation);
   std::vector<CaseResult> run_by_modes(std::size_t train, std::span<const CaseRun> runs);
   const modal_engine::MovingForcePassages& passages_of(std::size_t train);
   void hide_unknown(CaseResult& result) const;

@@ -13,7 +13,7 @@
 #include "error_control/error_model.hpp"
 #include "error_control/search_constants.hpp"
 #include "results/stage.hpp"
-#include "run/passage.hpp"
+#include "run/simulation.hpp"
 #include "run/step_cost.hpp"
 #include "traverse/options/input.hpp"
 
@@ -70,18 +70,12 @@ class Runs {
     scene_.model.step = step;
     try {
       Curves curves;
-      Passage passage(scene_, shared_, ignored_);
-      passage.start(ignored_);
-      coupling::Observation observation;
-      passage.run(
-          [&](const integrate::Instant& now) {
-            if (!integrate::is_stored(now.purpose)) return;
-            passage.system().observe(now.time, now.y, now.acceleration, observation);
-            add(passage.system().fleet(), curves);
-          },
-          [](double, long) { return true; });
-      for (const train::Separation& loss : passage.system().contacts().separations().list())
-        lost_contact_ = lost_contact_ || !loss.from_start;
+      Simulation simulation(scene_, shared_, {}, ignored_);
+      ObserverBy recorder([&](const integrate::Instant& now) {
+        if (integrate::is_stored(now.purpose)) add(simulation.system().fleet(), curves);
+      });
+      simulation.run({&recorder});
+      lost_contact_ = simulation.result().lost_contact || lost_contact_;
       place->second = std::move(curves);
     } catch (const SolverError&) {  // the step is probably too long
     }

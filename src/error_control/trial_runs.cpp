@@ -9,8 +9,7 @@
 #include "error_control/search_constants.hpp"
 #include "results/stage.hpp"
 #include "run/deck_acceleration.hpp"
-#include "run/passage.hpp"
-#include "run/run_observer.hpp"
+#include "run/simulation.hpp"
 #include "run/step_cost.hpp"
 
 namespace traverse::app {
@@ -68,15 +67,6 @@ void remove_distant_spans(Scene& scene, double end) {
   std::erase_if(scene.output.probes, [&](double x) { return x > beam.length(); });
 }
 
-/// Whether to store accelerations for the low-pass filter: the interval resolves its frequency and they fit into
-/// memory.
-bool can_filter_accelerations(const Scene& scene, const Plan& plan) {
-  const double frequency = filters_deck(scene) ? scene.output.low_pass.value_or(0.0) : 0.0;
-  const double numbers = static_cast<double>(scene.output.probes.size()) * plan.end_time / plan.interval;
-  return frequency > 0.0 && plan.interval <= interval_ratio * longest_spacing_for(frequency) &&
-         numbers <= DeckAcceleration::max_stored;
-}
-
 }  // namespace
 
 Scene trim_approach(const Scene& scene) {
@@ -112,39 +102,35 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_cost) {
   SharedBeam shared(comm, scene, ignored);
   shared.damp(scene, false, ignored);
   shared.prepare(scene, ignored);
-  Passage passage(scene, shared, ignored);
-  passage.start(ignored);
+  const double cutoff = filters_deck(scene) ? scene.output.low_pass.value_or(0.0) : 0.0;
+  Simulation run(scene, shared, {.deck_cutoff = cutoff, .deck_spacing = interval_ratio, .filter_on_all = true},
+                 ignored);
   shared.beam->release_matrices();
-  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
-  RunObserver observer(scene, passage.system(), shared.bridge(), none);
-  if (can_filter_accelerations(scene, passage.plan()))
-    observer.keep_accelerations({*scene.output.low_pass, passage.plan(), scene.output.probes});
-  RunPeaks result;
   const auto cost_in_steps = [&] {
-    const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_per_step;
-    return std::max(static_cast<double>(passage.steps()), by_solves) +
-           steps_per_factorisation * static_cast<double>(passage.system().factorisations());
+    const double by_solves = static_cast<double>(run.system().beam_solves()) / solves_per_step;
+    return std::max(static_cast<double>(run.passage().steps()), by_solves) +
+           steps_per_factorisation * static_cast<double>(run.system().factorisations());
   };
   const results::Stage stage("time steps");
+  RunPeaks result;
   bool within_limit = true;
-  passage.run(
-      [&](const integrate::Instant& instant) {
-        observer.sample(instant);
-        within_limit = passage.system().linearisation_residual() <= scene.model.residual_limit;
+  ObserverBy limits(
+      [&](const integrate::Instant&) {
+        within_limit = run.system().linearisation_residual() <= scene.model.residual_limit;
       },
       [&](double t, long) {
-        observer.step(t);
-        results::Stage::advance(t / passage.plan().end_time);
+        results::Stage::advance(t / run.plan().end_time);
         result.complete = within_limit && cost_in_steps() <= max_cost;
         return result.complete;
       });
+  run.run({&limits});
   result.steps = cost_in_steps();
-  result.residual = passage.system().linearisation_residual();
-  for (const train::Separation& s : passage.system().contacts().separations().list())
-    result.lost_contact = result.lost_contact || !s.from_start;
-  result.peaks = observer.finished_peaks();
-  const results::Summary& energies = observer.extremes();
-  if (energies.energy_scale > 0.0) result.energy_missing = energies.energy_residual / energies.energy_scale;
+  Result found = run.result();
+  result.peaks = std::move(found.peaks);
+  result.lost_contact = found.lost_contact;
+  result.residual = found.summary.linear_defect;
+  if (found.summary.energy_scale > 0.0)
+    result.energy_missing = found.summary.energy_residual / found.summary.energy_scale;
   return result;
 }
 

@@ -16,9 +16,8 @@
 #include "modes/modes.hpp"
 #include "results/stage.hpp"
 #include "run/outputs.hpp"
-#include "run/passage.hpp"
-#include "run/run_observer.hpp"
 #include "run/signals.hpp"
+#include "run/simulation.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/options/table.hpp"
@@ -221,11 +220,8 @@ void ForwardModel::add_series(const std::vector<double>& values, std::vector<dou
   std::vector<std::string> ignored;
   SharedBeam shared(PETSC_COMM_SELF, own, ignored);
   prepare(shared, own);
-  Passage passage(own, shared, ignored);
-  passage.start(ignored);
-  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
-  RunObserver observer(own, passage.system(), shared.bridge(), none);
-  const Outputs outputs = outputs_of({own, passage.system().fleet(), shared.bridge()});
+  Simulation simulation(own, shared, {.stored = true}, ignored);
+  const Outputs outputs = outputs_of({own, simulation.system().fleet(), shared.bridge()});
   std::vector<std::size_t> channels;
   for (const options::MeasuredSeries& series : fit_.series)
     channels.push_back(channel_of(series, own, outputs.layout()).index);
@@ -233,18 +229,15 @@ void ForwardModel::add_series(const std::vector<double>& values, std::vector<dou
   response.resize(first + fit_.series.size() * instants_);
   std::size_t k = 0;
   std::vector<double> row;
-  const auto sample = [&](const integrate::Instant& instant) {
-    observer.sample(instant);
-    if (!is_stored(instant.purpose) || k == instants_) return;
-    outputs.fill(observer.observed(), row);
-    for (std::size_t s = 0; s < channels.size(); ++s) response[first + s * instants_ + k] = row[channels[s]];
-    ++k;
-  };
-  const auto step = [&](double t, long) {
-    observer.step(t);
-    return caught_signal() == 0;
-  };
-  passage.run(sample, step);
+  ObserverBy recorder(
+      [&](const integrate::Instant& instant) {
+        if (!is_stored(instant.purpose) || k == instants_) return;
+        outputs.fill(simulation.evaluation().observed(), row);
+        for (std::size_t s = 0; s < channels.size(); ++s) response[first + s * instants_ + k] = row[channels[s]];
+        ++k;
+      },
+      [](double, long) { return caught_signal() == 0; });
+  simulation.run({&recorder});
   if (k < instants_) throw SolverError(fmt::format("the run ended after {} of {} samples", k, instants_));
 }
 

@@ -120,11 +120,10 @@ std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
   return earlier;
 }
 
-Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& observer,
-                         results::Recorder& recorder, results::Checkpoint state)
+Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Simulation& simulation, results::Recorder& recorder,
+                         results::Checkpoint state)
     : comm_(comm),
-      passage_(passage),
-      observer_(observer),
+      simulation_(simulation),
       recorder_(recorder),
       state_(std::move(state)),
       own_file_(results::id_at(option_value("restart").c_str())),
@@ -133,12 +132,13 @@ Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, Ru
   path_ = path_for(scene);
   if (const std::string interval = option_value("checkpoint_interval"); !interval.empty())
     (void)options::parse_number(interval, interval_);
-  if (trouble_ = passage.no_archive(); !trouble_.empty()) path_.clear();
+  if (trouble_ = simulation.passage().no_archive(); !trouble_.empty()) path_.clear();
   state_.digest = digest_of(scene);
-  state_.end_time = passage.plan().end_time;
-  state_.time_step = passage.plan().time_step;
-  state_.interval = passage.plan().interval;
-  state_.stored = passage.plan().stored;
+  const Plan& plan = simulation.plan();
+  state_.end_time = plan.end_time;
+  state_.time_step = plan.time_step;
+  state_.interval = plan.interval;
+  state_.stored = plan.stored;
   state_.of_ranks.clear();
 }
 
@@ -153,8 +153,7 @@ void Checkpoints::write(double time, double wall_seconds) {
   const results::Stage stage("checkpoint");
   const auto begin = Clock::now();
   base::Archive archive(comm_);
-  passage_.keep(archive);
-  observer_.keep(archive);
+  simulation_.keep(archive);
   state_.results = recorder_.secure();
   state_.time = time;
   state_.wall_seconds = wall_seconds;

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "results/checkpoint_file.hpp"
-#include "run/passage.hpp"
-#include "run/run_observer.hpp"
+#include "run/simulation.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
@@ -30,8 +29,8 @@ results::Place claim_outputs(MPI_Comm comm, const Scene& scene);
 
 class Checkpoints {
  public:
-  /// The parts of the run must outlive this object. state: all data that are in none of the parts.
-  Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& observer, results::Recorder& recorder,
+  /// Simulation and recorder must outlive this object. state: all data that are in none of them.
+  Checkpoints(MPI_Comm comm, const Scene& scene, Simulation& simulation, results::Recorder& recorder,
               results::Checkpoint state);
 
   /// Whether this rank requires a checkpoint now. The clock is read at intervals only.
@@ -50,8 +49,7 @@ class Checkpoints {
   using Clock = std::chrono::steady_clock;
 
   MPI_Comm comm_;
-  Passage& passage_;
-  RunObserver& observer_;
+  Simulation& simulation_;
   results::Recorder& recorder_;
   results::Checkpoint state_;
   std::string path_, trouble_;

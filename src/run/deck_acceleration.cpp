@@ -93,8 +93,8 @@ double longest_spacing_for(double frequency) { return 1.0 / (least_instants * fr
 
 double unsettled_end(double frequency) { return unsettled_periods / frequency; }
 
-std::string filter_obstacle(double frequency, const Plan& plan, std::size_t series, const char* what) {
-  if (plan.interval > longest_spacing_for(frequency) * (1.0 + interval_tolerance))
+std::string filter_obstacle(double frequency, const Plan& plan, std::size_t series, const char* what, double spacing) {
+  if (plan.interval > spacing * longest_spacing_for(frequency) * (1.0 + interval_tolerance))
     return fmt::format("samples or steps of {:g} s are too long for {:g} Hz; allowed: at most {:g} s", plan.interval,
                        frequency, longest_spacing_for(frequency));
   const double numbers = static_cast<double>(series) * (1.0 + plan.end_time / plan.interval);

@@ -43,8 +43,9 @@ double longest_spacing_for(double frequency);
 double unsettled_end(double frequency);
 
 /// The reason why this number of series of a run with this plan cannot be filtered; empty if they can. what: "probes",
-/// which output_probes reduces, or "wheels".
-std::string filter_obstacle(double frequency, const Plan& plan, std::size_t series, const char* what = "probes");
+/// which output_probes reduces, or "wheels"; spacing: allowed interval of instants over longest_spacing_for().
+std::string filter_obstacle(double frequency, const Plan& plan, std::size_t series, const char* what = "probes",
+                            double spacing = 1.0);
 
 /// The peak of filtered accelerations with the frequency and the interval of the filter; its place: index of a station.
 results::LowPassed low_passed_peak(const Extreme& peak, const std::vector<double>& stations, double frequency,

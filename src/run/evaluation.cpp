@@ -1,11 +1,12 @@
 // Evaluates responses at the probes, reactions, peaks and the energy balance at every sample, and stops a run whose
 // energy residual is too large for a valid result.
-#include "run/run_observer.hpp"
+#include "run/evaluation.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "run/envelope.hpp"
@@ -24,24 +25,21 @@ constexpr double max_static_work =
 
 }  // namespace
 
-void check_balance(const Scene& scene, const results::Summary& summary) {
-  const double allowed = scene.beam ? max_imbalance : max_imbalance_of_mechanism;
-  if (summary.energy_residual > allowed * summary.energy_scale + rounding * summary.largest_energy)
-    throw StepTooLong(fmt::format(
-        "the energy does not balance: {:g} J are missing where the energies change by {:g} J; the step is "
-        "too long for this integrator, use a smaller -ts_dt or an implicit -ts_type, and where contacts are lost "
-        "and gained a greater -contact_impact_steps",
-        summary.energy_residual, summary.energy_scale));
+void Result::record(results::Recorder& recorder) const {
+  recorder.datasets(datasets);
+  recorder.tables(tables);
+  recorder.separations(separations);
+  if (shape) recorder.shape(*shape);
 }
 
-RunObserver::RunObserver(const Scene& scene, coupling::System& system, const beam::Beam* beam,
-                         results::Recorder& recorder, const Outputs* outputs)
-    : scene_(scene),
-      system_(system),
-      beam_(beam),
-      recorder_(recorder),
-      outputs_(recorder.writes() ? outputs : nullptr),
-      recorded_(outputs != nullptr) {
+bool Result::has_uncovered_event(double losses_covered_until) const {
+  return !new_event.empty() || roughness > ExtrapolationCheck::smooth ||
+         std::any_of(losses.begin(), losses.end(), [&](double t) { return t > losses_covered_until; });
+}
+
+Evaluation::Evaluation(const Scene& scene, coupling::System& system, const beam::Beam* beam, const Plan& plan,
+                       const Wants& wants, std::vector<std::string>& notes)
+    : scene_(scene), system_(system), beam_(beam), wants_(wants) {
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     now_.ground.emplace(*beam);
@@ -49,10 +47,10 @@ RunObserver::RunObserver(const Scene& scene, coupling::System& system, const bea
       ground_.assign(beam->model().supports.size(), 0.0);
       for (const double x : scene.output.probes) support_lines_.push_back(beam::support_line(beam->model(), x));
     }
-    if (recorded_ && !scene.output.sleepers.empty()) now_.sleepers.emplace(*beam, scene.output.sleepers);
+    if (wants.stored && !scene.output.sleepers.empty()) now_.sleepers.emplace(*beam, scene.output.sleepers);
     if (beam->rail() != nullptr) {
       rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
-      if (recorded_) now_.devices.emplace(*beam);
+      if (wants.stored) now_.devices.emplace(*beam);
     }
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
@@ -62,15 +60,36 @@ RunObserver::RunObserver(const Scene& scene, coupling::System& system, const bea
   exits_ = ExitStates(scene);
   peaks_ = peaks_for(scene, wheel_count_, lag);
   wheels_ = WheelExtremes(wheel_count_, system.surface_kinks());
+  if (wants.stored && !scene.output.passages.empty()) axle_passages_ = {scene, plan.time_step};
+  if (wants.limits) limit_check_.emplace(scene, system.fleet(), beam);
+  extrapolation_check_ = {wants.trials_until, system.fleet(), beam == nullptr ? nullptr : &beam->model()};
+  set_up_filters(plan, notes);
 }
 
-void RunObserver::sample(const integrate::Instant& instant) {
+void Evaluation::set_up_filters(const Plan& plan, std::vector<std::string>& notes) {
+  const Output& out = scene_.output;
+  int rank = 0;
+  MPI_Comm_rank(system_.comm(), &rank);
+  const auto filters = [&](double cutoff, std::size_t series, double spacing, const char* what, const char* quantity) {
+    const std::string obstacle = filter_obstacle(cutoff, plan, series, what, spacing);
+    if (!obstacle.empty()) notes.push_back(fmt::format("{} are not low-passed: {}", quantity, obstacle));
+    return obstacle.empty();
+  };
+  filters_deck_ = wants_.deck_cutoff > 0.0 &&
+                  filters(wants_.deck_cutoff, out.probes.size(), wants_.deck_spacing, "probes", "deck accelerations");
+  if (filters_deck_ && (rank == 0 || wants_.filter_on_all)) deck_.emplace(wants_.deck_cutoff, plan, out.probes);
+  if (wants_.wheel_filter && filters_wheels(scene_) &&
+      filters(out.wheel_low_pass, wheel_count_, 1.0, "wheels", "wheel forces") && rank == 0)
+    filtered_wheels_.emplace(out.wheel_low_pass, out.unloading_level, plan, wheel_count_);
+}
+
+void Evaluation::sample(const integrate::Instant& instant) {
   const bool stored = is_stored(instant.purpose);
   const bool all = stored || limit_check_ || extrapolation_check_.needs_springs() || exits_.needs_bodies() ||
                    scene_.train.drive == Drive::free;
   system_.observe(instant.time, instant.y, instant.acceleration, now_.motion, all);
   const structure::NodalMotion& beam = now_.motion.beam;
-  sample_.time = instant.time;
+  time_ = instant.time;
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
     if (!beam.drag.empty()) drag(beam.drag.data());
@@ -90,16 +109,16 @@ void RunObserver::sample(const integrate::Instant& instant) {
   }
   exits_.add(instant.time, system_.fleet(), now_.probes);
   if (instant.purpose == integrate::Purpose::exit) return;
-  step(instant.time);  // the first instant is not the end of a step
+  add_wheels(instant.time);  // the first instant is not the end of a step
   record_peaks();
   record_largest_deflection();
   if (limit_check_) limit_check_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
-  if (stored) store(instant.purpose == integrate::Purpose::end);
+  if (stored) store();
 }
 
-void RunObserver::subtract_support_motion() {
+void Evaluation::subtract_support_motion() {
   const structure::SupportMotion* moved = system_.structure()->support_motion();
   if (moved == nullptr) return;
   for (std::size_t i = 0; i < ground_.size(); ++i) ground_[i] = moved->upward()[i].displacement;
@@ -107,8 +126,8 @@ void RunObserver::subtract_support_motion() {
     now_.probes[p].relative_deflection -= support_lines_[p].height(ground_);
 }
 
-void RunObserver::store(bool end) {
-  if (beam_ != nullptr) {
+void Evaluation::store() {
+  if (beam_ != nullptr && wants_.stored) {
     const structure::NodalMotion& beam = now_.motion.beam;
     if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.loads, now_.rail);
     beam_->reactions(beam.v, beam.damped_w, beam.a, beam.P.data(), now_.supports);
@@ -121,21 +140,11 @@ void RunObserver::store(bool end) {
     if (now_.devices && !now_.devices->x().empty()) now_.devices->evaluate(beam.v);
   }
   record_energy();
-  if (outputs_ != nullptr) outputs_->fill(now_, sample_.values);
-  if (end)
-    recorder_.end(sample_);
-  else
-    recorder_.add(sample_);
-  if (summary_.energy_residual > diverging_imbalance * summary_.energy_scale + rounding * summary_.largest_energy)
-    throw StepTooLong(
-        fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
-                    "integrator, use a smaller -ts_dt or an implicit -ts_type",
-                    now_.energy.residual, sample_.time));
 }
 
 // Modal damping acts like inertia: its acceleration contributes to all forces, but not to the accelerations of the
 // probes.
-void RunObserver::drag(const double* drag) {
+void Evaluation::drag(const double* drag) {
   structure::NodalMotion& beam = now_.motion.beam;
   const auto size = static_cast<std::size_t>(beam_->local_unknowns());
   const std::vector<double> zero(size, 0.0);
@@ -145,7 +154,7 @@ void RunObserver::drag(const double* drag) {
   beam.a = with_drag_.data();
 }
 
-void RunObserver::record_peaks() {
+void Evaluation::record_peaks() {
   wheel_forces_.clear();
   const train::Fleet& fleet = system_.fleet();
   for (const train::Member& member : fleet.members) {
@@ -153,19 +162,19 @@ void RunObserver::record_peaks() {
     for (std::size_t i = 0; i < member.type->wheels.size(); ++i)
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
-  extrapolation_check_.add(sample_.time, fleet, now_.motion.beam.foundation, peaks_);
-  peaks_.add(sample_.time, now_.probes, wheel_forces_,
+  extrapolation_check_.add(time_, fleet, now_.motion.beam.foundation, peaks_);
+  peaks_.add(time_, now_.probes, wheel_forces_,
              movement_ ? movement_->passages() : std::span<const beam::StationPassage>());
-  if (deck_) deck_->add(sample_.time, now_.probes);
+  if (deck_) deck_->add(time_, now_.probes);
 }
 
-void RunObserver::record_largest_deflection() {
+void Evaluation::record_largest_deflection() {
   double deflection = 0.0;
   for (const beam::Response& probe : now_.probes)
     deflection = std::max(deflection, std::abs(probe.relative_deflection));
   if (deflection > largest_deflection_value_) {
     largest_deflection_value_ = deflection;
-    largest_deflection_.time = sample_.time;
+    largest_deflection_.time = time_;
     const structure::NodalMotion& beam = now_.motion.beam;
     const int size = beam_->local_unknowns();
     largest_deflection_.v.assign(beam.v, beam.v + size);
@@ -176,7 +185,7 @@ void RunObserver::record_largest_deflection() {
   }
 }
 
-void RunObserver::record_energy() {
+void Evaluation::record_energy() {
   const coupling::Energy& e = now_.motion.energy;
   if (at_first_sample_) energy_at_start_ = e;
   at_first_sample_ = false;
@@ -195,7 +204,26 @@ void RunObserver::record_energy() {
     summary_.energy_scale = std::max(summary_.energy_scale, std::abs(change));
 }
 
-void RunObserver::step(double t) {
+void Evaluation::step(double t) {
+  if (summary_.energy_residual > diverging_imbalance * summary_.energy_scale + rounding * summary_.largest_energy)
+    throw StepTooLong(
+        fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
+                    "integrator, use a smaller -ts_dt or an implicit -ts_type",
+                    now_.energy.residual, time_));
+  add_wheels(t);
+}
+
+void Evaluation::check_balance() const {
+  const double allowed = scene_.beam ? max_imbalance : max_imbalance_of_mechanism;
+  if (summary_.energy_residual > allowed * summary_.energy_scale + rounding * summary_.largest_energy)
+    throw StepTooLong(fmt::format(
+        "the energy does not balance: {:g} J are missing where the energies change by {:g} J; the step is "
+        "too long for this integrator, use a smaller -ts_dt or an implicit -ts_type, and where contacts are lost "
+        "and gained a greater -contact_impact_steps",
+        summary_.energy_residual, summary_.energy_scale));
+}
+
+void Evaluation::add_wheels(double t) {
   const train::Fleet& fleet = system_.fleet();
   std::size_t wheel = 0;
   const bool due = filtered_wheels_ && filtered_wheels_->is_due(t);
@@ -207,7 +235,7 @@ void RunObserver::step(double t) {
     }
 }
 
-void RunObserver::record_wheels() {
+void Evaluation::record_wheels() {
   const train::Fleet& fleet = system_.fleet();
   summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.least().value;
   summary_.greatest_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.greatest().value;
@@ -220,58 +248,24 @@ void RunObserver::record_wheels() {
     summary_.unloading = {largest.value, largest.time, wheel_name(fleet, largest.place)};
 }
 
-void RunObserver::record_separations() {
+void Evaluation::record_separations(Result& result) {
   const train::Fleet& fleet = system_.fleet();
-  std::vector<results::Separation> list;
   for (const train::Separation& s : system_.contacts().separations().list()) {
     const double duration = s.duration >= 0.0 ? s.duration : system_.contacts().separations().time() - s.start;
-    list.push_back({std::to_string(fleet.member(s.contact)), fleet.name(s.contact), s.x, s.start, duration,
-                    s.approach_speed, s.impact_force});
-    if (s.from_start || s.contact >= static_cast<int>(fleet.wheels.size())) continue;
+    result.separations.push_back({std::to_string(fleet.member(s.contact)), fleet.name(s.contact), s.x, s.start,
+                                  duration, s.approach_speed, s.impact_force});
+    if (s.from_start) continue;
+    result.lost_contact = true;
+    if (s.contact >= static_cast<int>(fleet.wheels.size())) continue;
     ++summary_.contact_losses;
     summary_.longest_loss = std::max(summary_.longest_loss, duration);
+    result.losses.push_back(s.start);
   }
-  recorder_.separations(list);
 }
 
-void RunObserver::check_extrapolation(double until) {
-  extrapolation_check_ = ExtrapolationCheck(until, system_.fleet(), beam_ == nullptr ? nullptr : &beam_->model());
-}
-
-bool RunObserver::has_uncovered_event(double losses_covered_until) const {
-  const std::vector<double> lost = losses();
-  return !extrapolation_check_.new_event().empty() ||
-         extrapolation_check_.roughness(peaks_) > ExtrapolationCheck::smooth ||
-         std::any_of(lost.begin(), lost.end(), [&](double t) { return t > losses_covered_until; });
-}
-
-std::vector<double> RunObserver::losses() const {
-  std::vector<double> times;
-  for (const train::Separation& s : system_.contacts().separations().list())
-    if (!s.from_start && s.contact < static_cast<int>(system_.fleet().wheels.size())) times.push_back(s.start);
-  return times;
-}
-
-const ResponseExtremes& RunObserver::finished_peaks() {
-  if (!finished_) {
-    peaks_.finish();
-    if (deck_) deck_->finish(peaks_);
-  }
-  finished_ = true;
-  return peaks_;
-}
-
-const results::Summary& RunObserver::finished_extremes() {
-  finished_peaks();
-  wheels_.finish();
-  record_wheels();
-  record_separations();
-  return summary_;
-}
-
-void RunObserver::keep(base::Archive& archive) {
-  archive.same(peaks_, extrapolation_check_, wheels_, paths_, energy_at_start_, at_first_sample_, sample_.time,
-               now_.probes, largest_deflection_value_);
+void Evaluation::keep(base::Archive& archive) {
+  archive.same(peaks_, extrapolation_check_, wheels_, paths_, energy_at_start_, at_first_sample_, time_, now_.probes,
+               largest_deflection_value_);
   if (movement_) archive.same(*movement_);
   if (lag_) archive.same(*lag_);
   if (limit_check_) archive.same(*limit_check_);
@@ -290,11 +284,33 @@ void RunObserver::keep(base::Archive& archive) {
   }
 }
 
-results::Summary RunObserver::finish() {
-  const ResponseExtremes& peaks = finished_peaks();
+Result Evaluation::finish() {
+  Result result;
+  peaks_.finish();
+  if (deck_) deck_->finish(peaks_);
+  wheels_.finish();
+  record_wheels();
+  record_separations(result);
+  if (deck_) summary_.low_passed = deck_->peak();
+  if (filtered_wheels_) summary_.filtered_unloading = filtered_wheels_->finish(system_.fleet());
+  if (wants_.stored || wants_.limits) summarise_peaks();
+  if (wants_.stored) record_once(result);
+  if (limit_check_) result.verdicts = limit_check_->verdicts(summary_, peaks_.largest_of_each(deflection));
+  result.filter_unsettled = deck_ && deck_->ends_unsettled();
+  result.new_event = extrapolation_check_.new_event();
+  result.roughness = extrapolation_check_.roughness(peaks_);
+  result.summary = summary_;
+  result.peaks = std::move(peaks_);
+  return result;
+}
+
+void Evaluation::summarise_peaks() {
   const auto extreme = [&](Quantity q) {
-    const Extreme& peak = peaks.largest(q);
+    const Extreme& peak = peaks_.largest(q);
     return results::Extreme{peak.value, peak.time, scene_.output.probes[static_cast<std::size_t>(peak.place)]};
+  };
+  const auto if_known = [&](Quantity q) {
+    return peaks_.largest(q).value != 0.0 ? std::optional(extreme(q)) : std::nullopt;
   };
   if (!scene_.output.probes.empty()) {
     summary_.probes = beam_ != nullptr;
@@ -303,54 +319,46 @@ results::Summary RunObserver::finish() {
     summary_.acceleration = extreme(acceleration);
     summary_.moments = !scene_.by_given_modes();
     summary_.moment = extreme(moment);
-    const auto if_known = [&](Quantity q) {
-      return peaks.largest(q).value != 0.0 ? std::optional(extreme(q)) : std::nullopt;
-    };
     summary_.shear = if_known(shear_force);
     summary_.axial_displacement = if_known(axial_displacement);
     summary_.axial_force = if_known(axial_force);
   }
-  if (!axle_passages_.empty()) {
-    recorder_.datasets(axle_passages_.datasets());
-    recorder_.tables({{"/passages/wheel", axle_passages_.wheels(system_.fleet())}});
-  }
-  if (!exits_.empty()) {
-    recorder_.datasets(exits_.datasets());
-    recorder_.tables({{"/exit/body", exits_.bodies(system_.fleet())}});
-  }
-  if (deck_) {
-    summary_.low_passed = deck_->peak();
-    if (scene_.output.low_passed_series) recorder_.datasets({deck_->stored()});
-  }
-  if (filtered_wheels_) summary_.filtered_unloading = filtered_wheels_->finish(system_.fleet());
-  finished_extremes();
-  if (beam_ == nullptr) return summary_;
-  int some = largest_deflection_.v.empty() && beam_->local_unknowns() > 0 ? 0 : 1;
-  MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
-  if (some == 0) return summary_;
+  if (!has_largest_deflection()) return;
   if (scene_.analysis == Analysis::transient)
-    summary_.static_deflection = system_.weights().static_peak(summary_.deflection.place, paths_, sample_.time);
+    summary_.static_deflection = system_.weights().static_peak(summary_.deflection.place, paths_, time_);
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
-  recorder_.shape(shape_of(*beam_, scene_, largest_deflection_));
-  recorder_.datasets(envelopes(peaks, !scene_.by_given_modes()));
-  record_static_deflections();
-  return summary_;
 }
 
-// Computes the static deflections, at every probe if that is cheap.
-void RunObserver::record_static_deflections() {
+bool Evaluation::has_largest_deflection() const {
+  if (beam_ == nullptr) return false;
+  int some = largest_deflection_.v.empty() && beam_->local_unknowns() > 0 ? 0 : 1;
+  MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
+  return some != 0;
+}
+
+void Evaluation::record_once(Result& result) {
+  const auto add = [&](std::vector<results::Recorder::Dataset> sets) {
+    std::move(sets.begin(), sets.end(), std::back_inserter(result.datasets));
+  };
+  if (!axle_passages_.empty()) {
+    add(axle_passages_.datasets());
+    result.tables.emplace_back("/passages/wheel", axle_passages_.wheels(system_.fleet()));
+  }
+  if (!exits_.empty()) {
+    add(exits_.datasets());
+    result.tables.emplace_back("/exit/body", exits_.bodies(system_.fleet()));
+  }
+  if (deck_ && scene_.output.low_passed_series) add({deck_->stored()});
+  if (!has_largest_deflection()) return;
+  result.shape = shape_of(*beam_, scene_, largest_deflection_);
+  add(envelopes(peaks_, !scene_.by_given_modes()));
   const std::vector<double>& probes = scene_.output.probes;
   const auto size = static_cast<double>(probes.size()) * beam_->mesh().nodes();
-  if (!recorded_ || summary_.static_deflection <= 0.0 || size > max_static_work) return;
+  if (summary_.static_deflection <= 0.0 || size > max_static_work) return;
   std::vector<double> deflections;
-  for (const double x : probes) deflections.push_back(system_.weights().static_peak(x, paths_, sample_.time));
-  recorder_.datasets({{"/envelope/static_deflection", {probes.size()}, std::move(deflections), "m"}});
-}
-
-std::vector<results::Verdict> RunObserver::verdicts(const results::Summary& summary) const {
-  return limit_check_ ? limit_check_->verdicts(summary, peaks_.largest_of_each(deflection))
-                      : std::vector<results::Verdict>();
+  for (const double x : probes) deflections.push_back(system_.weights().static_peak(x, paths_, time_));
+  add({{"/envelope/static_deflection", {probes.size()}, std::move(deflections), "m"}});
 }
 
 }  // namespace traverse::app

@@ -1,0 +1,112 @@
+// What is evaluated of a run: the responses at every instant, their extremes, energies and limits.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "beam/support_line.hpp"
+#include "coupling/system.hpp"
+#include "integrate/stepper.hpp"
+#include "recovery/load_movement.hpp"
+#include "recovery/recovery.hpp"
+#include "recovery/viscous_lag.hpp"
+#include "run/axle_load_records.hpp"
+#include "run/deck_acceleration.hpp"
+#include "run/deflected_shape.hpp"
+#include "run/exit_states.hpp"
+#include "run/extrapolation_check.hpp"
+#include "run/limit_check.hpp"
+#include "run/outputs.hpp"
+#include "run/plan.hpp"
+#include "run/response_extremes.hpp"
+#include "run/result.hpp"
+#include "run/wheel_extremes.hpp"
+#include "run/wheel_unloading.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// What is evaluated of a run beyond its peaks and diagnostics.
+struct Wants {
+  bool stored = false;         // whatever a results file contains
+  bool limits = false;         // the scene's limits
+  bool wheel_filter = false;   // low-passed wheel forces, if the scene filters them
+  double deck_cutoff = 0.0;    // Hz, of the filter for deck accelerations; 0: they are not filtered
+  double deck_spacing = 1.0;   // longest spacing of the filter's instants over longest_spacing_for()
+  bool filter_on_all = false;  // all ranks know the filtered peaks, not only the first one
+  double trials_until = std::numeric_limits<double>::infinity();  // s: end of the trial runs that chose the model
+};
+
+class Evaluation {
+ public:
+  /// Scene, system and beam must outlive this object. The reasons why series are not filtered are appended to `notes`.
+  Evaluation(const Scene& scene, coupling::System& system, const beam::Beam* beam, const Plan& plan, const Wants& wants,
+             std::vector<std::string>& notes);
+
+  /// Evaluates an instant.
+  void sample(const integrate::Instant& instant);
+  /// Must be called at the end of every step, also of one that ends at a sample. StepTooLong if the motion diverges.
+  void step(double t);
+  /// StepTooLong if the energy residual is so large that the result is invalid.
+  void check_balance() const;
+  /// Collective. After the last instant, once.
+  Result finish();
+
+  bool filters_deck() const { return filters_deck_; }
+  /// The values at the latest instant.
+  const Observed& observed() const { return now_; }
+  const train::WheelPaths& paths() const { return paths_; }
+  double time() const { return time_; }  // s, of the latest instant
+
+  /// Collective. Writes or reads the state.
+  void keep(base::Archive& archive);
+
+ private:
+  void drag(const double* drag);
+  void subtract_support_motion();
+  void set_up_filters(const Plan& plan, std::vector<std::string>& notes);
+  void add_wheels(double t);
+  void record_separations(Result& result);
+  void record_wheels();
+  void store();
+  void record_peaks();
+  void record_largest_deflection();
+  void record_energy();
+  void summarise_peaks();
+  bool has_largest_deflection() const;
+  void record_once(Result& result);
+
+  const Scene& scene_;
+  coupling::System& system_;
+  const beam::Beam* beam_;
+  Wants wants_;
+  std::optional<beam::Recovery> recovery_, rail_recovery_;
+  std::optional<beam::LoadMovement> movement_;  // on the bridge
+  std::optional<beam::ViscousLag> lag_;
+  std::vector<beam::Response> drag_response_;
+  std::vector<double> with_drag_;                 // accelerations including the accelerations of modal damping
+  std::vector<beam::SupportLine> support_lines_;  // of each probe, if supports move vertically
+  std::vector<double> ground_;                    // m: their displacements now, at every span end
+  ResponseExtremes peaks_;
+  ExtrapolationCheck extrapolation_check_;
+  std::optional<DeckAcceleration> deck_;
+  bool filters_deck_ = false;  // on any rank
+  std::optional<LimitCheck> limit_check_;
+  WheelExtremes wheels_;
+  std::optional<FilteredWheels> filtered_wheels_;
+  AxleLoadRecords axle_passages_;
+  ExitStates exits_;
+  train::WheelPaths paths_;  // if wheels may change their distances
+  std::vector<double> wheel_forces_;
+  std::size_t wheel_count_ = 0;
+  Observed now_;
+  double time_ = 0.0;  // s, of the latest instant
+  results::Summary summary_;
+  double largest_deflection_value_ = 0.0;  // m
+  LargestDeflection largest_deflection_;
+  coupling::Energy energy_at_start_;
+  bool at_first_sample_ = true;
+};
+
+}  // namespace traverse::app

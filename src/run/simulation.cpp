@@ -1,0 +1,67 @@
+// Builds a run, passes its instants to evaluation and observers, and collects the result.
+#include "run/simulation.hpp"
+
+#include <fmt/format.h>
+
+namespace traverse::app {
+namespace {
+
+constexpr double rounding_worth_a_note = 1e-9;  // relative error of static deflections
+
+}  // namespace
+
+Simulation::Simulation(const Scene& scene, const SharedBeam& shared, const Wants& wants,
+                       std::vector<std::string>& notes, const Plan* earlier)
+    : comm_(shared.comm), passage_(scene, shared, notes, earlier) {
+  passage_.start(notes);
+  if (const double error = system().static_error(); error > rounding_worth_a_note)
+    notes.push_back(fmt::format(
+        "static deflections: relative error about {:.1g}, by rounding in the many elements between supports", error));
+  evaluation_.emplace(scene, system(), shared.bridge(), plan(), wants, notes);
+}
+
+void Simulation::begin(Observers observers) {
+  passage_.begin([&](const integrate::Instant& instant) { sample(instant, observers); });
+}
+
+void Simulation::run(Observers observers) {
+  passage_.run([&](const integrate::Instant& instant) { sample(instant, observers); },
+               [&](double t, long steps) {
+                 evaluation_->step(t);
+                 bool goes_on = true;
+                 for (Observer* observer : observers) goes_on = observer->step(t, steps) && goes_on;
+                 return goes_on;
+               },
+               [&](double t) {
+                 for (Observer* observer : observers) observer->before_step(t);
+               });
+}
+
+void Simulation::sample(const integrate::Instant& instant, Observers observers) {
+  evaluation_->sample(instant);
+  for (Observer* observer : observers) observer->sample(instant);
+}
+
+Result Simulation::result() {
+  Result result = evaluation_->finish();
+  results::Summary& summary = result.summary;
+  summary.steps = passage_.steps();
+  summary.rejected_steps = passage_.rejected();
+  summary.solves = system().beam_solves();
+  summary.factorisations = system().factorisations();
+  summary.linear_defect = system().linearisation_residual();
+  summary.static_error = system().static_error();
+  const structure::Structure* structure = system().structure();
+  if (structure != nullptr && structure->energy_left()) {
+    summary.energy_left = *structure->energy_left();
+    MPI_Allreduce(MPI_IN_PLACE, &summary.energy_left, 1, MPI_DOUBLE, MPI_SUM, comm_);
+  }
+  return result;
+}
+
+void Simulation::keep(base::Archive& archive) {
+  passage_.keep(archive);
+  evaluation_->keep(archive);
+}
+
+}  // namespace traverse::app
