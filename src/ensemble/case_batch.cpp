@@ -2,6 +2,7 @@
 #include "ensemble/case_batch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/speed_class.hpp"
@@ -26,6 +27,23 @@ std::unique_ptr<structure::Structure> with_unloaded(std::unique_ptr<structure::S
 
 }  // namespace
 
+std::string CaseBatch::obstacle(const Scene& scene, const SharedBeam& shared) {
+  if (scene.beam->gradient != 0.0) return "the track is inclined";
+  if (scene.supports_move()) return "the supports move";
+  if (scene.vehicles.empty()) return "the scene has no vehicles";
+  if (!(scene.train.speed > 0.0)) return "the train stands";
+  if (!scene.load.forces.empty()) return "forces move in addition to the vehicles";
+  if (scene.model.vehicles != VehicleModel::linear) return "vehicles are mechanisms, not linear";
+  if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
+  if (!scene.train.courses.empty()) return "several trains run, or one whose speed changes or is below 0";
+  if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
+  if (!integrate::own_method(scene.model.method)) return "ts_type is one of PETSc's own";
+  if (!scene.model.step) return "the step is not known";
+  if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";
+  if (scene.beam->ground != std::array{true, true}) return "the running surface ends with the bridge";
+  return engine::BatchStructure::obstacle(*shared.beam, shared.modal ? &*shared.modal : nullptr);
+}
+
 CaseBatch::CaseBatch(const Scene& scene, const SharedBeam& shared)
     : scene_(scene),
       shared_(shared),
@@ -35,16 +53,28 @@ CaseBatch::CaseBatch(const Scene& scene, const SharedBeam& shared)
   system_.start(true, state_.data());
   system_.linearise_vehicles(state_.data());
   fleet_ = system_.fleet();
-  obstacle_ = engine::TrainArrays::obstacle(fleet_);
-  if (obstacle_.empty()) obstacle_ = engine::BatchStructure::obstacle(*shared.beam, modal());
-  if (!obstacle_.empty()) return;
+}
+
+std::unique_ptr<CaseBatch> CaseBatch::make(const Scene& scene, const SharedBeam& shared, double distance,
+                                           std::string& why) {
+  why = obstacle(scene, shared);
+  if (!why.empty()) return nullptr;
+  std::unique_ptr<CaseBatch> batch(new CaseBatch(scene, shared));
+  why = engine::TrainArrays::obstacle(batch->fleet_);
+  if (!why.empty()) return nullptr;
+  batch->set_up();
+  why = batch->prepare_tracks(distance);
+  return why.empty() ? std::move(batch) : nullptr;
+}
+
+void CaseBatch::set_up() {
   for (const train::WheelContact& c : fleet_.wheels) wheels_.push_back(fleet_.coordinates(c).x());
   state_.resize(2 * static_cast<std::size_t>(system_.structure()->unknowns()));
-  const double gravity = scene.self_weight ? scene.gravity : 0.0;
-  structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, modal(), fleet_, unloaded_,
-                                                              scene.output.probes, gravity);
-  plan_.level_until = scene.profile.level() && !system_.structure()->deformed_without_traffic()
-                          ? shared.beam->running().mesh.start()
+  const double gravity = scene_.self_weight ? scene_.gravity : 0.0;
+  structure_ = std::make_shared<const engine::BatchStructure>(*shared_.beam, modal(), fleet_, unloaded_,
+                                                              scene_.output.probes, gravity);
+  plan_.level_until = scene_.profile.level() && !system_.structure()->deformed_without_traffic()
+                          ? shared_.beam->running().mesh.start()
                           : -1e300;
   kinks_ = system_.surface_kinks();
 }

@@ -30,12 +30,14 @@ structure::Method method_of(const Scene& scene);
 
 class CaseBatch {
  public:
-  /// The train of a scene without batch_obstacle at its start. Throws the errors of a single run. Scene and beam must
-  /// outlive this object.
-  CaseBatch(const Scene& scene, const SharedBeam& shared);
-
-  /// The reason why these vehicles on this bridge cannot be batched; empty: they can.
-  const std::string& obstacle() const { return obstacle_; }
+  /// The reason why a scene's runs cannot be batched, in words, as far as it is known without its vehicles at rest;
+  /// empty: none.
+  static std::string obstacle(const Scene& scene, const SharedBeam& shared);
+  /// The train of a scene at its start, with the tracks of all runs up to this distance (m), so that no track depends
+  /// on the order of runs. Null if the runs cannot be batched; `why` is the reason in words. Throws the errors of a
+  /// single run. Scene and beam must outlive the object.
+  static std::unique_ptr<CaseBatch> make(const Scene& scene, const SharedBeam& shared, double distance,
+                                         std::string& why);
   struct Steps {
     structure::Method method;  // coefficients for a step of 1 s
     double longest = 0.0;      // s
@@ -46,9 +48,6 @@ class CaseBatch {
   };
   /// The steps that the scene defines.
   Steps steps() const;
-  /// Prepares the tracks of all runs up to this distance (m) at once, so that no track depends on the order of runs.
-  /// Returns the reason, in words, why batched runs are not possible there; empty: they are.
-  std::string prepare_tracks(double distance);
   /// Runs that any thread may compute while others compute theirs; their CaseBatch must outlive it.
   class Ready {
    public:
@@ -82,6 +81,12 @@ class CaseBatch {
   std::vector<double> static_deflection();
 
  private:
+  CaseBatch(const Scene& scene, const SharedBeam& shared);
+  /// Collects what the batches of a train without obstacles need.
+  void set_up();
+  /// Prepares the tracks up to this distance. Returns the reason why batched runs are not possible there; empty: they
+  /// are.
+  std::string prepare_tracks(double distance);
   const structure::ModalBridge* modal() const { return shared_.modal ? &*shared_.modal : nullptr; }
   std::vector<double> events(double distance) const;
   std::pair<double, double> touched_range() const;
@@ -94,7 +99,6 @@ class CaseBatch {
   std::vector<double> unloaded_;  // m, rad: displacements of the bridge without vehicles
   coupling::System system_;
   train::Fleet fleet_;
-  std::string obstacle_;
   std::vector<double> wheels_;  // m: position of every wheel at the start
   /// The last used tracks, which the next runs probably need too.
   std::deque<std::pair<std::optional<std::uint64_t>, Track>> tracks_;

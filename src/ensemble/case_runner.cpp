@@ -12,7 +12,6 @@
 
 #include "engine/processor.hpp"
 #include "engine/speed_class.hpp"
-#include "ensemble/batch_obstacle.hpp"
 #include "ensemble/greatest_peaks.hpp"
 #include "integrate/modal_peaks.hpp"
 #include "run/signals.hpp"
@@ -66,21 +65,18 @@ void CaseRunner::set_up_limits(std::vector<std::string>& notes) {
 
 void CaseRunner::set_up_batches() {
   if (scene_.exact_in_time()) return;
-  lane_obstacle_ = batch_obstacle(scene_, *beam_);
-  by_batch_kernel_ = lane_obstacle_.empty();
-  if (scene_.has_run_limits()) lane_obstacle_ = "the check of limits needs single runs";
-  if (scene_.sweep->lanes == 0) lane_obstacle_ = "sweep_lanes is 0";
+  by_batch_kernel_ = CaseBatch::obstacle(scene_, *beam_).empty();
+  if (scene_.sweep->lanes == 0)
+    lane_obstacle_ = "sweep_lanes is 0";
+  else if (scene_.has_run_limits())
+    lane_obstacle_ = "the check of limits needs single runs";
   if (!lane_obstacle_.empty()) return;
   scene_of(0, {speeds_.front(), {}});
-  lanes_.emplace(scene_, *beam_);
-  lane_obstacle_ = lanes_->obstacle();
-  if (!lane_obstacle_.empty()) return lanes_.reset();
-  static_deflection_[0] = lanes_->static_deflection();
   double distance = 0.0;
   for (const double speed : speeds_)
-    distance = std::max(distance, speed * (duration(0, speed) + lanes_->steps().longest));
-  lane_obstacle_ = lanes_->prepare_tracks(distance);
-  if (!lane_obstacle_.empty()) lanes_.reset();
+    distance = std::max(distance, speed * (duration(0, speed) + scene_.model.step.value_or(0.0)));
+  lanes_ = CaseBatch::make(scene_, *beam_, distance, lane_obstacle_);
+  if (lanes_) static_deflection_[0] = lanes_->static_deflection();
 }
 
 std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& runs, std::size_t most) {

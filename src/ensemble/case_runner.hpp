@@ -61,7 +61,7 @@ class CaseRunner {
   /// Computes one run. `reached` is called with the simulated time, s, after every step.
   CaseResult run(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached = {});
   /// Whether runs are batched; if not, the reason in words.
-  bool has_lanes() const { return lanes_.has_value(); }
+  bool has_lanes() const { return lanes_ != nullptr; }
   const std::string& lane_obstacle() const { return lane_obstacle_; }
   /// Number of runs in a batch: one, or up to sweep_lanes.
   std::size_t width() const;
@@ -114,7 +114,7 @@ class CaseRunner {
   std::map<std::size_t, modal_engine::MovingForcePassages>
       passages_;                                          // passages of moving forces on modes, for each train
   std::optional<MovingForceLimits> moving_force_limits_;  // only if runs by modes have limits
-  std::optional<CaseBatch> lanes_;
+  std::unique_ptr<CaseBatch> lanes_;
   std::string lane_obstacle_;
   bool by_batch_kernel_ = false;   // runs use the batch kernel, even single ones
   double cutoff_frequency_ = 0.0;  // Hz, of accelerations with a limit; 0: they are not filtered

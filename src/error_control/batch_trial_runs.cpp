@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "engine/processor.hpp"
-#include "ensemble/batch_obstacle.hpp"
 #include "error_control/accuracy.hpp"
 #include "error_control/trial_runs.hpp"
 #include "run/deck_acceleration.hpp"
@@ -144,9 +143,9 @@ BatchTrialRuns::Setup& BatchTrialRuns::setup(const NumericalModel& model) {
   if (first_omega_ == 0.0) first_omega_ = slot->shared->omega->first;
   damping_ = slot->shared->rayleigh;
   slot->shared->prepare(slot->scene, ignored);
-  if (const std::string why = batch_obstacle(slot->scene, *slot->shared); !why.empty()) throw Refused{why};
-  slot->lanes.emplace(slot->scene, *slot->shared);
-  if (!slot->lanes->obstacle().empty()) throw Refused{slot->lanes->obstacle()};
+  std::string why;
+  slot->lanes = CaseBatch::make(slot->scene, *slot->shared, 0.0, why);
+  if (!slot->lanes) throw Refused{why};
   return *slot;
 }
 

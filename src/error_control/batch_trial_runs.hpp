@@ -54,7 +54,7 @@ class BatchTrialRuns {
   struct Setup {
     Scene scene;
     std::optional<SharedBeam> shared;
-    std::optional<CaseBatch> lanes;
+    std::unique_ptr<CaseBatch> lanes;
   };
   struct StoredRuns {
     NumericalModel model;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +13,6 @@
 
 #include "beam/support_line.hpp"
 #include "engine/processor.hpp"
-#include "ensemble/batch_obstacle.hpp"
 #include "ensemble/case_batch.hpp"
 #include "fit/forward_model.hpp"
 #include "fit/spline.hpp"
@@ -29,13 +29,12 @@ struct Point {
   Scene scene;
   std::vector<std::string> ignored;  // notes
   SharedBeam shared;
-  std::optional<CaseBatch> batch;  // none: the run is computed alone
+  std::unique_ptr<CaseBatch> batch;  // null: the run is computed alone
 
   Point(Scene own, double distance) : scene(std::move(own)), shared(PETSC_COMM_SELF, scene, ignored) {
     prepare(shared, scene);
-    if (!batch_obstacle(scene, shared).empty()) return;
-    batch.emplace(scene, shared);
-    if (!batch->obstacle().empty() || !batch->prepare_tracks(distance).empty()) batch.reset();
+    std::string why;
+    batch = CaseBatch::make(scene, shared, distance, why);
   }
 };
 
@@ -54,7 +53,7 @@ std::optional<engine::Response> response_of(const options::MeasuredSeries& serie
 void ForwardModel::find_lanes(const Scene& scene, const SharedBeam& shared) {
   const options::Options given(options::in_force());
   if (given.integer("sweep_lanes") == 0 || shared.beam->rail() != nullptr) return;
-  if (!batch_obstacle(scene, shared).empty()) return;
+  if (!CaseBatch::obstacle(scene, shared).empty()) return;
   std::vector<engine::Response> found;
   for (const options::MeasuredSeries& series : fit_.series) {
     const std::optional<engine::Response> response = response_of(series);
