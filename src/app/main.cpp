@@ -46,8 +46,8 @@ bool first_rank() {
   return rank == 0;
 }
 
-int complain(const traverse::Error& error) {
-  if (first_rank()) traverse::app::complain(error);
+int print_error(const traverse::Error& error) {
+  if (first_rank()) traverse::app::print_error(error);
   return error.status();
 }
 
@@ -89,7 +89,7 @@ int run(traverse::options::Input& input) {
     traverse::options::put_into_petsc(input);
     return traverse::app::run(PETSC_COMM_WORLD, traverse::app::read_scene());
   } catch (const traverse::Error& error) {
-    return complain(error);
+    return print_error(error);
   } catch (const std::exception& failure) {  // the failure may be on this rank only, and other ranks wait for it
     traverse::app::leave_together(PETSC_COMM_WORLD, traverse::app::as_error(failure));
   }
@@ -100,8 +100,8 @@ int after_output(int status) {
   const int lost = traverse::app::lost_output();
   if (status != 0 || lost == 0) return status;
   if (lost == EPIPE) return 128 + SIGPIPE;  // the reader has ended: no message is necessary
-  return complain(traverse::FileError(std::string("standard output could not be written: ") + std::strerror(lost) +
-                                      "; the results file, if one was asked for, is complete"));
+  return print_error(traverse::FileError(std::string("standard output could not be written: ") + std::strerror(lost) +
+                                         "; the results file, if one was asked for, is complete"));
 }
 
 }  // namespace
@@ -133,8 +133,8 @@ int main(int argc, char** argv) {
   } catch (const traverse::Error& error) {  // before MPI_Init
     // Open MPI 5 ends all ranks if one rank ends; the others wait until the first rank has printed the message.
     if (!first_rank()) std::this_thread::sleep_for(std::chrono::seconds(1));
-    return complain(error);
+    return print_error(error);
   } catch (const std::exception& failure) {
-    return complain(traverse::app::as_error(failure));
+    return print_error(traverse::app::as_error(failure));
   }
 }

@@ -13,17 +13,17 @@ constexpr int most_halvings = 4;  // limit of halvings of a selected time step
 }  // namespace
 
 int run_in_time(Job job) {
-  const bool goes_on = job.earlier != nullptr;
+  const bool is_continued = job.earlier != nullptr;
   Scene scene = job.scene;
   Accuracy accuracy = job.accuracy;
-  results::Repeated repeated = goes_on ? job.earlier->repeated : results::Repeated();
+  results::Repeated repeated = is_continued ? job.earlier->repeated : results::Repeated();
   std::optional<SharedBeam> own;
   if (repeated.with_mechanisms) {
     std::vector<std::string> ignored;
     scene.model.vehicles = VehicleModel::full;  // instead of linear vehicles
     own.emplace(job.comm, scene, ignored);
   }
-  int halvings = goes_on || !scene.step_open ? 0 : most_halvings;
+  int halvings = is_continued || !scene.step_open ? 0 : most_halvings;
   SharedBeam& beam_of_first = own ? *own : job.beam;
   Job first{job.comm, scene, std::move(job.place), accuracy, beam_of_first, std::move(job.notes), job.earlier};
   RunEnd end = run_once(first, repeated, halvings > 0);

@@ -40,7 +40,7 @@ struct ReadyRun {
   /// Collective. The job must outlive this object. Throws InputError if the job cannot be run. Prints the notes.
   explicit ReadyRun(Job& given);
 
-  bool goes_on() const { return job.earlier != nullptr; }
+  bool is_continued() const { return job.earlier != nullptr; }
 
   Job& job;
   int rank = 0;
@@ -66,12 +66,12 @@ ReadyRun::ReadyRun(Job& given)
                  given.notes, earlier ? &*earlier : nullptr) {
   MPI_Comm_rank(job.comm, &rank);
   if (earlier && scene.model.step && earlier->time_step < *scene.model.step) accuracy.reject_all();
-  if (goes_on() && !(simulation.plan().end_time > job.earlier->time))
+  if (is_continued() && !(simulation.plan().end_time > job.earlier->time))
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  simulation.plan().end_time));
   for (const std::string& note : options::notes_on_unused(options::in_force())) job.notes.push_back(note);
   if (counting > 0.0 && !simulation.evaluation().filters_deck()) accuracy.estimates[low_passed].accepted = false;
-  if (goes_on()) {
+  if (is_continued()) {
     base::Archive archive(job.comm, job.earlier->of_ranks);
     simulation.keep(archive);
     if (simulation.passage().stopped_at_limit())
@@ -117,7 +117,7 @@ results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
     layout.interval = plan.interval * static_cast<double>(plan.stored);
     layout.rows = static_cast<std::size_t>(plan.end_time / layout.interval) + 2;
   }
-  if (ready.goes_on()) return {job.comm, std::move(job.place), layout, job.earlier->results};
+  if (ready.is_continued()) return {job.comm, std::move(job.place), layout, job.earlier->results};
   results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, ready.scene),
                              ready.scene.options);
   recorder.of_scene(digest_of(ready.scene));
@@ -183,8 +183,8 @@ RecordedRun::RecordedRun(ReadyRun& ready, results::Repeated repeated, bool may_s
       outputs_(outputs_of({scene_, system_.fleet(), ready.job.beam.bridge()})),
       recorder_(recorder_of(ready, outputs_)),
       checkpoints_(ready.job.comm, scene_, simulation_, recorder_, so_far(ready.job, repeated)),
-      before_(ready.goes_on() ? ready.job.earlier->wall_seconds : 0.0),
-      reached_(ready.goes_on() ? ready.job.earlier->time : 0.0),
+      before_(ready.is_continued() ? ready.job.earlier->wall_seconds : 0.0),
+      reached_(ready.is_continued() ? ready.job.earlier->time : 0.0),
       progress_(reached_, simulation_.plan().end_time, scene_.quiet || !prints()) {
   if (ready.job.beam.beam) ready.job.beam.beam->release_matrices();
 }
@@ -225,7 +225,7 @@ void RecordedRun::summarise(const std::string& ended) {
   const std::vector<std::string> invalid = invalidate();
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
-  const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.model.residual_limit);
+  const bool counts = !repeated_ && (!reaches_end_ || summary.linearisation_residual <= scene_.model.residual_limit);
   std::vector<results::Verdict> verdicts;
   std::optional<norm::NormCheck> check;
   if (reaches_end_ && counts) {
@@ -315,7 +315,7 @@ RunEnd RecordedRun::run() {
   print_notes_of_run(has_checkpoint);
   if (reaches_end_ && !at_limit) checkpoints_.forget();
   noted_.reset();
-  if (reaches_end_ && result_.summary.linear_defect > scene_.model.residual_limit)
+  if (reaches_end_ && result_.summary.linearisation_residual > scene_.model.residual_limit)
     return {0, Retry::mechanisms, {}, 0.0};
   check_deflection(comm, scene_, result_.summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&

@@ -127,25 +127,25 @@ std::vector<CaseResult> CaseRunner::run_batch(std::size_t train, std::span<const
     batch.push_back(
         {&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed, one.speed_of_steps()}});
   std::vector<CaseResult> results;
-  for (const engine::BatchResult& crossing :
+  for (const engine::BatchResult& batched :
        CaseBatch::ready(std::span<const CaseBatch::Member>(batch), batch.front().lanes->steps()).run()) {
     if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const auto& [runner, one] = members[results.size()];
-    if (crossing.failure != engine::none || runner->lanes_->residual(crossing) > runner->scene_.model.residual_limit) {
+    if (batched.failure != engine::none || runner->lanes_->residual(batched) > runner->scene_.model.residual_limit) {
       ++runner->separate_runs_;
       results.push_back(runner->run(train, one, reached));
     } else {
-      results.push_back(runner->result_of(crossing, train));
+      results.push_back(runner->result_of(batched, train));
     }
   }
   return results;
 }
 
-CaseResult CaseRunner::result_of(const engine::BatchResult& crossing, std::size_t train) const {
+CaseResult CaseRunner::result_of(const engine::BatchResult& batched, std::size_t train) const {
   CaseResult result;
-  static_cast<base::PassagePeaks&>(result) = crossing;
+  static_cast<base::PassagePeaks&>(result) = batched;
   result.static_deflection = static_deflection_.at(train);
-  result.outside_trials = crossing.contact_losses > 0.0 && !scene_.model.trials_lost_contact;
+  result.outside_trials = batched.contact_losses > 0.0 && !scene_.model.trials_lost_contact;
   result.ended = true;
   return result;
 }

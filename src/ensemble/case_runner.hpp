@@ -99,7 +99,7 @@ class CaseRunner {
   void hide_unknown(CaseResult& result) const;
   static std::vector<CaseResult> run_batch(std::size_t train, std::span<const Member> members,
                                            const std::function<void(double)>& reached);
-  CaseResult result_of(const engine::BatchResult& crossing, std::size_t train) const;
+  CaseResult result_of(const engine::BatchResult& batched, std::size_t train) const;
   void set_up_batches();
   void set_up_limits(std::vector<std::string>& notes);
   /// Whether runs are exact in time, and the modes are sufficient for all results.

@@ -128,7 +128,7 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_cost) {
   Result found = run.result();
   result.peaks = std::move(found.peaks);
   result.lost_contact = found.lost_contact;
-  result.residual = found.summary.linear_defect;
+  result.residual = found.summary.linearisation_residual;
   if (found.summary.energy_scale > 0.0)
     result.energy_missing = found.summary.energy_residual / found.summary.energy_scale;
   return result;

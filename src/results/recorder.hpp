@@ -105,11 +105,11 @@ struct Summary {
       unloading;  // for unfiltered forces at the ends of steps; empty if the initial state is not an equilibrium
   std::optional<FilteredUnloading> filtered_unloading;
   int contact_losses = 0;
-  double longest_loss = 0.0;      // s
-  double energy_residual = 0.0;   // largest |residual|, J
-  double structure_energy = 0.0;  // largest kinetic and strain energy, J
-  double linear_defect = 0.0;     // largest residual of linear vehicles' mechanisms, over their weights
-  double energy_left = 0.0;       // removed outside the active window, J
+  double longest_loss = 0.0;            // s
+  double energy_residual = 0.0;         // largest |residual|, J
+  double structure_energy = 0.0;        // largest kinetic and strain energy, J
+  double linearisation_residual = 0.0;  // largest residual of linear vehicles' mechanisms, over their weights
+  double energy_left = 0.0;             // removed outside the active window, J
   /// The removed energy relative to the structure's motion: the square root of energy_left over structure_energy.
   double rest_error() const;
   double energy_scale =

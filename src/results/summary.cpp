@@ -64,7 +64,7 @@ std::vector<Attribute> attributes_of(const Summary& summary) {
   add("longest_loss", summary.longest_loss);
   add("energy_residual", summary.energy_residual);
   add("energy_left", summary.energy_left);
-  if (summary.linear_defect > 0.0) add("linear_defect", summary.linear_defect);
+  if (summary.linearisation_residual > 0.0) add("linear_defect", summary.linearisation_residual);
   add("rest_error", summary.rest_error());
   add("energy_scale", summary.energy_scale);
   add("static_error", summary.static_error);

@@ -241,9 +241,9 @@ void print_summary(const Summary& summary, const std::string& file) {
   if (summary.energy_left != 0.0)
     line("put to rest", fmt::format("{:<18}about {:.1e} of the structure's motion",
                                     fmt::format("{:.2e} J", summary.energy_left), summary.rest_error()));
-  if (summary.linear_defect != 0.0)
+  if (summary.linearisation_residual != 0.0)
     line("linear vehicles",
-         fmt::format("{:<18.1e}of the weights: residual of the linearised vehicles", summary.linear_defect));
+         fmt::format("{:<18.1e}of the weights: residual of the linearised vehicles", summary.linearisation_residual));
   if (summary.energy_residual != 0.0 || summary.energy_scale > 0.0) line("energy residual", energy_text(summary));
   line("steps", cost_text(summary));
   if (!summary.ended.empty()) line("the run", summary.ended);

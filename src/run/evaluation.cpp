@@ -206,10 +206,10 @@ void Evaluation::record_energy() {
 
 void Evaluation::step(double t) {
   if (summary_.energy_residual > diverging_imbalance * summary_.energy_scale + rounding * summary_.largest_energy)
-    throw StepTooLong(
-        fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
-                    "integrator, use a smaller -ts_dt or an implicit -ts_type",
-                    now_.energy.residual, time_));
+    throw StepTooLong(fmt::format(
+        "the motion diverges: {:g} J have appeared without a source by t = {:g} s; the step is too long for this "
+        "integrator, use a smaller -ts_dt or an implicit -ts_type",
+        now_.energy.residual, time_));
   add_wheels(t);
 }
 

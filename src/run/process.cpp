@@ -47,12 +47,12 @@ std::string broadcast_text(MPI_Comm comm, std::string text) {
   return text;
 }
 
-void complain(const Error& error) { (void)std::fputs(fmt::format("traverse: {}\n", error.what()).c_str(), stderr); }
+void print_error(const Error& error) { (void)std::fputs(fmt::format("traverse: {}\n", error.what()).c_str(), stderr); }
 
 void leave_together(MPI_Comm comm, const Error& error) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
-  complain(error);
+  print_error(error);
   if (ranks > 1) MPI_Abort(comm, error.status());
   std::fflush(nullptr);
   std::_Exit(error.status());  // HDF5 may crash when it closes a file that it could not write

@@ -19,7 +19,7 @@ void print_notes(MPI_Comm comm, const Scene& scene, const std::vector<std::strin
 /// Collective. The text of rank 0 on all ranks.
 std::string broadcast_text(MPI_Comm comm, std::string text);
 /// Prints one line on standard error, if possible.
-void complain(const Error& error);
+void print_error(const Error& error);
 /// Ends all ranks if a file cannot be written. Only the writing rank detects this, and the others would wait for it.
 [[noreturn]] void leave_together(MPI_Comm comm, const Error& error);
 

@@ -49,7 +49,7 @@ Result Simulation::result() {
   summary.rejected_steps = passage_.rejected();
   summary.solves = system().beam_solves();
   summary.factorisations = system().factorisations();
-  summary.linear_defect = system().linearisation_residual();
+  summary.linearisation_residual = system().linearisation_residual();
   summary.static_error = system().static_error();
   const structure::Structure* structure = system().structure();
   if (structure != nullptr && structure->energy_left()) {
