@@ -38,8 +38,7 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std:
     for (const double x : wheels_at_start(scene)) last_wheel_ = std::min(last_wheel_, x);
   if (beam_ == nullptr) {
     beam_ = std::make_shared<SharedBeam>(PETSC_COMM_SELF, scene_, notes);
-    beam_->damp(scene_, !scene_.model.step || scene_.model.modes > 0, notes);
-    beam_->prepare(scene_, notes);
+    beam_->set_up(scene_, !scene_.model.step || scene_.model.modes > 0, notes);
     if (scene_.exact_in_time())
       beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
   }

@@ -147,8 +147,7 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   Scene known = scene;
   set_first_mesh(known);
   SharedBeam shared(comm, known, ignored);
-  shared.damp(known, true, ignored);
-  shared.prepare(known, ignored);
+  shared.set_up(known, true, ignored);
   known.damping.ratios.reset();
   known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
   set_low_pass(comm, known, ignored);

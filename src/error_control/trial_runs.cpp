@@ -100,8 +100,7 @@ Scene restrict_to_window(const Scene& scene, double end) {
 RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_cost) {
   std::vector<std::string> ignored;
   SharedBeam shared(comm, scene, ignored);
-  shared.damp(scene, false, ignored);
-  shared.prepare(scene, ignored);
+  shared.set_up(scene, false, ignored);
   const double cutoff = filters_deck(scene) ? scene.output.low_pass.value_or(0.0) : 0.0;
   Simulation run(scene, shared, {.deck_cutoff = cutoff, .deck_spacing = interval_ratio, .filter_on_all = true},
                  ignored);

@@ -32,7 +32,7 @@ struct Point {
   std::unique_ptr<CaseBatch> batch;  // null: the run is computed alone
 
   Point(Scene own, double distance) : scene(std::move(own)), shared(PETSC_COMM_SELF, scene, ignored) {
-    prepare(shared, scene);
+    shared.set_up(scene, !scene.model.step || scene.model.modes > 0, ignored);
     std::string why;
     batch = CaseBatch::make(scene, shared, distance, why);
   }

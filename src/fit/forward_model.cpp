@@ -79,12 +79,6 @@ std::vector<std::string> controlled_peaks(const options::Fit& fit) {
 
 }  // namespace
 
-void prepare(SharedBeam& shared, const Scene& scene) {
-  std::vector<std::string> ignored;
-  shared.damp(scene, !scene.model.step || scene.model.modes > 0, ignored);
-  shared.prepare(scene, ignored);
-}
-
 ForwardModel::ForwardModel(const Scene& scene, std::vector<std::string>& notes) : fit_(*scene.fit), name_(scene.name) {
   choose(notes);
   if (!fit_.series.empty()) set_interval();
@@ -149,7 +143,7 @@ void ForwardModel::set_interval() {
   const Scene first = scene(start(), false);
   std::vector<std::string> ignored;
   SharedBeam shared(PETSC_COMM_SELF, first, ignored);
-  prepare(shared, first);
+  shared.set_up(first, !first.model.step || first.model.modes > 0, ignored);
   Passage passage(first, shared, ignored);
   const Outputs outputs = outputs_of({first, passage.system().fleet(), shared.bridge()});
   for (const options::MeasuredSeries& series : fit_.series)
@@ -219,7 +213,7 @@ void ForwardModel::add_series(const std::vector<double>& values, std::vector<dou
   const Scene own = scene(values, false);
   std::vector<std::string> ignored;
   SharedBeam shared(PETSC_COMM_SELF, own, ignored);
-  prepare(shared, own);
+  shared.set_up(own, !own.model.step || own.model.modes > 0, ignored);
   Simulation simulation(own, shared, {.stored = true}, ignored);
   const Outputs outputs = outputs_of({own, simulation.system().fleet(), shared.bridge()});
   std::vector<std::size_t> channels;

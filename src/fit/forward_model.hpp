@@ -65,7 +65,4 @@ class ForwardModel {
   double step_speed_ = 0.0, fastest_ = 0.0;  // m/s: of the steps of all batches; of any point
 };
 
-/// Computes everything that a passage needs.
-void prepare(SharedBeam& shared, const Scene& scene);
-
 }  // namespace traverse::app

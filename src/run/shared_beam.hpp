@@ -26,6 +26,11 @@ struct SharedBeam {
   void damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes);
   /// Collective, after damp. Computes factorisation or modes for transient and static runs.
   void prepare(const Scene& scene, std::vector<std::string>& notes);
+  /// Both, which is all that a run needs.
+  void set_up(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
+    damp(scene, frequencies_wanted, notes);
+    prepare(scene, notes);
+  }
 
   /// The damping ratios of the first distinct modes, or of the modes that represent the bridge (after prepare), by the
   /// beam's own damping and by dampers. Springs add none. Empty: unknown.
