@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/broadcast.hpp"
 #include "coupling/system.hpp"
 #include "engine/linear_train.hpp"
 
@@ -81,14 +82,9 @@ void System::keep(base::Archive& archive, double* y) {
 std::string System::failure_reason() const {
   std::string text = fleet_.failure_reason();
   if (share_.distributed()) {  // the first rank with a reason sends it to the others
-    std::array<int, 2> sender = {text.empty() ? ranks_ : rank_, 0};
-    MPI_Allreduce(MPI_IN_PLACE, sender.data(), 1, MPI_INT, MPI_MIN, comm_);
-    if (sender[0] < ranks_) {
-      sender[1] = static_cast<int>(text.size());
-      MPI_Bcast(&sender[1], 1, MPI_INT, sender[0], comm_);
-      text.resize(static_cast<std::size_t>(sender[1]));
-      MPI_Bcast(text.data(), sender[1], MPI_CHAR, sender[0], comm_);
-    }
+    int sender = text.empty() ? ranks_ : rank_;
+    MPI_Allreduce(MPI_IN_PLACE, &sender, 1, MPI_INT, MPI_MIN, comm_);
+    if (sender < ranks_) text = base::broadcast(comm_, std::move(text), sender);
   }
   if (!text.empty()) return text;
   return "the contact iteration does not converge: try a smaller -ts_dt, softer contacts, or look at the state just "

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/broadcast.hpp"
 #include "ensemble/work_queue.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
@@ -80,11 +81,8 @@ RunFailure first_of(MPI_Comm comm, RunFailure mine) {
   int earliest[2] = {mine.piece, rank};
   MPI_Allreduce(MPI_IN_PLACE, earliest, 1, MPI_2INT, MPI_MINLOC, comm);
   if (earliest[0] == RunFailure::none) return {};
-  int sizes[2] = {static_cast<int>(mine.message.size()), mine.status};
-  MPI_Bcast(sizes, 2, MPI_INT, earliest[1], comm);
-  mine.message.resize(static_cast<std::size_t>(sizes[0]));
-  MPI_Bcast(mine.message.data(), sizes[0], MPI_CHAR, earliest[1], comm);
-  return {earliest[0], sizes[1], mine.message};
+  MPI_Bcast(&mine.status, 1, MPI_INT, earliest[1], comm);
+  return {earliest[0], mine.status, base::broadcast(comm, std::move(mine.message), earliest[1])};
 }
 
 }  // namespace traverse::app

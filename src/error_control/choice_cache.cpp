@@ -15,6 +15,7 @@
 #include <span>
 #include <utility>
 
+#include "base/broadcast.hpp"
 #include "base/digest.hpp"
 #include "base/notes.hpp"
 #include "base/one_step_methods.hpp"
@@ -113,10 +114,7 @@ ChoiceCache::ChoiceCache(MPI_Comm comm, const Scene& scene) {
   if (!std::filesystem::is_symlink(folder, ignored)) path_ = (folder / key).string();
   key_ = fmt::format("{} {:.17g} {} ", TRAVERSE_VERSION, scene.accuracy, key);
   if (writes_ && !path_.empty()) content_ = read_file();
-  auto size = static_cast<int>(content_.size());
-  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-  content_.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(content_.data(), size, MPI_CHAR, 0, comm);
+  content_ = base::broadcast(comm, std::move(content_));
 }
 
 std::string ChoiceCache::digest_of_choice(std::string_view bytes) const {

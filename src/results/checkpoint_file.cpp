@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "base/broadcast.hpp"
 #include "base/bytes.hpp"
 #include "base/digest.hpp"
 #include "base/regular_file.hpp"
@@ -33,14 +34,6 @@ void receive(MPI_Comm comm, std::string& text, int from) {
   for (std::size_t i = 0; i < text.size(); i += max_message)
     MPI_Recv(text.data() + i, static_cast<int>(std::min(max_message, text.size() - i)), MPI_CHAR, from, 0, comm,
              MPI_STATUS_IGNORE);
-}
-
-void broadcast(MPI_Comm comm, std::string& text) {
-  unsigned long size = text.size();
-  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG, 0, comm);
-  text.resize(size);
-  for (std::size_t i = 0; i < text.size(); i += max_message)
-    MPI_Bcast(text.data() + i, static_cast<int>(std::min(max_message, text.size() - i)), MPI_CHAR, 0, comm);
 }
 
 /// The states of all ranks, on rank 0.
@@ -176,7 +169,7 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path) {
     failure = error.what();
   }
   share_failure(comm, failure);
-  broadcast(comm, text);
+  text = base::broadcast(comm, std::move(text));
   Checkpoint checkpoint;
   base::Bytes bytes{std::span<const char>(text)};
   bytes(checkpoint.version);

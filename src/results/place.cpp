@@ -14,6 +14,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/broadcast.hpp"
 #include "results/own_file.hpp"
 #include "traverse/base/error.hpp"
 
@@ -251,14 +252,7 @@ Place claim_place(MPI_Comm comm, const std::string& path) {
 }
 
 void share_failure(MPI_Comm comm, std::string failure) {
-  int ranks = 1;
-  MPI_Comm_size(comm, &ranks);
-  if (ranks > 1) {
-    int size = static_cast<int>(failure.size());
-    MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-    failure.resize(static_cast<std::size_t>(size));
-    MPI_Bcast(failure.data(), size, MPI_CHAR, 0, comm);
-  }
+  failure = base::broadcast(comm, std::move(failure));
   if (!failure.empty()) throw FileError(failure);
 }
 

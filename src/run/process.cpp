@@ -39,14 +39,6 @@ void print_notes(MPI_Comm comm, const Scene& scene, const std::vector<std::strin
   results::print_modelled(lines);
 }
 
-std::string broadcast_text(MPI_Comm comm, std::string text) {
-  int size = static_cast<int>(text.size());
-  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-  text.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(text.data(), size, MPI_CHAR, 0, comm);
-  return text;
-}
-
 void print_error(const Error& error) { (void)std::fputs(fmt::format("traverse: {}\n", error.what()).c_str(), stderr); }
 
 void leave_together(MPI_Comm comm, const Error& error) {

@@ -16,8 +16,6 @@ namespace traverse::app {
 std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene);
 /// Rank 0 of comm prints the description of the model, without unusual input, which is printed before.
 void print_notes(MPI_Comm comm, const Scene& scene, const std::vector<std::string>& notes);
-/// Collective. The text of rank 0 on all ranks.
-std::string broadcast_text(MPI_Comm comm, std::string text);
 /// Prints one line on standard error, if possible.
 void print_error(const Error& error);
 /// Ends all ranks if a file cannot be written. Only the writing rank detects this, and the others would wait for it.

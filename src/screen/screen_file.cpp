@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "base/broadcast.hpp"
 #include "results/study_reader.hpp"
 #include "run/model_record.hpp"
 #include "run/process.hpp"
@@ -104,10 +105,7 @@ std::map<std::size_t, std::vector<double>> stored_rows(MPI_Comm comm, const Prob
       why = error.what();
     }
   }
-  int size = static_cast<int>(why.size());
-  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-  why.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(why.data(), size, MPI_CHAR, 0, comm);
+  why = base::broadcast(comm, std::move(why));
   if (!why.empty())
     throw InputError(fmt::format(
         "screen_resume: {} contains another screen: {}; without screen_resume all bridges are computed again",

@@ -10,6 +10,7 @@
 #include <map>
 #include <utility>
 
+#include "base/broadcast.hpp"
 #include "run/process.hpp"
 #include "traverse/base/error.hpp"
 
@@ -210,7 +211,7 @@ std::string search_obstacle(const StudyTable& table) {
 void check_answers(MPI_Comm comm, const StudyTable& table) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  const std::string why = broadcast_text(comm, rank == 0 ? search_obstacle(table) : "");
+  const std::string why = base::broadcast(comm, rank == 0 ? search_obstacle(table) : "");
   if (!why.empty()) throw SolverError(why);
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "base/broadcast.hpp"
 #include "base/notes.hpp"
 #include "engine/processor.hpp"
 #include "error_control/choice_cache.hpp"
@@ -167,7 +168,7 @@ class Rounds {
   /// values that an interrupted study has added: the file always contains all known runs.
   std::size_t copy_stored() {
     if (scenes_.study().sensitivity) return 0;  // its file has no single runs
-    if (adds_values(scenes_.study())) add(on_all_ranks(added_before()));
+    if (adds_values(scenes_.study())) add(base::broadcast(comm_, added_before()));
     known_ = copy_known(comm_, stored_, *table_);
     return static_cast<std::size_t>(std::count(known_.begin(), known_.end(), 1));
   }
@@ -176,7 +177,7 @@ class Rounds {
     if (!scenes_.study().find) return;
     int rank = 0;
     MPI_Comm_rank(comm_, &rank);
-    const std::string why = broadcast_text(comm_, rank == 0 ? undetermined_in_first_and_last() : "");
+    const std::string why = base::broadcast(comm_, rank == 0 ? undetermined_in_first_and_last() : "");
     if (!why.empty()) throw InputError(why);
   }
   /// Collective. Computes all rounds and leaves their file open.
@@ -227,7 +228,7 @@ class Rounds {
       const std::size_t known = study.dimensions[extended_dimension(study)].values.size();
       if (known + values.size() > max_values_of(study, given_.size())) values.clear();
     }
-    return on_all_ranks(std::move(values));
+    return base::broadcast(comm_, std::move(values));
   }
   /// On rank 0: the values of finished runs of the file that are between the given ones.
   std::vector<double> added_before() const {
@@ -240,14 +241,6 @@ class Rounds {
       if (finished->second[run] == 1.0 && all[run] > given_.front() && all[run] < given_.back()) added.insert(all[run]);
     for (const double value : given_) added.erase(value);
     return {added.begin(), added.end()};
-  }
-  /// Collective. The values of rank 0.
-  std::vector<double> on_all_ranks(std::vector<double> values) const {
-    int size = static_cast<int>(values.size());
-    MPI_Bcast(&size, 1, MPI_INT, 0, comm_);
-    values.resize(static_cast<std::size_t>(size));
-    MPI_Bcast(values.data(), size, MPI_DOUBLE, 0, comm_);
-    return values;
   }
   std::string undetermined_in_first_and_last() {
     results::StudyTable tried = *table_;

@@ -9,6 +9,7 @@
 #include <map>
 #include <string_view>
 
+#include "base/broadcast.hpp"
 #include "results/sensitivity.hpp"
 #include "results/study_statistics.hpp"
 #include "results/sweep.hpp"
@@ -106,7 +107,7 @@ results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results:
       why = error.what();
     }
   }
-  why = broadcast_text(comm, std::move(why));
+  why = base::broadcast(comm, std::move(why));
   if (!why.empty())
     throw InputError(
         fmt::format("study_resume: {} contains other runs: {}; without study_resume all runs are computed again",
