@@ -1,6 +1,5 @@
 // Steps: begin of a trial, acceptance, archive.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "base/broadcast.hpp"
