@@ -11,7 +11,7 @@ int run_envelope(Job job) {
   SharedBeam& shared = job.beam;
   shared.damp(scene, false, job.notes);
   if (!scene.vehicles.empty()) shared.prepare(scene, job.notes);
-  for (const std::string& note : options::notes_on_unused(options::in_force())) job.notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(*scene.given)) job.notes.push_back(note);
   print_notes(job.comm, scene, job.notes);
   const norm::NormCheck check = norm_check(scene, static_trains(scene, shared));
   if (check.effects().loads.empty())

@@ -82,7 +82,7 @@ ReadyRun::ReadyRun(Job& given)
   if (is_continued() && !(simulation.plan().end_time > job.earlier->time))
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  simulation.plan().end_time));
-  for (const std::string& note : options::notes_on_unused(options::in_force())) job.notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(*scene.given)) job.notes.push_back(note);
   if (counting > 0.0 && !simulation.evaluation().filters_deck()) accuracy.estimates[low_passed].accepted = false;
   if (is_continued()) {
     base::Archive archive(job.comm, job.earlier->of_ranks);

@@ -31,7 +31,7 @@ int check_screen(MPI_Comm comm, const Scene& scene) {
 int run_screen(Job job) {
   const screen::Problem problem = screen::read_problem(job.scene);
   for (const std::string& line : screen::description(problem)) job.notes.push_back(line);
-  for (const std::string& note : options::notes_on_unused(options::in_force())) job.notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(*job.scene.given)) job.notes.push_back(note);
   if (job.scene.screen->pair.empty()) {
     const std::vector<std::string> unusual = screen::unusual_in(problem);
     results::print_unusual(unusual);

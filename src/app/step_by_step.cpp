@@ -15,13 +15,13 @@ namespace {
 constexpr double same_sample = 1e-6;  // relative to the interval: times closer than this are the same sample
 
 void check_goes_in_time(const Scene& scene) {
-  const char* other = scene.study                                      ? "a study"
-                      : scene.fit                                      ? "a fit"
-                      : scene.sweep                                    ? "a sweep"
-                      : scene.check                                    ? "-check"
-                      : options::in_force().find("restart") != nullptr ? "-restart"
-                      : scene.analysis != Analysis::transient          ? "scene_analysis"
-                                                                       : nullptr;
+  const char* other = scene.study                               ? "a study"
+                      : scene.fit                               ? "a fit"
+                      : scene.sweep                             ? "a sweep"
+                      : scene.check                             ? "-check"
+                      : scene.find_option("restart") != nullptr ? "-restart"
+                      : scene.analysis != Analysis::transient   ? "scene_analysis"
+                                                                : nullptr;
   if (other != nullptr) throw InputError(fmt::format("traverse_open computes one run in time; remove {}", other));
 }
 

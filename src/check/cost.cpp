@@ -42,7 +42,7 @@ double step_seconds(const FirstRun& run) {
   if (scene.exact_in_time())
     return modal_instant_seconds(scene, static_cast<double>(run.shared->modal->modes()),
                                  run.shared->modal->dampers_couple());
-  const options::Entry* type = options::in_force().find("ts_type");
+  const options::Entry* type = scene.find_option("ts_type");
   const std::string method = type == nullptr ? scene.model.method : type->value;
   const bool by_petsc = type != nullptr && structure::find_method(method) == nullptr;
   const double moving = scene.beam && !stage_work(scene).cut

@@ -45,7 +45,7 @@ FirstRun::FirstRun(const Scene& given) : whole(checked_scene(given)), scene(firs
     whole = with(whole, modes_for_damping(PETSC_COMM_SELF, scene, notes).model);
     scene = first_run(whole);
   }
-  has_trial_runs = chooses(scene) && adaptive_step_option() == nullptr;
+  has_trial_runs = chooses(scene) && adaptive_step_option(scene) == nullptr;
   if (has_trial_runs) set_first_mesh(scene);
   shared = std::make_unique<SharedBeam>(PETSC_COMM_SELF, scene, notes);
   const bool has_motion = scene.analysis != Analysis::modes;
@@ -57,14 +57,14 @@ FirstRun::FirstRun(const Scene& given) : whole(checked_scene(given)), scene(firs
     passage = std::make_unique<Passage>(scene, *shared, notes);
     passage->start(notes);
   }
-  for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(*scene.given)) notes.push_back(note);
   notes.insert(notes.end(), whole.notes.begin(), whole.notes.end());
   if (shared->beam) find_frequencies();
 }
 
 void FirstRun::choose_mesh_and_step() {
   if (scene.analysis != Analysis::transient) return;
-  if (chooses_multibody_step(scene) && adaptive_step_option() == nullptr) {
+  if (chooses_multibody_step(scene) && adaptive_step_option(scene) == nullptr) {
     scene.model.step = first_multibody_step(scene);
     choice.push_back(fmt::format(
         "initial steps of {:.3g} s; runs of the whole scene halve them until the errors of positions and forces "
@@ -74,7 +74,7 @@ void FirstRun::choose_mesh_and_step() {
   }
   if (!has_trial_runs) {
     if (scene.model.step) choice.push_back(fmt::format("steps of {:g} s, as given", *scene.model.step));
-    if (const options::Entry* option = adaptive_step_option(); option != nullptr && chooses(scene))
+    if (const options::Entry* option = adaptive_step_option(scene); option != nullptr && chooses(scene))
       choice.push_back(fmt::format("no trial runs for accuracy {:g}: {}", scene.accuracy, option->given()));
     return;
   }

@@ -77,10 +77,10 @@ void set_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) 
   scene.output.low_pass = cutoff_frequency(known, shared, affordable, notes);
 }
 
-const options::Entry* adaptive_step_option() {
-  const options::Entry* control = options::in_force().find("ts_adapt_type");
+const options::Entry* adaptive_step_option(const Scene& scene) {
+  const options::Entry* control = scene.find_option("ts_adapt_type");
   if (control != nullptr && control->value != "none") return control;
-  return options::in_force().find("ts_arkimex_fully_implicit");
+  return scene.find_option("ts_arkimex_fully_implicit");
 }
 
 namespace {
@@ -133,7 +133,7 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
     if (const Choice by_modes = modes_for_damping(comm, scene, notes); by_modes.model.modes > 0) return by_modes;
   const bool without_bridge = chooses_multibody_step(scene);
   if (!without_bridge && !chooses(scene)) return none;
-  if (const options::Entry* option = adaptive_step_option()) {
+  if (const options::Entry* option = adaptive_step_option(scene)) {
     notes.push_back(fmt::format(
         "accuracy {:g} has no effect: trial runs do not choose mesh and step, and errors are not estimated: {}",
         scene.accuracy, option->given()));

@@ -44,7 +44,7 @@ void set_first_mesh(Scene& scene);
 void set_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
 
 /// The option by which the integrator controls its steps itself or treats contacts separately; null: none.
-const options::Entry* adaptive_step_option();
+const options::Entry* adaptive_step_option(const Scene& scene);
 
 /// Collective. Chooses mesh, step and tolerances that the scene does not prescribe, and returns the model. Appends the
 /// choice to `notes`. Throws the InputError that the scene's own run would throw.

@@ -25,7 +25,7 @@ constexpr std::array shares = {1.0, 0.5};
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.model.step && scene.model.modes == 0 &&
          scene.mesh_open && scene.model.vehicles != VehicleModel::full && scene.beam &&
-         options::in_force().find("ts_type") == nullptr;
+         scene.find_option("ts_type") == nullptr;
 }
 
 /// Groups of at most `most` neighbouring speeds of one step group, around each of the given relative positions in

@@ -53,8 +53,7 @@ double greatest_difference(const Scene& scene, const CaseResult& one, const Case
 /// Whether modes are allowed for the scene. read_modal has the same conditions.
 bool modes_allowed(const Scene& scene) {
   return scene.vehicles.empty() && !scene.load.forces.empty() && scene.load.courses.empty() && !scene.beam->track &&
-         !scene.beam->foundation.nonlinear() && !scene.beam->strained() &&
-         options::in_force().find("ts_type") == nullptr;
+         !scene.beam->foundation.nonlinear() && !scene.beam->strained() && scene.find_option("ts_type") == nullptr;
 }
 
 bool is_worth_trying(const Scene& scene, const Accuracy& accuracy) {

@@ -49,7 +49,7 @@ bool takes_modes_for_damping(const Scene& scene) {
   if (!scene.beam || scene.beam->given || scene.beam->track || pushes_along(scene)) return false;
   const bool forces_alone = scene.vehicles.empty();
   if (forces_alone && (scene.load.forces.empty() || !scene.load.courses.empty())) return false;
-  return !forces_alone || options::in_force().find("ts_type") == nullptr;
+  return !forces_alone || scene.find_option("ts_type") == nullptr;
 }
 
 Choice modes_for_damping(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {

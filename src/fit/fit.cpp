@@ -136,7 +136,7 @@ void describe(const options::Fit& fit, const ForwardModel& model, std::vector<st
         fmt::format("every run lasts {:.3g} s, as the records do, and the passage {:.3g} s; fit_to_..._from "
                     "and fit_to_..._to shorten the records",
                     end, model.duration()));
-  for (const std::string& note : options::notes_on_unused(options::in_force()))
+  for (const std::string& note : options::notes_on_unused(model.given()))
     if (!note.starts_with("tao_")) notes.push_back(note);
 }
 

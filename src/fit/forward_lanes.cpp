@@ -51,8 +51,7 @@ std::optional<engine::Response> response_of(const options::MeasuredSeries& serie
 
 /// Batches compute a whole layered track, single runs only the part of it that moves: these are faster.
 void ForwardModel::find_lanes(const Scene& scene, const SharedBeam& shared) {
-  const options::Options given(options::in_force());
-  if (given.integer("sweep_lanes") == 0 || shared.beam->rail() != nullptr) return;
+  if (given_.integer("sweep_lanes") == 0 || shared.beam->rail() != nullptr) return;
   if (!CaseBatch::obstacle(scene, shared).empty()) return;
   std::vector<engine::Response> found;
   for (const options::MeasuredSeries& series : fit_.series) {
@@ -67,7 +66,7 @@ void ForwardModel::find_lanes(const Scene& scene, const SharedBeam& shared) {
   }
   step_speed_ = scene.train.speed;
   for (const std::vector<double>& values : {start(), low, high})
-    fastest_ = std::max(fastest_, read_scene_of_fit(given, fit_, values, false).train.speed);
+    fastest_ = std::max(fastest_, read_scene_of_fit(given_, fit_, values, false).train.speed);
   stored_ = std::move(found);
 }
 

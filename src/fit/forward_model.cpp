@@ -79,7 +79,8 @@ std::vector<std::string> controlled_peaks(const options::Fit& fit) {
 
 }  // namespace
 
-ForwardModel::ForwardModel(const Scene& scene, std::vector<std::string>& notes) : fit_(*scene.fit), name_(scene.name) {
+ForwardModel::ForwardModel(const Scene& scene, std::vector<std::string>& notes)
+    : given_(*scene.given), fit_(*scene.fit), name_(scene.name) {
   choose(notes);
   if (!fit_.series.empty()) set_interval();
   if (fit_.frequencies.empty()) return;
@@ -101,11 +102,10 @@ void ForwardModel::choose(std::vector<std::string>& notes) {
     low.push_back(parameter.low);
     high.push_back(parameter.high);
   }
-  const options::Options given(options::in_force());
   const auto finest = [&](bool modes, auto choose_one) {
     std::optional<NumericalModel> all;
     for (const std::vector<double>* values : std::array{&first, &std::as_const(low), &std::as_const(high)}) {
-      Scene scene = read_scene_of_fit(given, fit_, *values, modes);
+      Scene scene = read_scene_of_fit(given_, fit_, *values, modes);
       if (scene.accuracy_of.empty()) scene.accuracy_of = controlled_peaks(fit_);
       std::vector<std::string> own;
       const NumericalModel one = choose_one(scene, own);
@@ -125,8 +125,7 @@ void ForwardModel::choose(std::vector<std::string>& notes) {
 }
 
 Scene ForwardModel::scene(const std::vector<double>& values, bool modes) const {
-  Scene scene = with(read_scene_of_fit(options::Options(options::in_force()), fit_, values, modes),
-                     modes ? model_of_modes_ : model_);
+  Scene scene = with(read_scene_of_fit(given_, fit_, values, modes), modes ? model_of_modes_ : model_);
   scene.name = name_;
   if (modes) {
     for (const options::MeasuredFrequency& frequency : fit_.frequencies)

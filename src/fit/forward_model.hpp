@@ -20,6 +20,8 @@ class ForwardModel {
   /// values of the options. InputError if the scene of one of them cannot be computed. The scene must have a fit.
   ForwardModel(const Scene& scene, std::vector<std::string>& notes);
 
+  /// The options of the fit.
+  const options::Entries& given() const { return given_.entries(); }
   /// The values at the start of the fit.
   std::vector<double> start() const;
   /// The duration of the run at the start of the fit, s.
@@ -54,6 +56,7 @@ class ForwardModel {
   void add_samples(const std::vector<double>& samples, const Scene& scene, double spacing,
                    std::vector<double>& response) const;
 
+  const options::Options given_;
   const options::Fit fit_;
   std::string name_;
   std::vector<std::string> units_;

@@ -87,7 +87,7 @@ class RecordCheck {
   std::string option(const char* row) const { return fmt::format("fit_to_{}_{}", series_.name, row); }
   /// The given factor of the record.
   double factor() const {
-    const options::Entry* const given = options::in_force().find(option("factor"));
+    const options::Entry* const given = model_.given().find(option("factor"));
     double value = 1.0;
     if (given != nullptr) options::parse_number(given->value, value);
     return value;
@@ -131,7 +131,7 @@ class RecordCheck {
 
   /// Whether the record begins after the loads have left, and shows their passage. align: false is an answer to that.
   bool is_another_clock(const Alignment& best) const {
-    const bool answered = options::in_force().find(option("align")) != nullptr;
+    const bool answered = model_.given().find(option("align")) != nullptr;
     return !answered && series_.time.front() >= model_.duration() && best.correlation > the_same &&
            now_.correlation < unrelated && best.shift + 0.5 * model_.duration() > series_.time.front();
   }

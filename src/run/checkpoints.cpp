@@ -27,13 +27,13 @@ constexpr std::array<std::string_view, 11> free_options = {
     "ts_max_time",  "scene_tail",   "scene_name",   "restart",         "checkpoint_interval", "output_file",
     "output_quiet", "options_file", "ts_max_steps", "checkpoint_file", "accuracy_cache"};
 
-std::string option_value(const char* name) {
-  const options::Entry* entry = options::in_force().find(name);
+std::string option_value(const Scene& scene, const char* name) {
+  const options::Entry* entry = scene.find_option(name);
   return entry == nullptr ? std::string() : entry->value;
 }
 
 std::string path_for(const Scene& scene) {
-  std::string name = option_value("checkpoint_file");
+  std::string name = option_value(scene, "checkpoint_file");
   if (name == "none") return "";
   if (!name.empty()) return name;
   return scene.output.file.empty() ? "" : scene.output.file + ".checkpoint";
@@ -56,7 +56,7 @@ void check_distinct_outputs(const std::string& results, const std::string& check
 
 /// InputError if the results file is an input of the run; a continued study or run is an exception.
 void check_output_is_no_input(const Scene& scene) {
-  const bool continued = !option_value("restart").empty() || (scene.study && scene.study->resume);
+  const bool continued = !option_value(scene, "restart").empty() || (scene.study && scene.study->resume);
   if (scene.output.file.empty() || continued) return;
   std::vector<std::string> inputs = {results::opened_origin()};
   for (const options::InputText& input : options::inputs_read()) inputs.push_back(input.name);
@@ -69,7 +69,7 @@ void check_output_is_no_input(const Scene& scene) {
 /// A continued run appends to its results file, unless the command line gives another one. The name in a checkpoint
 /// must be valid as in an options file.
 void set_results_file(const std::string& earlier, const std::string& restart, Scene& scene) {
-  const options::Entry* output = options::in_force().find("output_file");
+  const options::Entry* output = scene.find_option("output_file");
   const bool new_name = output != nullptr && !output->from_file() && !results::is_new_name(*output);
   if (new_name && earlier.empty() && !scene.output.file.empty())
     throw InputError("restart = " + restart +
@@ -105,7 +105,7 @@ results::Place claim_outputs(MPI_Comm comm, const Scene& scene) {
 std::string digest_of(const Scene& scene) { return digest_of(scene, free_options, options::tables_read()); }
 
 std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
-  const std::string path = option_value("restart");
+  const std::string path = option_value(scene, "restart");
   if (path.empty()) return std::nullopt;
   if (scene.study || scene.sweep)
     throw InputError("restart = " + path + ": studies and sweeps have no checkpoints; a study goes on by study_resume");
@@ -126,11 +126,11 @@ Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Simulation& simulati
       simulation_(simulation),
       recorder_(recorder),
       state_(std::move(state)),
-      own_file_(results::id_at(option_value("restart").c_str())),
+      own_file_(results::id_at(option_value(scene, "restart").c_str())),
       interval_(default_interval) {
   if (scene.analysis != Analysis::transient) return;
   path_ = path_for(scene);
-  if (const std::string interval = option_value("checkpoint_interval"); !interval.empty())
+  if (const std::string interval = option_value(scene, "checkpoint_interval"); !interval.empty())
     (void)options::parse_number(interval, interval_);
   if (trouble_ = simulation.passage().no_archive(); !trouble_.empty()) path_.clear();
   state_.digest = digest_of(scene);

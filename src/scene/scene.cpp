@@ -224,11 +224,10 @@ NamedVehicles declare_parts(Options& o) {
   return vehicles;
 }
 
-Scene read_scene(Options o) {
-  if (describes_study(o) && describes_fit(o))
-    o.refuse(o.first_with_prefix("fit_")->name, "a scene is either a study or a fit; remove study_vary or fit_vary");
-  if (describes_study(o)) return read_study(o);
-  if (describes_fit(o)) return read_fit(o);
+namespace {
+
+/// A scene that is neither a study nor a fit.
+Scene read_one_scene(Options o) {
   Scene scene;
   const NamedVehicles vehicles = declare_parts(o);
   o.check_names();
@@ -262,6 +261,17 @@ Scene read_scene(Options o) {
   record_start(scene);
   check_size(o, scene);
   scene.options = o.all();
+  return scene;
+}
+
+}  // namespace
+
+Scene read_scene(Options o) {
+  if (describes_study(o) && describes_fit(o))
+    o.refuse(o.first_with_prefix("fit_")->name, "a scene is either a study or a fit; remove study_vary or fit_vary");
+  const auto given = std::make_shared<const options::Entries>(o.entries());
+  Scene scene = describes_study(o) ? read_study(o) : describes_fit(o) ? read_fit(o) : read_one_scene(std::move(o));
+  scene.given = given;
   return scene;
 }
 

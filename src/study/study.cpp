@@ -307,7 +307,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   for (const std::size_t base : scenes.bases_of_model()) scenes.runner(base, &of_others);
   reduce_local_steps(scenes);
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
-  for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(*given.given)) notes.push_back(note);
   std::optional<SweepFindings> findings;
   if (scenes.study().sweep) findings.emplace(scene, first);
   SweepFindings* const found = findings ? &*findings : nullptr;

@@ -126,7 +126,7 @@ void StudyScenes::enumerate(const Study& study) {
 
 Scene StudyScenes::base(std::size_t base) const {
   if (study_.sweep) return scene_;
-  Scene scene = read_scene_of_study(options::Options(options::in_force()), values_of_run(study(), first_run_[base]));
+  Scene scene = read_scene_of_study(options::Options(*scene_.given), values_of_run(study(), first_run_[base]));
   if (scene.output.probes.size() != scene_.output.probes.size())
     throw InputError(fmt::format("output_probes: a run has {} probes, others have {}; name as many for all",
                                  scene.output.probes.size(), scene_.output.probes.size()));

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -138,6 +140,10 @@ struct Scene {
   std::vector<std::string> notes;                            // choices with their reasons, one line each
   std::vector<std::string> unusual;                          // the notes on possible but unusual input
   std::vector<std::pair<std::string, std::string>> options;  // all given options, also the options in vehicle files
+  std::shared_ptr<const options::Entries> given;             // the options that describe it, with their sources
+
+  /// A given option; null if it is not given.
+  const options::Entry* find_option(std::string_view option) const { return given ? given->find(option) : nullptr; }
 
   /// Whether there are limits of transient runs, and not only of static effects.
   bool has_run_limits() const {
