@@ -14,12 +14,15 @@ double value(const std::array<double, 4>& c, double t) { return c[0] + t * (c[1]
 double first(const std::array<double, 4>& c, double t) { return c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]); }
 double second(const std::array<double, 4>& c, double t) { return 2.0 * c[2] + 6.0 * t * c[3]; }
 
-// Gauss points and weights on (0, 1), exact to the power 9.
-constexpr std::array<double, 5> points = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155,
-                                          0.953089922969332};
+// Gauss points on (0, 1), exact to the power 9, and the end; weights of the points.
+constexpr std::array<double, 6> instants = {0.046910077030668004, 0.23076534494715845, 0.5,
+                                            0.76923465505284155,  0.953089922969332,   1.0};
 constexpr std::array<double, 5> weights = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
                                            0.23931433524968324, 0.11846344252809454};
 constexpr double energy_phase = 0.5;  // rad of the fastest mode in one integration interval of the energies
+
+/// Zero instead of the rest of a decayed motion, whose square is a denormal number: with those processors are slow.
+double flushed(double motion) { return std::abs(motion) < 1e-150 ? 0.0 : motion; }
 
 }  // namespace
 
@@ -44,11 +47,15 @@ void ModalMotion::prepare(double dt) {
   prepared_dt_ = dt;
   if (coupled_) {
     prepared_coupled_ = coupled_->propagator(dt);
+    if (integrates_energy_) prepared_coupled_inside_ = coupled_inside(energy_part(dt));
     return;
   }
   prepared_.clear();
-  for (std::size_t i = 0; i < modes_.size(); ++i)
+  prepared_inside_.clear();
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
     prepared_.push_back(free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt));
+    if (integrates_energy_) prepared_inside_.push_back(inside(i, energy_part(dt)));
+  }
 }
 
 // Sets the polynomial that solves the equation of motion with the interval's force; the difference oscillates freely.
@@ -134,9 +141,10 @@ void ModalMotion::pass_event() {
 
 void ModalMotion::move(double dt) {
   if (dt <= 0.0) return;
-  if (integrates_energy_) return coupled_ ? move_coupled_with_energy(dt) : move_with_energy(dt);
   // Equal intervals between instants differ by the rounding of the times.
   const bool prepared = std::abs(dt - prepared_dt_) <= 4.0 * std::numeric_limits<double>::epsilon() * (time_ + dt);
+  if (prepared) dt = prepared_dt_;
+  if (integrates_energy_) return coupled_ ? move_coupled_with_energy(dt, prepared) : move_with_energy(dt, prepared);
   if (coupled_) {
     coupled_->move(prepared ? prepared_coupled_ : coupled_->propagator(dt));
     coupled_->evaluate(u_, w_);
@@ -146,53 +154,73 @@ void ModalMotion::move(double dt) {
     const FreeOscillation a = prepared ? prepared_[i] : free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt);
     Mode& mode = modes_[i];
     const double u = mode.u;
-    mode.u = a.uu * u + a.uw * mode.w;
-    mode.w = a.wu * u + a.ww * mode.w;
+    mode.u = flushed(a.uu * u + a.uw * mode.w);
+    mode.w = flushed(a.wu * u + a.ww * mode.w);
   }
+}
+
+// The length of the parts of a step for the integration of the energies.
+double ModalMotion::energy_part(double dt) const { return dt / std::ceil(highest_ * dt / energy_phase); }
+
+ModalMotion::Inside<FreeOscillation> ModalMotion::inside(std::size_t mode, double part) const {
+  Inside<FreeOscillation> factors;
+  for (std::size_t k = 0; k < factors.size(); ++k)
+    factors[k] = free_oscillation(bridge_.omega()[mode], bridge_.sigma()[mode], instants[k] * part);
+  return factors;
+}
+
+ModalMotion::Inside<Eigen::VectorXcd> ModalMotion::coupled_inside(double part) const {
+  Inside<Eigen::VectorXcd> factors;
+  for (std::size_t k = 0; k < factors.size(); ++k) factors[k] = coupled_->propagator(instants[k] * part);
+  return factors;
 }
 
 // Integrates the powers g q' and 2 sigma q'^2 by Gauss quadrature of the exact motion.
-void ModalMotion::move_with_energy(double dt) {
-  const double begin = speed_ > 0.0 ? history_.start[interval_] / speed_ : 0.0;
-  const auto parts =
-      static_cast<long>(std::ceil(highest_ * dt / energy_phase));  // ModalStepper limits the number of parts
-  const double h = dt / static_cast<double>(parts);
+void ModalMotion::move_with_energy(double dt, bool prepared) {
+  const double begin = since_event(), h = energy_part(dt);
+  const auto parts = std::lround(dt / h);  // ModalStepper limits their number
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const double omega = bridge_.omega()[i], sigma = bridge_.sigma()[i];
     const auto& p = modes_[i].particular;
-    std::array<FreeOscillation, points.size()> inner{};
-    for (std::size_t k = 0; k < points.size(); ++k) inner[k] = free_oscillation(omega, sigma, points[k] * h);
-    const FreeOscillation step = free_oscillation(omega, sigma, h);
-    for (long part = 0; part < parts; ++part) {
-      const double from = time_ - begin + static_cast<double>(part) * h;
-      const double u = modes_[i].u, w = modes_[i].w;
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        const double t = from + points[k] * h;
-        const double rate = first(p, t) + inner[k].wu * u + inner[k].ww * w;
-        const double force = second(p, t) + 2.0 * sigma * first(p, t) + omega * omega * value(p, t);
-        dissipated_ += h * weights[k] * 2.0 * sigma * rate * rate;
-        work_ += h * weights[k] * force * rate;
-      }
-      modes_[i].u = step.uu * u + step.uw * w;
-      modes_[i].w = step.wu * u + step.ww * w;
+    std::array<double, 4> force{};  // coefficients like those of p
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto power = static_cast<double>(k);
+      force[k] = omega * omega * p[k];
+      if (k < 3) force[k] += 2.0 * sigma * (power + 1.0) * p[k + 1];
+      if (k < 2) force[k] += (power + 1.0) * (power + 2.0) * p[k + 2];
     }
+    const Inside<FreeOscillation> factors = prepared ? prepared_inside_[i] : inside(i, h);
+    double lost = 0.0, supplied = 0.0;
+    for (long part = 0; part < parts; ++part) {
+      const double from = begin + static_cast<double>(part) * h;
+      const double u = modes_[i].u, w = modes_[i].w;
+      for (std::size_t k = 0; k < weights.size(); ++k) {
+        const double t = from + instants[k] * h;
+        const double rate = first(p, t) + factors[k].wu * u + factors[k].ww * w;
+        lost += weights[k] * rate * rate;
+        supplied += weights[k] * value(force, t) * rate;
+      }
+      const FreeOscillation& whole = factors.back();
+      modes_[i].u = flushed(whole.uu * u + whole.uw * w);
+      modes_[i].w = flushed(whole.wu * u + whole.ww * w);
+    }
+    dissipated_ += h * 2.0 * sigma * lost;
+    work_ += h * supplied;
   }
 }
 
-void ModalMotion::move_coupled_with_energy(double dt) {
-  const double begin = speed_ > 0.0 ? history_.start[interval_] / speed_ : 0.0;
-  const auto parts = static_cast<long>(std::ceil(highest_ * dt / energy_phase));
-  const double h = dt / static_cast<double>(parts);
-  std::array<Eigen::VectorXcd, points.size()> inner;
-  for (std::size_t k = 0; k < points.size(); ++k) inner[k] = coupled_->propagator(points[k] * h);
-  const Eigen::VectorXcd step = coupled_->propagator(h);
+void ModalMotion::move_coupled_with_energy(double dt, bool prepared) {
+  const double begin = since_event(), h = energy_part(dt);
+  const auto parts = std::lround(dt / h);
+  const Inside<Eigen::VectorXcd> own = prepared ? Inside<Eigen::VectorXcd>() : coupled_inside(h);
+  const Inside<Eigen::VectorXcd>& factors = prepared ? prepared_coupled_inside_ : own;
   const auto m = static_cast<Eigen::Index>(modes_.size());
   Eigen::VectorXd rate(m), lost(m);
   std::vector<double> force(modes_.size());
   for (long part = 0; part < parts; ++part) {
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const double t = time_ - begin + (static_cast<double>(part) + points[k]) * h;
-      coupled_->evaluate_after(inner[k], u_, w_);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      const double t = begin + (static_cast<double>(part) + instants[k]) * h;
+      coupled_->evaluate_after(factors[k], u_, w_);
       force.assign(modes_.size(), 0.0);
       add_channels_at(speed_ * t, 0, modes_.size(), force.data());
       for (Eigen::Index i = 0; i < m; ++i) rate[i] = first(modes_[static_cast<std::size_t>(i)].particular, t) + w_[i];
@@ -203,7 +231,7 @@ void ModalMotion::move_coupled_with_energy(double dt) {
         work_ += h * weights[k] * force[mode] * rate[i];
       }
     }
-    coupled_->move(step);
+    coupled_->move(factors.back());
   }
   coupled_->evaluate(u_, w_);
   record_free();

@@ -22,7 +22,7 @@ class ModalMotion {
   /// must outlive this object.
   ModalMotion(const structure::ModalBridge& bridge, const ForceHistory& history, double speed, bool equilibrium);
 
-  /// Prepares steps of this length, which then cost less than others.
+  /// Prepares steps of this length, which then cost less than others. Call after integrate_energy().
   void prepare(double dt);
   /// From now on integrates the work of the forces and the dissipation of dampers, which more than doubles the cost.
   void integrate_energy() { integrates_energy_ = true; }
@@ -57,13 +57,19 @@ class ModalMotion {
   void enter(std::size_t interval);
   void enter_coupled();
   void move(double dt);
-  void move_with_energy(double dt);
-  void move_coupled_with_energy(double dt);
+  double energy_part(double dt) const;
+  void move_with_energy(double dt, bool prepared);
+  void move_coupled_with_energy(double dt, bool prepared);
   void record_free();
   void add_channels_at(double s, std::size_t first, std::size_t count, double* sum) const;
   void move_to(double t);
   void update_state();
   void update_acceleration();
+  /// The factors of a mode, or of all complex modes, at the Gauss points of a part of a step and at its end.
+  template <class Factors>
+  using Inside = std::array<Factors, 6>;
+  Inside<FreeOscillation> inside(std::size_t mode, double part) const;
+  Inside<Eigen::VectorXcd> coupled_inside(double part) const;
   double since_event() const { return speed_ > 0.0 ? time_ - history_.start[interval_] / speed_ : 0.0; }
 
   const structure::ModalBridge& bridge_;
@@ -74,11 +80,13 @@ class ModalMotion {
   std::vector<Mode> modes_;
   std::vector<double> q_, rate_, acceleration_;
   std::vector<FreeOscillation> prepared_;
+  std::vector<Inside<FreeOscillation>> prepared_inside_;  // with energies
   double prepared_dt_ = -1.0;
   double highest_ = 0.0;  // rad/s
   bool integrates_energy_ = false;
   std::optional<CoupledOscillation> coupled_;  // the free oscillation of coupled modes
   Eigen::VectorXcd prepared_coupled_;
+  Inside<Eigen::VectorXcd> prepared_coupled_inside_;
   Eigen::VectorXd u_, w_;  // this oscillation and its rate at the present time
   double dissipated_ = 0.0, work_ = 0.0;
 };

@@ -45,9 +45,15 @@ ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridg
   acceleration_.assign(n, 0.0);
   force_.assign(n, 0.0);
   drag_.assign(n, 0.0);
+  shapes_.resize(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(bridge_.modes()));
+  for (std::size_t i = 0; i < bridge_.modes(); ++i)
+    std::copy_n(bridge_.shape(i), n, shapes_.col(static_cast<Eigen::Index>(i)).data());
+  amplitude_.resize(shapes_.cols());
+  share_.resize(shapes_.cols() + 1);
   longest_step_ = phase_per_step / *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
   has_drag_ = *std::max_element(bridge_.own_drag().begin(), bridge_.own_drag().end()) > 0.0;
   motion_.integrate_energy();
+  motion_.prepare(interval_ / instants());
   ts_ = make_modal_ts(motion_);
   base::check(TSGetMaxSteps(ts_, &most_steps_));
   base::check(TSSetMaxSteps(ts_, std::numeric_limits<PetscInt>::max() - 1));  // counted here
@@ -131,43 +137,37 @@ void ModalStepper::nodal_loads(double* nodal) const {
 }
 
 void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
-  const std::size_t n = force_.size();
-  double *v = y_.data(), *w = v + n, *a = acceleration_.data();
+  const auto n = shapes_.rows(), m = shapes_.cols();
+  const auto of_modes = [m](const std::vector<double>& values) {
+    return Eigen::Map<const Eigen::ArrayXd>(values.data(), m);
+  };
+  const auto nodal = [n](double* values) { return Eigen::Map<Eigen::VectorXd>(values, n); };
+  auto v = nodal(y_.data()), w = nodal(y_.data() + n), a = nodal(acceleration_.data()), force = nodal(force_.data());
   // The static correction first: K* v = forces P and dampers' forces, minus the modes' share.
   nodal_loads(force_.data());
   bridge_.add_forces_on_others(motion_.rate().data(), force_.data());
-  std::vector<double> share(bridge_.modes(), 0.0);
-  for (std::size_t i = 0; i < bridge_.modes(); ++i)
-    for (std::size_t k = 0; k < n; ++k) share[i] += bridge_.shape(i)[k] * force_[k];
-  MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(share.size()), MPI_DOUBLE, MPI_SUM, system_.comm());
-  std::copy(force_.begin(), force_.end(), v);
-  statics_.solve_static(v);
-  double stored = 0.0;  // J
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t i = 0; i < bridge_.modes(); ++i)
-      v[k] -= bridge_.shape(i)[k] * share[i] / (bridge_.omega()[i] * bridge_.omega()[i]);
-    stored += 0.5 * v[k] * force_[k];
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &stored, 1, MPI_DOUBLE, MPI_SUM, system_.comm());
+  v = force;
+  statics_.solve_static(v.data());
+  // The modal forces, and twice the energy of the static deflections, J.
+  share_.head(m).noalias() = shapes_.transpose() * force;
+  share_[m] = v.dot(force);
+  MPI_Allreduce(MPI_IN_PLACE, share_.data(), static_cast<int>(share_.size()), MPI_DOUBLE, MPI_SUM, system_.comm());
+  const auto omega = of_modes(bridge_.omega());
+  const double stored = 0.5 * (share_[m] - (share_.head(m).array() / omega).square().sum());
   if (!begun_) at_start_ = stored;
 
-  std::fill_n(w, n, 0.0);
-  std::fill_n(a, n, 0.0);
-  std::fill(drag_.begin(), drag_.end(), 0.0);
-  for (std::size_t i = 0; i < bridge_.modes(); ++i) {
-    const double* phi = bridge_.shape(i);
-    const double q = motion_.q()[i], rate = motion_.rate()[i], acceleration = motion_.acceleration()[i];
-    for (std::size_t k = 0; k < n; ++k) {
-      v[k] += q * phi[k];
-      w[k] += rate * phi[k];
-      a[k] += acceleration * phi[k];
-      drag_[k] += bridge_.own_drag()[i] * rate * phi[k];
-    }
+  amplitude_ = of_modes(motion_.q()) - share_.head(m).array() / omega.square();
+  v.noalias() += shapes_ * amplitude_.matrix();
+  v += nodal(sagging_.data());
+  w.noalias() = shapes_ * of_modes(motion_.rate()).matrix();
+  a.noalias() = shapes_ * of_modes(motion_.acceleration()).matrix();
+  if (has_drag_) {
+    amplitude_ = of_modes(bridge_.own_drag()) * of_modes(motion_.rate());
+    nodal(drag_.data()).noalias() = shapes_ * amplitude_.matrix();
   }
-  for (std::size_t k = 0; k < n; ++k) v[k] += sagging_[k];
-  if (y_.size() > 2 * n) {  // the rank that stores the energies
-    y_[2 * n] = motion_.dissipated();
-    y_[2 * n + 1] = motion_.work() + stored - at_start_;  // forces have supplied the energy of the correction
+  if (const std::size_t energies = 2 * force_.size(); y_.size() > energies) {  // the rank that stores the energies
+    y_[energies] = motion_.dissipated();
+    y_[energies + 1] = motion_.work() + stored - at_start_;  // forces have supplied the energy of the correction
   }
   sample({motion_.time(), y_.data(), acceleration_.data(), has_drag_ ? drag_.data() : nullptr, purpose});
 }

@@ -1,6 +1,8 @@
 // A run of a bridge by modes: the exact motion at every sample, as nodal vectors of the whole structure.
 #pragma once
 
+#include <Eigen/Core>
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -28,6 +30,8 @@ class ModalStepper {
   void keep(base::Archive& archive);
 
   long steps() const { return steps_; }
+  /// The instants of a step, the sample at its end included.
+  double instants() const { return std::ceil(interval_ / longest_step_); }
   bool stopped_at_limit() const { return steps_ >= most_steps_; }  // limit -ts_max_steps
   std::string method() const;
 
@@ -50,6 +54,9 @@ class ModalStepper {
   long stored_;                  // one sample out of this number is stored
   std::vector<double> sagging_;  // displacements of this rank's unknowns under the self-weight, m
   std::vector<double> y_, acceleration_, drag_, force_;  // same meaning as in Instant; nodal forces
+  Eigen::MatrixXd shapes_;                               // of the modes, this rank's unknowns
+  Eigen::VectorXd share_;                                // modal forces, and an energy
+  Eigen::ArrayXd amplitude_;                             // of each mode
   double at_start_ = 0.0;                                // J, initial energy of the static correction
   bool has_drag_ = false, begun_ = false;
   long steps_ = 0;
