@@ -4,6 +4,7 @@ range of speeds, track defects and uplift at the bearings."""
 from typing import NamedTuple
 
 import numpy as np
+from picture_words import weighs
 from traverse_check import flow_chart, track_defects
 from traverse_check.rules import rule
 
@@ -93,7 +94,8 @@ def traffic_uplift(source):
 
 
 def dynamic_uplift(source):
-    """[the least bearing force over time] of the run of the file, of all runs, or of the governing run alone."""
+    """[the least bearing force over time] of the run of the file, of all runs, or of the governing run alone; where the
+    runs have the weight of the bridge, it contains it."""
     if source.is_run:
         least = least_over_time(source, t("the run"))
     elif source.least_bearing is not None:
@@ -106,7 +108,7 @@ def dynamic_uplift(source):
 def has_least_bearing_of_runs(source):
     """Whether the runs of a table have bearing forces of the traffic alone, with a bound from their accelerations."""
     return source.runs is not None and "static/reaction" in source.file and "peak_acceleration" in source.runs.values \
-        and source.options.get("beam_self_weight") != "true" and permanent_force(source, 0.0) is not None
+        and not weighs(source.options) and permanent_force(source, 0.0) is not None
 
 
 def factors_of_reactions(source):
@@ -135,15 +137,16 @@ def permanent_force(source, at):
 
 def uplift(source):
     """Whether the bearing forces of traffic exceed those of the permanent loads; characteristic values."""
-    file = source.file
-    if source.is_run and source.options.get("beam_self_weight") == "true" and "supports/reaction" in file:
-        least = dynamic_uplift(source)[0]
+    file, dynamic = source.file, dynamic_uplift(source)
+    with_weight = dynamic if weighs(source.options) else []
+    if with_weight and (source.is_run or with_weight[0].value <= 0.0):  # of a table only the governing run is known
+        least = with_weight[0]
         words = "no uplift: least bearing force with the mass of the bridge {force}" if least.value > 0.0 else \
             "uplift: least bearing force with the mass of the bridge {force}"
         return Decision(t(words, force=least.words()), GREEN if least.value > 0.0 else RED)
     if "static/reaction" not in file:
         return Decision(t("not decided: the static bearing forces are missing (norm_load_models)"), AMBER)
-    traffic = min([traffic_uplift(source), *dynamic_uplift(source)], key=lambda one: one.value)
+    traffic = min([traffic_uplift(source), *([] if with_weight else dynamic)], key=lambda one: one.value)
     if traffic.value > -1e-6 * float(np.abs(file["static/reaction"][:]).max()):
         return Decision(t("no uplift: no load lifts a bearing"), GREEN)
     permanent = permanent_force(source, traffic.x)

@@ -144,6 +144,17 @@ class Decisions(Computations):
         self.assertEqual(found.colour, page.GREEN)
         self.assertIn(language.num(1e-3 * one.file["supports/reaction"][:, :, 1].min()), found.words)
 
+    def test_uplift_of_runs_with_the_weight_of_the_bridge_counts_it_once(self):
+        one = self.source("simple")
+        one.options["beam_self_weight"] = "true"
+        self.assertFalse(decisions.has_least_bearing_of_runs(one))
+        one.least_bearing = uplift.Bearing(-2.0e4, "a run", 20.0)  # less than the weight, which it contains
+        found = decisions.uplift(one)
+        self.assertEqual(found.colour, page.RED)
+        self.assertIn(f"with the mass of the bridge {language.num(-20.0)} kN", found.words)
+        one.least_bearing = uplift.Bearing(2.0e4, "a run", 20.0)
+        self.assertIn("no load lifts a bearing", decisions.uplift(one).words)
+
 
 class LargerEffect(Computations):
     def test_trains_govern_only_where_they_are_larger(self):
