@@ -87,8 +87,7 @@ std::string Accuracy::invalidate_if_rougher(double times, double wanted) {
   if (names.empty()) return {};
   return fmt::format(
       "error estimates withdrawn: {}: after {:.3g} s, where trial runs ended, accelerations or wheel forces change "
-      "within "
-      "steps {:.2g} times as much as before; {}",
+      "within steps {:.2g} times as much as before; {}",
       names, covered_until, times, what_to_do);
 }
 

@@ -149,13 +149,12 @@ void ModelSearch::accept_damped_vibration() {
 }
 
 void ModelSearch::throw_too_expensive() const {
-  throw InputError(fmt::format(
-      "accuracy = {:g}: the trial runs that choose mesh and step would take {:.1g} steps of {:.1g} s with {} "
-      "elements a {} "
-      "and more ({}), which exceeds their limit; check the masses, stiffnesses and lengths of the scene, or "
-      "set ts_dt and {} to avoid trial runs",
-      scene_.accuracy, window_ / step_, step_, mesh_, unit_of_mesh(), step_reason_,
-      scene_.beam->track ? "track_elements_per_bay" : "beam_elements_per_span"));
+  throw InputError(
+      fmt::format("accuracy = {:g}: the trial runs that choose mesh and step would take {:.1g} steps of {:.1g} s with "
+                  "{} elements a {} and more ({}), which exceeds their limit; check the masses, stiffnesses and "
+                  "lengths of the scene, or set ts_dt and {} to avoid trial runs",
+                  scene_.accuracy, window_ / step_, step_, mesh_, unit_of_mesh(), step_reason_,
+                  scene_.beam->track ? "track_elements_per_bay" : "beam_elements_per_span"));
 }
 
 void ModelSearch::refine() {

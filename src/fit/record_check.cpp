@@ -71,8 +71,7 @@ class RecordCheck {
              std::abs(best.shift) > shifted * model_.duration())
       doubts.push_back(
           fmt::format("{}: the correlation with the computed series is {:.2f}, and {:.2f} if the clock of the record "
-                      "is {:.4g} s at "
-                      "the start of the scene: {} true?",
+                      "is {:.4g} s at the start of the scene: {} true?",
                       option("series"), now_.correlation, best.correlation, best.shift, option("align")));
     if (series_.offset || std::abs(now_.correlation) < related) return;
     const double offset = now_.mean_measured - now_.correlation * now_.ratio() * now_.mean_computed;
@@ -137,11 +136,10 @@ class RecordCheck {
   }
 
   [[noreturn]] void refuse_clock(double shift) const {
-    throw InputError(
-        fmt::format("{}: the record begins at {:g} s, when the loads have left ({:.3g} s), but shows their passage, as "
-                    "if its clock "
-                    "were {:.4g} s at the start of the scene; allowed: {} true, or false to fit it as it is",
-                    option("series"), series_.time.front(), model_.duration(), shift, option("align")));
+    throw InputError(fmt::format(
+        "{}: the record begins at {:g} s, when the loads have left ({:.3g} s), but shows their passage, as if its "
+        "clock were {:.4g} s at the start of the scene; allowed: {} true, or false to fit it as it is",
+        option("series"), series_.time.front(), model_.duration(), shift, option("align")));
   }
 
   [[noreturn]] void refuse_unit(double ratio) const {

@@ -43,8 +43,7 @@ void check_step(const Scene& scene, const Plan& plan) {
   if (!(plan.end_time / plan.time_step < max_steps) && scene.step_open)
     throw InputError(fmt::format(
         "{}: the run ends at {:g} s only, which takes too many of the steps of {:g} s that the scene needs; allowed: "
-        "{}, "
-        "or a longer step (ts_dt)",
+        "{}, or a longer step (ts_dt)",
         scene.end_time ? fmt::format("ts_max_time = {:g}", *scene.end_time)
                        : fmt::format("at {:g} m/s", greatest_speed(scene)),
         plan.end_time, plan.time_step,

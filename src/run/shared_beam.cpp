@@ -104,8 +104,7 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
   if (scene.beam->track && scene.beam->track->hangs())
     notes.emplace_back(
         "sleepers hang over gaps, which close on one side: forces; frequencies are those of small motions, with all "
-        "gaps "
-        "open");
+        "gaps open");
   beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
   if (!scene.beam->given) beam::check_springs(beam->model());
   check_compression(*beam);

@@ -234,8 +234,7 @@ void record_damping(Scene& scene) {
   if (dampers) return;
   scene.notes.emplace_back(
       "damping: none is given (beam_damping_ratios, model_damping_bound), so free vibration does not decay and "
-      "resonances "
-      "are higher and narrower than real ones; EN 1991-2 table 6.6 has ratios of at least 0.5 %");
+      "resonances are higher and narrower than real ones; EN 1991-2 table 6.6 has ratios of at least 0.5 %");
 }
 
 /// Adds a note if the roughness, which begins at the first wheel and increases to its full height over some distance,

@@ -104,8 +104,7 @@ std::vector<results::Attribute> Audit::attributes() const {
 std::string Audit::text() const {
   return fmt::format(
       "audit    {} pairs at {} speeds by all passages: {} exceedances missed, {} verdicts different, {} bounds below "
-      "the "
-      "value; median of bound over value {:.3f} (at each speed {:.3f})",
+      "the value; median of bound over value {:.3f} (at each speed {:.3f})",
       pairs, speeds, missed, different, below, median_pair, median_speed);
 }
 

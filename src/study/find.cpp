@@ -199,8 +199,7 @@ std::string search_obstacle(const StudyTable& table) {
   if (const std::vector<double> wanted = values_to_add(table); !wanted.empty())
     return fmt::format(
         "find_option: the intervals are not known to {:g} after {} values ({} more are needed): the results contain "
-        "those "
-        "computed; use a larger find_accuracy, a smaller range or more find_points",
+        "those computed; use a larger find_accuracy, a smaller range or more find_points",
         table.study().find->accuracy, table.study().dimensions[table.study().find->dimension].values.size(),
         wanted.size());
   return "";
