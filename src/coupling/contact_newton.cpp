@@ -11,7 +11,7 @@ namespace traverse::coupling {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int most_static_iterations = 400;   // which include those for the shares of edges
+constexpr int most_static_iterations = 400;   // with changes of shares at jumps in height
 constexpr int reuse_iterations = 4;           // limit of iterations of a stage with reused matrices
 constexpr int most_tangents = 20;             // iterations on the contact laws in one iteration
 constexpr double smooth_tolerance = 1e-10;    // remaining error of forces, relative to the weight
@@ -59,11 +59,13 @@ bool ContactNewton::iterate(train::Fleet& fleet, const StageData& s, double* x) 
   const bool statics = s.shift2 == 0.0;
   bool reused = true;
   EdgeShares edges(fleet);
-  for (int i = 0; i < (edges.any() ? most_static_iterations : most_iterations); ++i) {
+  int of_shares = 0;  // the iteration that has changed the shares last
+  for (int i = 0; i < of_shares + most_iterations && i < most_static_iterations; ++i) {
     const Loads loads = i > 0 ? Loads::found : statics ? Loads::none : Loads::expected;
     const bool evaluated = evaluate(fleet, s, x, loads);
     if (i == 0) contacts_.list(fleet);
-    if (i == 0 && statics) edges.hold();
+    if (i == 0 && s.shift == 0.0) edges.hold();
+    if (evaluated && edges.any()) fleet.contact_forces();  // with the shares held last
     const unsigned flags =
         share_contacts(s, fleet, evaluated ? condense_own(fleet, s, i) : unsigned{train::VehicleShare::failed});
     if ((flags & train::VehicleShare::failed) != 0) return false;
@@ -85,7 +87,10 @@ bool ContactNewton::iterate(train::Fleet& fleet, const StageData& s, double* x) 
       continue;
     }
     if (i == 1) second_.record(reused ? loaded_contacts(fleet) : not_comparable, before, change_);
-    if (has_converged(statics, reused && i == 1, before, deviation) && edges.settle()) return true;
+    if (has_converged(statics, reused && i == 1, before, deviation)) {
+      if (edges.settle()) return true;
+      of_shares = i;
+    }
     for (std::size_t k = 0; k < work_.size(); ++k)
       fleet.vehicles[k].converged = !statics && work_[k].change * contraction_ <= tolerance_;
   }
@@ -125,6 +130,7 @@ unsigned ContactNewton::condense_own(train::Fleet& fleet, const StageData& s, in
 // statics. A stage's first change is large; its ratio to the second one depends more on its size than on the reused
 // matrices. For it the ratio measured in earlier stages is used too. Changes due to rounding do not decrease.
 bool ContactNewton::has_converged(bool statics, bool reused, double before, double deviation) {
+  if (statics && deviation > rounding) return false;  // a contact has closed, or a share has changed
   if (change_ == 0.0) return true;
   const double measured = measured_ = change_ / before;
   contraction_ = std::clamp(measured, best_ratio, 1.0);

@@ -1,6 +1,7 @@
-// The shares of edges at steps of the surface in a static equilibrium (train::WheelContact). The forces jump where two
-// ends of surfaces are level, so that Newton's method would alternate between both sides of the jump. Each equilibrium
-// is computed with held shares; if the heights of the edges contradict them, new shares follow by regula falsi.
+// The shares of the ends at jumps in height of the surface in a static equilibrium (train::WheelContact). The forces
+// jump where two ends are level, so that Newton's method would alternate between both sides of the jump. Each
+// equilibrium is computed with held shares; if the heights of the ends contradict them, new shares follow by regula
+// falsi.
 #pragma once
 
 #include <cmath>
@@ -37,7 +38,7 @@ class EdgeShares {
   }
 
  private:
-  /// An edge that has been higher than the other end with the share `low`, and lower with the share `high`.
+  /// A jump whose right end has been higher with the share `low` of the left end, and lower with the share `high`.
   struct Edge {
     train::WheelContact* contact = nullptr;
     double low = 0.0, high = 1.0;
@@ -47,7 +48,7 @@ class EdgeShares {
 
   static bool settle(Edge& edge) {
     double& share = edge.contact->share;
-    const double height = edge.contact->edge_height;
+    const double height = edge.contact->jump;
     if (std::abs(height) <= 0.1 * train::level || (height > 0.0 ? share == 1.0 : share == 0.0)) return true;
     const int side = height > 0.0 ? 1 : -1;
     (side > 0 ? edge.low : edge.high) = share;

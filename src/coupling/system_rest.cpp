@@ -83,7 +83,8 @@ void System::freeze_fleet(const train::Train& train) {
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
   for (std::vector<double>* predicted : {&p_predicted_, &pd_predicted_, &x_}) predicted->assign(f, 0.0);
-  if (structure_) fleet_.place_wheels();
+  fleet_.place_wheels();
+  fleet_.set_static_penetrations();
 }
 
 // Statics from p_predicted_. `tie`: stiffness per mass of the springs that tie all masses to their positions, 1/s2.
@@ -102,7 +103,7 @@ System::Solution System::solve_statics_slowly() {
     found = solve_statics(Terms::all, tie);
     if (found == Solution::structure_failed) return found;
     if (found == Solution::fleet_failed) {
-      if ((tie *= stiffer) > first_tie * stiffer) return found;
+      if ((tie *= stiffer) > rigid_tie) return found;
       restart_from(p_predicted_);
       continue;
     }

@@ -48,14 +48,13 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
     vehicles.emplace_back(std::move(assembled.units[k]));
     MovingVehicle& vehicle = vehicles.back();
     vehicle.first_wheel = static_cast<int>(wheels.size());
-    const double share = vehicle.wheels.empty() ? 0.0 : vehicle.weight / static_cast<double>(vehicle.wheels.size());
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
       WheelContact c;
       c.vehicle = static_cast<int>(k);
       c.wheel = static_cast<int>(i);
       c.body = vehicle.wheels[i].body;
       c.law = vehicle.wheels[i].law;
-      c.kinematics.penetration = contact::static_penetration(vehicle.wheels[i].law, share);
+      c.kinematics.penetration = static_penetration(c);
       wheels.push_back(c);
     }
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
@@ -73,7 +72,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       first.may_touch_several_points = c.may_touch_several_points;
       wheels.insert(wheels.end(), track::most_points - 1, c);
       c.factor = -1.0;
-      wheels.insert(wheels.end(), track::most_points - 1, c);
+      wheels.insert(wheels.end(), further_entries - (track::most_points - 1), c);
     }
     add_pairs(static_cast<int>(k));
   }
@@ -90,6 +89,17 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
   has_kinks_ = !kinks_of_motions().empty();
   set_own(0, static_cast<int>(vehicles.size()));
   start_rolling();
+}
+
+// The penetration under an equal share of the vehicle's weight.
+double Fleet::static_penetration(const WheelContact& c) const {
+  const MovingVehicle& vehicle = vehicles[c.vehicle];
+  return contact::static_penetration(c.law, vehicle.weight / static_cast<double>(vehicle.wheels.size()));
+}
+
+void Fleet::set_static_penetrations() {
+  for (WheelContact& c : wheels)
+    if (c.candidates > 0) c.kinematics.penetration = static_penetration(c);
 }
 
 void Fleet::set_own(int first, int past) {

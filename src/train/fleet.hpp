@@ -76,12 +76,14 @@ struct PairContact : Contact {
 
 /// A wheel on the track. A wheel with a radius larger than that of the track's valleys, or one at a jump of the
 /// surface's height, may touch at several points (track::TouchingPoints). It has further entries: the other points from
-/// left to right, then the common overlaps of neighbouring points, whose forces are subtracted (factor -1). Unused
-/// entries have no candidates, a negative penetration and no force; so has a wheel without a surface under it.
+/// left to right, then the common overlaps of neighbouring points, whose forces are subtracted (factor -1), then the
+/// right ends at jumps in height. Unused entries have no candidates, a negative penetration and no force; so has a
+/// wheel without a surface under it.
 ///
-/// At a jump in height the point at the end of one surface, an edge, counts with its share: entirely if the end of the
-/// other surface is lower, not at all if it is higher. Between two level ends any share is an equilibrium of the
-/// contact, and the beams that they belong to determine it.
+/// At a jump in height the common overlap is that of the lower one of the two ends: it has the potential
+/// share*U(left end) + (1 - share)*U(right end), and the share is 1 if the left end is lower, 0 if the right one is.
+/// Between two level ends any share is an equilibrium of the contact, and the beams that they belong to determine it.
+/// An entry for either end has these forces.
 struct WheelContact : Contact {
   int wheel = 0;                 // index of the wheel in its vehicle
   std::array<Patch, 2> patches;  // the surface under the wheel, and beyond a near kink
@@ -91,18 +93,18 @@ struct WheelContact : Contact {
   int further = 0;           // index of the first further entry of this wheel; 0: none
   bool is_further = false;
   bool may_touch_several_points = false;  // its radius is larger than that of the track's valleys
-  // Of a common overlap: station of the minimum between the points, m; whether the height jumps there, so that the
-  // patches are on its two sides; the share of the edge, whether it is held, and the height of the edge above the end
-  // of the other surface, m.
+  // Of a common overlap: station of the minimum between the points, m; whether the height jumps there, so that this is
+  // the entry of the left end; the share of the left end, whether it is held, and the height of the right end above the
+  // left one, m.
   double minimum_station = 0.0;
   bool at_height_jump = false;
   double share = 1.0;
   bool share_held = false;
-  double edge_height = 0.0;
+  double jump = 0.0;
 
   void keep(base::Bytes& bytes) {
     Contact::keep(bytes);
-    bytes(patches, candidates, roll_origin, minimum_station, at_height_jump, share, edge_height);
+    bytes(patches, candidates, roll_origin, minimum_station, at_height_jump, share, jump);
   }
 };
 
@@ -111,6 +113,9 @@ contact::Force force_of(const Contact& contact);
 
 /// Two ends of surfaces at a smaller distance are level, m.
 inline constexpr double level = 1e-9;
+
+/// The number of further entries of a wheel.
+inline constexpr int further_entries = 3 * (track::most_points - 1);
 
 struct WheelLoad {
   double normal = 0.0, tangential = 0.0;  // N
@@ -182,6 +187,8 @@ class Fleet {
   const UnmodelledContact& unmodelled_contact() const { return unmodelled_contact_; }
   /// Whether a joint or driver constrains the angle of the wheel's body. Requires a partition.
   bool rotation_constrained(const WheelContact& c) const;
+  /// Gives every point of the placed wheels the penetration of an equal share of the vehicle's weight.
+  void set_static_penetrations();
   /// Copies the positions of all bodies and contacts from another fleet of the same train.
   void copy_positions(const Fleet& other);
   /// Sets the velocities of all bodies to those of the scene.
@@ -294,15 +301,16 @@ class Fleet {
  private:
   void add_patch(WheelContact& c, int element, double start, double low, double high);
   void find_patches(WheelContact& c, double x, double from, double to, double low, double high);
-  void find_sides(WheelContact& c, double step);
+  void set_end(WheelContact& c, double step, bool left);
   void add_ground(WheelContact& c, bool before, double x, double low, double high);
   std::span<const double> height_jumps_near(const WheelContact& c) const;
   void find_points(WheelContact& c);
   void reset_contact(WheelContact& c);
+  double static_penetration(const WheelContact& c) const;
   bool touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find);
   bool touch_points(WheelContact& c, int per_node, const double* v, const double* w);
-  bool touch_jump(WheelContact& left, WheelContact& right, WheelContact& common, int per_node, const double* v,
-                  const double* w);
+  bool touch_jump(WheelContact& left, WheelContact& right, WheelContact& left_end, WheelContact& right_end,
+                  int per_node, const double* v, const double* w);
   void clear_touch(WheelContact& c) const;
   bool has_left_guide(const WheelContact& c) const;
   WheelContact& point(const WheelContact& first, int i) {
@@ -310,6 +318,9 @@ class Fleet {
   }
   WheelContact& shared_entry(const WheelContact& first, int i) {
     return further_entry(first, track::most_points - 1 + i);
+  }
+  WheelContact& right_end(const WheelContact& first, int i) {
+    return further_entry(first, 2 * (track::most_points - 1) + i);
   }
   WheelContact& further_entry(const WheelContact& first, int i) {
     return wheels[static_cast<std::size_t>(first.further + i)];

@@ -44,39 +44,24 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
   return true;
 }
 
-// The kinematics of the two ends at a jump in height: the common overlap is that of the end which is not the edge.
-// Where the edge does not count, its point is removed with the overlap; where it counts entirely and the other point is
-// at its end too, that point is.
-bool Fleet::touch_jump(WheelContact& left, WheelContact& right, WheelContact& common, int per_node, const double* v,
-                       const double* w) {
-  const bool left_at_end = left.touch.station > common.minimum_station - at_end,
-             right_at_end = right.touch.station < common.minimum_station + at_end;
-  std::array<Touch, 2> ends;
-  for (int i = 0; i < 2; ++i) {
-    const std::ptrdiff_t at = common.slots[i] < 0 ? 0 : 2 * static_cast<std::ptrdiff_t>(per_node) * common.slots[i];
-    ends[i].ahead = common.touch.ahead;
-    if (!train::touch(common.patches[i], profile(common), wheel(common).radius, coordinates(common), velocities(common),
-                      per_node, v + at, w + at, ends[i]))
-      return false;
-  }
-  const double right_above_left = ends[1].kinematics.penetration - ends[0].kinematics.penetration;
-  const bool has_edge = left_at_end || right_at_end;
-  const int other = has_edge ? (right_at_end ? 0 : 1) : (right_above_left > 0.0 ? 0 : 1);
-  common.active = other;
-  common.touch = ends[other];
-  common.law.local_compliance = common.touch.local_compliance;
-  add_shape(common);
-  common.edge_height = other == 0 ? right_above_left : -right_above_left;
-  if (!common.share_held && !(has_edge && std::abs(common.edge_height) <= level))
-    common.share = common.edge_height > 0.0 || !has_edge ? 1.0 : 0.0;
-  WheelContact &edge = other == 0 ? right : left, &inner = other == 0 ? left : right;
-  edge.factor = common.share;
-  common.factor = -common.share;
-  const bool inner_at_end = other == 0 ? left_at_end : right_at_end;
-  if (common.share == 0.0 || (common.share == 1.0 && inner_at_end)) {
-    clear_touch(common.share == 0.0 ? edge : inner);
-    clear_touch(common);
-  }
+// The points on both sides of a jump in height and its two ends, whose shares of the common overlap follow from their
+// heights. A point at its end and this end are one contact.
+bool Fleet::touch_jump(WheelContact& left, WheelContact& right, WheelContact& left_end, WheelContact& right_end,
+                       int per_node, const double* v, const double* w) {
+  for (WheelContact* end : {&left_end, &right_end})
+    if (!touch_patches(*end, per_node, v, w, Find::closest)) return false;
+  left_end.jump = right_end.touch.kinematics.penetration - left_end.touch.kinematics.penetration;
+  if (!left_end.share_held && std::abs(left_end.jump) > level) left_end.share = left_end.jump > 0.0 ? 1.0 : 0.0;
+  left_end.factor = -left_end.share;
+  right_end.factor = left_end.share - 1.0;
+  const auto unite = [this](WheelContact& point, WheelContact& end) {
+    point.factor += end.factor;
+    end.factor = 0.0;
+  };
+  if (left.touch.station > left_end.minimum_station - at_end) unite(left, left_end);
+  if (right.touch.station < left_end.minimum_station + at_end) unite(right, right_end);
+  for (WheelContact* c : {&left, &right, &left_end, &right_end})
+    if (c->factor == 0.0) clear_touch(*c);
   return true;
 }
 
@@ -91,7 +76,7 @@ bool Fleet::touch_points(WheelContact& c, int per_node, const double* v, const d
     if (!touch_patches(p, per_node, v, w, Find::closest_within)) return false;
     WheelContact* shared = i > 0 && shared_entry(c, i - 1).candidates > 0 ? &shared_entry(c, i - 1) : nullptr;
     if (shared != nullptr && shared->at_height_jump) {
-      if (!touch_jump(*left, p, *shared, per_node, v, w)) return false;
+      if (!touch_jump(*left, p, *shared, right_end(c, i - 1), per_node, v, w)) return false;
     } else if (shared != nullptr) {
       shared->factor = -1.0;
       if (left->touch.station > shared->minimum_station - at_end ||
@@ -136,7 +121,7 @@ bool Fleet::touch(int per_node, const double* v, const double* w) {
 
 WheelLoad Fleet::load(const WheelContact& c) const {
   WheelLoad sum{c.force.normal, c.force.tangential, contact::surface_penetration(c.law, c.kinematics.penetration)};
-  for (int i = 0; c.further > 0 && i < 2 * (track::most_points - 1); ++i) {
+  for (int i = 0; c.further > 0 && i < further_entries; ++i) {
     const WheelContact& more = wheels[static_cast<std::size_t>(c.further + i)];
     sum.normal += more.force.normal;
     sum.tangential += more.force.tangential;

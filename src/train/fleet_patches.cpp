@@ -76,15 +76,12 @@ void Fleet::find_patches(WheelContact& c, double x, double from, double to, doub
   }
 }
 
-// Sets the ends of the surface on both sides of a jump in height.
-void Fleet::find_sides(WheelContact& c, double step) {
-  c.candidates = c.active = 0;
-  for (const bool from_left : {true, false}) {
-    if (step == (from_left ? mesh_->start() : mesh_->end()))
-      add_ground(c, from_left, step, step, step);
-    else
-      add_patch(c, mesh_->locate(step, from_left).element, step, step, step);
-  }
+// Sets the contact to the end of the surface on one side of a jump in height.
+void Fleet::set_end(WheelContact& c, double step, bool left) {
+  if (step == (left ? mesh_->start() : mesh_->end()))
+    add_ground(c, left, step, step, step);
+  else
+    add_patch(c, mesh_->locate(step, left).element, step, step, step);
 }
 
 std::span<const double> Fleet::height_jumps_near(const WheelContact& c) const {
@@ -164,16 +161,20 @@ void Fleet::find_points(WheelContact& c) {
     if (p.candidates > 0) p.kinematics = kinematics[i];
   }
   for (int i = 0; i + 1 < track::most_points; ++i) {
-    WheelContact& b = shared_entry(c, i);
-    const contact::Kinematics old = b.kinematics;
+    WheelContact &b = shared_entry(c, i), &e = right_end(c, i);
+    const contact::Kinematics old = b.kinematics, old_end = e.kinematics;
     reset_contact(b);
+    reset_contact(e);
     if (i + 1 >= found.count || found.points[i + 1].number != found.points[i].number + 1) continue;
     const track::TouchingPoint &left = found.points[i], &right = found.points[i + 1];
     b.at_height_jump = std::find(steps.begin(), steps.end(), left.high) != steps.end();
-    if (b.at_height_jump)
-      find_sides(b, left.high);
-    else
+    if (b.at_height_jump) {
+      set_end(b, left.high, true);
+      set_end(e, left.high, false);
+      e.kinematics = old_end;
+    } else {
       find_patches(b, left.high, left.high, left.high, left.station, right.station);
+    }
     if (b.minimum_station != left.high) b.share = 1.0;
     b.minimum_station = left.high;
     b.kinematics = old;

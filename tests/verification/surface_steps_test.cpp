@@ -198,7 +198,7 @@ TEST(SurfaceSteps, WheelsStandBesideASoftEnd) {
   const auto hertz = [](double depth) { return depth > 0.0 ? 1.0e9 * std::pow(depth, 1.5) : 0.0; };
   for (const bool is_hertz : {false, true})
     for (const bool at_left : {false, true})
-      for (const double before : {0.05, 0.03, 0.005, 0.001, 1e-4, -1e-4, -0.001, -0.02})
+      for (const double before : {0.05, 0.03, 0.02, 0.005, 0.001, 1e-4, 1e-6, 0.0, -1e-6, -1e-4, -0.001, -0.02})
         for (const char* vehicles : {"full", "linear"}) {
           Resting exact = {0.0, weight};
           if (before > 0.0) exact = is_hertz ? at_rest(before, hertz) : at_rest(before, linear);
@@ -213,6 +213,31 @@ TEST(SurfaceSteps, WheelsStandBesideASoftEnd) {
               << before << vehicles << is_hertz << at_left;
           EXPECT_NEAR(run("/vehicles/0/w/normal_force").back(), exact.force, 1e-5 * weight) << before << vehicles;
         }
+}
+
+// Two rigid slabs with beds of their own meet at 8 m. A wheel above the joint presses on both ends, which stay level:
+// each slab carries a half. With another wheel at 7.7 m, of which 7.7/8 acts on the left end, each end carries half of
+// the sum.
+TEST(SurfaceSteps, WheelsAboveTheJointOfTwoSlabsStandOnBoth) {
+  const Values slabs = {{"beam_spans", "8,8"},
+                        {"beam_continuity", "simply_supported"},
+                        {"support_types", "free,free,free"},
+                        {"foundation_vertical_x", "0,8,16"},
+                        {"foundation_vertical_k", "5e6"},
+                        {"foundation_vertical_side", "right,both,right"},
+                        {"output_probes", "8"}};
+  for (const bool is_hertz : {false, true})
+    for (const bool two : {false, true}) {
+      Values options = slabs;
+      options.insert(options.end(), {{"train_vehicles", two ? "q,q" : "q"},
+                                     {"train_positions", two ? "8,7.7" : "8"},
+                                     {"vehicle_q_w_law", is_hertz ? "hertz" : "linear"},
+                                     {"vehicle_q_w_stiffness", is_hertz ? "1e9" : "2e6"}});
+      Results run = run_yaml(soft_end, options);
+      const double on_each = 0.5 * weight * (two ? 1.0 + 7.7 / 8.0 : 1.0);
+      EXPECT_NEAR(run.column("/probes/deflection").back(), -on_each / 5.0e6, 1e-3 * on_each / 5.0e6) << two;
+      EXPECT_NEAR(run("/vehicles/0/w/normal_force").back(), weight, 1e-5 * weight) << two;
+    }
 }
 
 // A wheel that has passed a step touches at one point again. Seen before: the force of its last second point was added
