@@ -151,7 +151,8 @@ class ProbeForces {
           extremum_after_jump(before_passage_.*force, after_passage.*force,
                               (now.*force - after_passage.*force) / (now.time - after_passage.time), lag);
       record(q, before_passage_.*force, before_passage_.time, true, other);
-      if (after.exists) record(q, after.value, after_passage.time + after.later, true, other);
+      if (after.exists && after.later < now.time - after_passage.time)  // the line reaches no further
+        record(q, after.value, after_passage.time + after.later, true, other);
     };
     both(shear_force, &Forces::shear, after_passage.moment);
     if (has_axial_) both(axial_force, &Forces::axial, 0.0);
