@@ -12,7 +12,8 @@ install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_
         FILES_MATCHING PATTERN *.py PATTERN *.csv PATTERN *.yml PATTERN *.html PATTERN *.css PATTERN *.js)
 file(GLOB pictures CONFIGURE_DEPENDS scripts/picture*.py)
 install(FILES ${pictures} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
-        scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_tables.py
+        scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_answers.py
+        scripts/export_tables.py
         scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/traffic.py
         scripts/checked_results.py scripts/input_files.py scripts/output_files.py
         scripts/search_answers.py scripts/sensitivity_measures.py
@@ -32,7 +33,9 @@ install(CODE "set(traverse_python python3)
 if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr/local\" AND NOT \"${python_version}\" STREQUAL \"\")
   set(traverse_python ${python_version})
 endif()")
-install(DIRECTORY python/traverse DESTINATION lib/\${traverse_python}/dist-packages FILES_MATCHING PATTERN *.py)
+install(DIRECTORY python/traverse DESTINATION lib/\${traverse_python}/dist-packages
+        FILES_MATCHING PATTERN *.py PATTERN checked_results.py EXCLUDE)
+install(FILES scripts/checked_results.py DESTINATION lib/\${traverse_python}/dist-packages/traverse)
 
 # The manual page and the shell's completion are what the program itself says of its options.
 function(traverse_install_words format folder name)

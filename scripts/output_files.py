@@ -38,7 +38,8 @@ CONTENTS = {
 }
 # Kinds of HDF5 files, and the program that they name.
 RESULTS = {"results": "traverse", "exported": "traverse export"}
-TAKEN = "is there already and was not written by Traverse as such a file, or was changed since: move it, or name another"
+TAKEN = ("is there already, without the mark that Traverse leaves in such a file: it is another program's, was changed since, "
+         "or is of a version without marks; remove or rename it, or name another file or folder")
 
 
 class OutputError(ValueError):

@@ -5,7 +5,7 @@ import re
 import h5py
 import xarray
 
-from . import places
+from . import checked_results, places
 
 # Omitted are the scene itself, and the state at an end between two samples; h5py reads these.
 _LEFT_OUT = ("options", "input", "model", "end", "study/shape", "study/row_digest", "screen/row_digest")
@@ -28,10 +28,12 @@ def open_results(path):
     those of its /summary as summary_NAME, and `options`, one line each. Raises Error if the file cannot be read.
     """
     try:
-        with h5py.File(path, "r", locking=False) as file:
+        with checked_results.opened(path) as file:
             return _of_file(file)
+    except checked_results.ResultsError as failure:
+        raise places.Error(f"{path}: {failure}", 4) from None
     except OSError as failure:
-        raise places.Error(f"{path}: is no results file that can be read ({failure})", 4) from None
+        raise places.Error(f"{path}: {checked_results.UNREADABLE} ({failure})", 4) from None
 
 
 def _of_file(file):

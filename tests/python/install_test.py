@@ -1,6 +1,7 @@
 """cmake --install: a program of one's own over what is installed, examples/embed, by CMake and by pkg-config, and one in C;
 the program and its scenes from another folder; the Python package; the Debian packages."""
 
+import ast
 import os
 import pathlib
 import shlex
@@ -114,6 +115,19 @@ class Install(unittest.TestCase):
                              env=without | {"PYTHONPATH": str(place)})
         self.assertEqual(run.stdout, f"{place / 'traverse/__init__.py'} 0.0\n")
         self.assertTrue(all(": UnusualInput: " in line for line in run.stderr.splitlines()), run.stderr)
+
+    def test_scripts_find_what_they_import(self):
+        installed = self.prefix / "share/traverse/python"
+        own = {path.stem for path in (SOURCE / "scripts").iterdir()}
+        scripts = [*installed.rglob("*.py"), *(self.prefix / "bin").glob("traverse-*")]
+        self.assertGreater(len(scripts), 50)
+        for script in scripts:
+            for node in ast.walk(ast.parse(script.read_text(encoding="utf-8"))):
+                named = [one.name for one in node.names] if isinstance(node, ast.Import) else \
+                    [node.module] if isinstance(node, ast.ImportFrom) and node.level == 0 else []
+                for name in own.intersection(one.partition(".")[0] for one in named):
+                    self.assertTrue((installed / f"{name}.py").is_file() or (installed / name).is_dir(),
+                                    f"{script.name} imports {name}, which scripts/install.cmake leaves out")
 
     def test_a_program_in_c(self):
         source = self.folder / "steps.c"

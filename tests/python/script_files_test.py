@@ -16,6 +16,7 @@ import matplotlib.figure
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from module_scenes import traverse  # noqa: E402
 from small_runs import CROSSING, SOURCE, Computed  # noqa: E402
 
 SCRIPTS = SOURCE / "scripts"
@@ -172,6 +173,8 @@ class Results(Scripts):
         for words in self.READERS:
             with self.subTest(words=words):
                 self.refused(part, *words)
+        with self.assertRaisesRegex(traverse.Error, part):
+            traverse.open(self.folder / "bad.h5")
         self.assertEqual(list(self.folder.glob("out.*")), [])
 
     def copy(self):

@@ -1,0 +1,1 @@
+../../scripts/checked_results.py
