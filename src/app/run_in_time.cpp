@@ -245,6 +245,7 @@ void RecordedRun::summarise(const std::string& ended) {
     verdicts = result_.verdicts;
     check = judge_by_norm(verdicts);
   }
+  recorder_.change_beside();
   result_.record(recorder_);
   results::record_verdicts(recorder_, verdicts);
   recorder_.finish(summary);

@@ -93,11 +93,11 @@ File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
 File::File(Place place, std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right)
     : place_(std::move(place)), path_(place_.path()) {
   place_.copy_temporarily(std::move(sources), is_right);
-  open_temporary();
+  open_existing(place_.temporary_file());
 }
 
-void File::open_temporary() {
-  open(Id(check(H5Fopen(place_.temporary_file().c_str(), H5F_ACC_RDWR, access().get()))));
+void File::open_existing(const std::string& path) {
+  open(Id(check(H5Fopen(path.c_str(), H5F_ACC_RDWR, access().get()))));
   hsize_t size = 0;
   check(H5Fget_filesize(file_.get(), &size));
   reserved_ = static_cast<off_t>(size);
@@ -145,8 +145,8 @@ void File::change_beside() {
   publish();
   for (Id* const id : {&parents_, &rows_access_, &compact_, &text_}) *id = Id();
   check(H5Fclose(file_.release()));
-  place_.copy_temporarily();
-  open_temporary();
+  const bool copied = place_.copy_temporarily();
+  open_existing(copied ? place_.temporary_file() : place_.file());
 }
 
 std::vector<std::string> File::objects() const {

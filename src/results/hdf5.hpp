@@ -61,7 +61,8 @@ class File {
   const std::string& path() const { return path_; }
   /// Moves a file from beside its place to it, atomically; nothing if it is there already.
   void publish();
-  /// Continues in a copy beside the place, so that a kill leaves the file as it is now.
+  /// Continues in a copy beside the place, so that a kill leaves the file as it is now; in the file itself if the disk
+  /// has no room for a copy. No dataset may be open.
   void change_beside();
   /// The paths of all groups and datasets.
   std::vector<std::string> objects() const;
@@ -116,7 +117,7 @@ class File {
 
  private:
   void open(Id file);
-  void open_temporary();
+  void open_existing(const std::string& path);
   Id access() const;
   int descriptor() const;
   void set_text(const Id& object, const char* name, const std::string& text);

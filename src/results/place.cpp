@@ -147,15 +147,17 @@ void Place::open_temporary() {
   if (::fstat(file_.get(), &replaced) == 0) (void)::fchmod(temporary_.get(), replaced.st_mode);
 }
 
-void Place::copy_to_temporary(const Descriptor& source) {
+bool Place::copy_to_temporary(const Descriptor& source) {
   open_temporary();
-  if (!copy(source, temporary_)) fail(path_, std::strerror(errno));
+  return copy(source, temporary_);
 }
 
-void Place::copy_temporarily() {
+bool Place::copy_temporarily() {
   const Descriptor source = open_ordinary(path_, false);
   check_is_there();
-  copy_to_temporary(source);
+  const bool copied = copy_to_temporary(source);
+  if (!copied) remove_temporary();
+  return copied;
 }
 
 void Place::copy_temporarily(std::vector<std::string> sources,
@@ -169,7 +171,7 @@ void Place::copy_temporarily(std::vector<std::string> sources,
     const FileId id = id_at(source->c_str());
     const bool missing = !id.there || (created_ && id == id_of(file_));  // the claimed file itself does not count
     if (valid) {
-      copy_to_temporary(from);
+      if (!copy_to_temporary(from)) fail(path_, std::strerror(errno));
       if (is_right(temporary_file())) return;
       remove_temporary();
     }

@@ -36,8 +36,9 @@ class Place {
 
   /// Creates a file under a free name beside this place, which takes its place when it is complete. FileError.
   void open_temporary();
-  /// Like open_temporary(), with the content of this place.
-  void copy_temporarily();
+  /// Like open_temporary(), with the content of this place. False, without a temporary file, if the copy fails, such as
+  /// on a disk without room for it.
+  bool copy_temporarily();
   /// Like open_temporary(), with the content of the first results file of the sources and of this place for whose copy
   /// `is_right` is true. FileError if there is none.
   void copy_temporarily(std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right);
@@ -48,7 +49,7 @@ class Place {
 
  private:
   void claim();
-  void copy_to_temporary(const Descriptor& source);
+  bool copy_to_temporary(const Descriptor& source);  // false on failure, with the reason in errno
   void remove_temporary() noexcept;
   void release() noexcept;
 

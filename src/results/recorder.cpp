@@ -146,15 +146,20 @@ std::vector<Series> Recorder::Impl::create_series(std::size_t existing, const st
 
 void Recorder::Impl::add(const Sample& sample) {
   check_fit(sample);
-  if (series.empty()) {
+  const bool first = series.empty();
+  if (first) {
     series = create_series(0, {});
     if (layout.interval > 0.0) file.attribute("/time", "interval", layout.interval);
-    file.publish();  // from here on the metadata do not change, only lengths grow
   }
   series.front().add(sample.time);
   const double* next = sample.values.data();
   for (auto one = series.begin() + 1; one != series.end(); ++one) next = one->add(next);
   ++buffered;
+  if (first) {
+    flush();
+    file.publish();  // from here on the metadata do not change, only lengths and the indexes of the chunks grow
+    buffered = 1;    // blocks end where chunks do
+  }
   if (buffered >= block_rows || seconds_since(last_flush) > std::max(kLongestWait, kCostFactor * flush_cost)) flush();
 }
 
@@ -228,7 +233,12 @@ void Recorder::publish() {
 }
 
 void Recorder::change_beside() {
-  if (impl_ != nullptr) impl_->attempt([&] { impl_->file.change_beside(); });
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    impl_->flush();
+    impl_->series.clear();
+    impl_->file.change_beside();
+  });
 }
 
 void Recorder::of_scene(const std::string& digest) { attributes(digest_group, {{digest_attribute, digest}}); }

@@ -164,8 +164,8 @@ class Recorder {
 
   /// Moves the file to its place: it can be continued from here on.
   void publish();
-  /// What follows until finish() is written to a copy beside the file, so that a kill leaves the published tables
-  /// readable.
+  /// What follows until finish() is written to a copy beside the file, so that a kill leaves the published tables and
+  /// the samples readable. No samples follow.
   void change_beside();
   /// Whether this rank writes a file: samples on other ranks need no values.
   bool writes() const { return impl_ != nullptr; }

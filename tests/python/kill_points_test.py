@@ -1,4 +1,5 @@
-"""Studies and screens that are killed at any change of a file: all finished runs are found again, and nothing is refused."""
+"""Runs, studies and screens that are killed at any change of a file: the file is readable, all finished runs are found again,
+and nothing is refused."""
 
 import os
 import pathlib
@@ -12,7 +13,10 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from small_runs import BINARY, Computed  # noqa: E402
+from small_runs import BINARY, SOURCE, Computed  # noqa: E402
+
+sys.path.insert(0, str(SOURCE / "scripts"))
+import checked_results  # noqa: E402
 
 # Ends the process before its KILL_AT-th change of a file.
 SHIM = r"""
@@ -75,19 +79,38 @@ class Killed(Computed):
         for path in self.folder.glob("r.h5*"):
             path.unlink()
 
-    def kill_points(self, begin, words, finished, step):
-        """Kills the command at every `step`-th change of a file and resumes it. begin: puts the file in its place first.
-        finished(output): the number of runs that the resumed command has found."""
+    def kills(self, begin, words, step):
+        """Kills the command at every `step`-th change of a file. begin: puts the file in its place first."""
         at = 1
         while True:
             self.clear()
             begin()
-            ended, _ = self.run_once(*words, kill_at=at)
-            if ended:
+            if self.run_once(*words, kill_at=at)[0]:
                 break
-            yield at, finished(self.run_once(*words)[1])
+            yield at
             at += step
         self.assertGreater(at, 2 * step)
+
+    def kill_points(self, begin, words, finished, step):
+        """Resumes each killed command. finished(output): the number of runs that the resumed command has found."""
+        for at in self.kills(begin, words, step):
+            yield at, finished(self.run_once(*words)[1])
+
+    def test_samples_of_a_run_stay_readable(self):
+        (self.folder / "run.yml").write_text(STUDY.partition("study:")[0] + "output: {probes: [10.0]}\n")
+        most = 0
+        for at in self.kills(lambda: None, ("-options_file", "run.yml", "-output_file", "r.h5"), 11):
+            path = self.folder / "r.h5"
+            if not path.exists() or path.stat().st_size == 0:
+                continue
+            checked_results.check(path)
+            with h5py.File(path) as file:
+                rows = len(file["time"])
+                self.assertTrue((np.diff(file["time"][:]) > 0.0).all(), at)
+                self.assertGreaterEqual(len(file["probes/deflection"]), rows)
+            self.assertGreaterEqual(rows, most, at)  # samples that were written are never lost again
+            most = rows
+        self.assertGreater(most, 10)
 
     def copy(self, name):
         return lambda: shutil.copy(self.folder / f"{name}.h5", self.folder / "r.h5")
