@@ -140,16 +140,29 @@ void describe(const options::Fit& fit, const ForwardModel& model, std::vector<st
     if (!note.starts_with("tao_")) notes.push_back(note);
 }
 
-/// The failure of a fit whose best minimum is none within the bounds.
-RunFailure failure_of(const Residuals& residuals, const FitCourse& course) {
+/// The failure of a fit whose estimates are none: its records are not what was computed, or its best minimum is none
+/// within the bounds.
+RunFailure failure_of(const options::Fit& fit, const ForwardModel& model, const Residuals& residuals,
+                      const FitCourse& course) {
+  const int status = SolverError("").status();
+  const Minimum& best = course.minima[course.best];
+  if (const std::vector<std::string> doubts = doubts_that_remain(fit, model, residuals, course.response, best.u);
+      !doubts.empty())
+    return {0, status, fmt::format("the estimates do not explain the records: {}", fmt::join(doubts, "; "))};
   std::string held;
   for (std::size_t j = 0; j < course.estimates.of.size(); ++j)
     if (course.estimates.of[j].at_bound) held += (held.empty() ? "" : ", ") + residuals.unknowns()[j].name;
-  if (held.empty()) return {};
-  return {0, SolverError("").status(),
-          fmt::format("the fit has no minimum within its bounds: {} at a bound, beyond which the misfit decreases; "
-                      "allowed: wider bounds (fit_vary), if unit, sign, clock and offset of the measurements are right",
-                      held)};
+  if (!held.empty())
+    return {
+        0, status,
+        fmt::format("the fit has no minimum within its bounds: {} at a bound, beyond which the misfit decreases; "
+                    "allowed: wider bounds (fit_vary), if unit, sign, clock and offset of the measurements are right",
+                    held)};
+  if (has_converged(best)) return {};
+  return {0, status,
+          fmt::format("the minimisation of the fit has not converged ({}); allowed: more iterations (tao_max_it), more "
+                      "starts (fit_starts) or narrower bounds (fit_vary)",
+                      best.reason)};
 }
 
 }  // namespace
@@ -203,7 +216,7 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
     leave_together(comm, error);
   }
   if (rank == 0) print_fit(fit, residuals, course, scene.output.file);
-  if (rank == 0 && !failure.failed() && signal == 0) failure = failure_of(residuals, course);
+  if (rank == 0 && !failure.failed() && signal == 0) failure = failure_of(fit, model, residuals, course);
   failure = first_of(comm, std::move(failure));
   if (failure.failed()) throw Error(failure.message, failure.status);
   MPI_Bcast(&signal, 1, MPI_INT, 0, comm);

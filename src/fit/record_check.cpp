@@ -47,33 +47,41 @@ Statistics statistics_of(const ComparedSeries& both) {
 /// The doubts about one series.
 class RecordCheck {
  public:
+  /// response: of the unknowns u.
   RecordCheck(const options::Fit& fit, const ForwardModel& model, const Residuals& residuals,
-              const std::vector<double>& response, std::size_t series)
+              const std::vector<double>& response, const Eigen::VectorXd& u, std::size_t series)
       : fit_(fit),
         model_(model),
         residuals_(residuals),
         response_(response),
         s_(series),
         series_(fit.series[series]),
-        now_(statistics_of(compared(response, shift()))) {}
+        shift_(shift_of(u)),
+        now_(statistics_of(compared(response, shift_))) {}
 
-  void add_to(std::vector<std::string>& doubts) const {
+  /// InputError for a record that no values within the bounds can explain.
+  void refuse() const {
     if (!(now_.measured > 0.0)) return;
     const Alignment best = best_alignment();
     const Statistics aligned = best.correlation > related ? statistics_of(compared(response_, best.shift)) : now_;
     if (is_another_clock(best)) refuse_clock(best.shift);
     if (is_doubtful(now_.ratio()) && !can_be_explained()) refuse_unit(aligned.ratio());
+  }
+
+  void add_to(std::vector<std::string>& doubts) const {
+    if (!(now_.measured > 0.0)) return;
+    const Alignment best = best_alignment();
     if (now_.correlation < opposed && best.correlation < -now_.correlation)
       doubts.push_back(
           fmt::format("{}: the record has the opposite sign of the computed series (correlation {:.2f}): {} {:g}?",
                       option("series"), now_.correlation, option("factor"), -factor()));
-    else if (!series_.align && best.correlation > std::max(related, now_.correlation + better) &&
+    else if (!series_.align && !is_given("align") && best.correlation > std::max(related, now_.correlation + better) &&
              std::abs(best.shift) > shifted * model_.duration())
       doubts.push_back(
           fmt::format("{}: the correlation with the computed series is {:.2f}, and {:.2f} if the clock of the record "
                       "is {:.4g} s at the start of the scene: {} true?",
                       option("series"), now_.correlation, best.correlation, best.shift, option("align")));
-    if (series_.offset || std::abs(now_.correlation) < related) return;
+    if (series_.offset || is_given("offset") || std::abs(now_.correlation) < related) return;
     const double offset = now_.mean_measured - now_.correlation * now_.ratio() * now_.mean_computed;
     const std::vector<double>& measured = residuals_.measured(s_);
     const auto [least, greatest] = std::minmax_element(measured.begin(), measured.end());
@@ -84,6 +92,8 @@ class RecordCheck {
 
  private:
   std::string option(const char* row) const { return fmt::format("fit_to_{}_{}", series_.name, row); }
+  /// Whether the input says something on it: align: false and offset: false are answers to a doubt.
+  bool is_given(const char* row) const { return model_.given().find(option(row)) != nullptr; }
   /// The given factor of the record.
   double factor() const {
     const options::Entry* const given = model_.given().find(option("factor"));
@@ -97,10 +107,12 @@ class RecordCheck {
     return residuals_.compared(s_, response, shift);
   }
 
-  /// At the start of the fit, s.
-  double shift() const {
-    for (const Unknown& unknown : residuals_.unknowns())
-      if (unknown.kind == Unknown::Kind::shift && unknown.series == s_) return unknown.start;
+  /// Of the clock, s.
+  double shift_of(const Eigen::VectorXd& u) const {
+    for (Eigen::Index j = 0; j < u.size(); ++j) {
+      const Unknown& one = residuals_.unknowns()[static_cast<std::size_t>(j)];
+      if (one.kind == Unknown::Kind::shift && one.series == s_) return one.value(u[j]);
+    }
     return 0.0;
   }
 
@@ -118,7 +130,7 @@ class RecordCheck {
       for (const double value : {fit_.parameters[j].low, fit_.parameters[j].high}) {
         std::vector<double> values = model_.start();
         values[j] = value;
-        const double effect = statistics_of(compared(model_.run({values}).front(), shift())).computed / now_.computed;
+        const double effect = statistics_of(compared(model_.run({values}).front(), shift_)).computed / now_.computed;
         low = std::min(low, effect);
         high = std::max(high, effect);
       }
@@ -128,10 +140,9 @@ class RecordCheck {
     return now_.ratio() > least && now_.ratio() < greatest;
   }
 
-  /// Whether the record begins after the loads have left, and shows their passage. align: false is an answer to that.
+  /// Whether the record begins after the loads have left, and shows their passage.
   bool is_another_clock(const Alignment& best) const {
-    const bool answered = model_.given().find(option("align")) != nullptr;
-    return !answered && series_.time.front() >= model_.duration() && best.correlation > the_same &&
+    return !is_given("align") && series_.time.front() >= model_.duration() && best.correlation > the_same &&
            now_.correlation < unrelated && best.shift + 0.5 * model_.duration() > series_.time.front();
   }
 
@@ -164,6 +175,7 @@ class RecordCheck {
   const std::vector<double>& response_;
   std::size_t s_;
   const options::MeasuredSeries& series_;
+  double shift_;
   Statistics now_;
 };
 
@@ -171,10 +183,18 @@ class RecordCheck {
 
 std::vector<std::string> doubts_about_records(const options::Fit& fit, const ForwardModel& model,
                                               const Residuals& residuals) {
-  std::vector<std::string> doubts;
-  if (fit.series.empty()) return doubts;
+  if (fit.series.empty()) return {};
   const std::vector<double> response = model.run({model.start()}).front();
-  for (std::size_t s = 0; s < fit.series.size(); ++s) RecordCheck(fit, model, residuals, response, s).add_to(doubts);
+  for (std::size_t s = 0; s < fit.series.size(); ++s)
+    RecordCheck(fit, model, residuals, response, residuals.start(), s).refuse();
+  return doubts_that_remain(fit, model, residuals, response, residuals.start());
+}
+
+std::vector<std::string> doubts_that_remain(const options::Fit& fit, const ForwardModel& model,
+                                            const Residuals& residuals, const std::vector<double>& response,
+                                            const Eigen::VectorXd& u) {
+  std::vector<std::string> doubts;
+  for (std::size_t s = 0; s < fit.series.size(); ++s) RecordCheck(fit, model, residuals, response, u, s).add_to(doubts);
   return doubts;
 }
 

@@ -1,4 +1,5 @@
-// Compares the records of a fit with the run at its start, before the first minimisation.
+// Compares the records of a fit with the run at its start, before the first minimisation, and with that of the
+// estimates.
 #pragma once
 
 #include <string>
@@ -14,5 +15,9 @@ namespace traverse::app {
 /// aligned.
 std::vector<std::string> doubts_about_records(const options::Fit& fit, const ForwardModel& model,
                                               const Residuals& residuals);
+/// The same sentences for the computed response of other unknowns u: at the estimates, what no fit has explained.
+std::vector<std::string> doubts_that_remain(const options::Fit& fit, const ForwardModel& model,
+                                            const Residuals& residuals, const std::vector<double>& response,
+                                            const Eigen::VectorXd& u);
 
 }  // namespace traverse::app

@@ -115,6 +115,7 @@ struct Measured {
   double factor = 1.0, shift = 0.0, offset = 0.0;
   std::string words = "";
   std::string bounds = "1.0e11, 3.0e11";
+  std::vector<std::string> options = {};
 };
 
 Outcome fitted(const Measured& measured) {
@@ -129,7 +130,7 @@ Outcome fitted(const Measured& measured) {
     text += std::to_string(0.01 * i + measured.shift) + ", " +
             std::to_string(1e6 * (measured.factor * deflection(0.01 * i) + measured.offset)) + "e-6\n";
   workplace.write("a.csv", text);
-  return workplace.run();
+  return workplace.run(measured.options);
 }
 
 TEST(FitRecord, AsItShouldBeIsFittedWithoutAWord) {
@@ -176,7 +177,32 @@ TEST(FitRecord, WithAnotherSignClockOrZeroIsDoubted) {
     const std::size_t at = outcome.out.find(one.found);
     EXPECT_LT(outcome.out.find("unusual input"), at) << outcome.out << outcome.err;
     EXPECT_LT(at, outcome.out.find("modelled")) << outcome.out << outcome.err;
+    EXPECT_EQ(outcome.status, 3) << outcome.out;  // the estimates do not remove it
+    EXPECT_NE(outcome.err.find(one.found[0] == 'i' ? "if the clock of the record is" : "the record has"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.out.find("results  fit.h5"), std::string::npos) << outcome.out;
   }
+}
+
+// An answer to a doubt is taken: the record is fitted as it is.
+TEST(FitRecord, WithAnAnswerIsNotDoubted) {
+  for (const Measured& measured :
+       {Measured{.shift = 0.3, .words = ", align: true"}, Measured{.offset = 1e-3, .words = ", offset: true"},
+        Measured{.factor = -1.0, .words = ", factor: -1"}}) {
+    SCOPED_TRACE(measured.words);
+    const Outcome outcome = fitted(measured);
+    expect_success(outcome);
+    EXPECT_EQ(outcome.out.find("unusual input"), std::string::npos) << outcome.out;
+  }
+}
+
+TEST(FitRecord, WithoutConvergenceIsNoSuccess) {
+  const Outcome outcome = fitted({.options = {"-tao_max_it", "0"}});
+  EXPECT_EQ(outcome.status, 3) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.err.find("has not converged"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("tao_max_it"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("results  fit.h5"), std::string::npos) << outcome.out;
 }
 
 // A minimum beyond the bounds is no estimate.
