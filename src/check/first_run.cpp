@@ -99,6 +99,7 @@ void FirstRun::choose_mesh_and_step() {
   first_step = scene.model.step.value_or(steps.first);
   longest_step = scene.model.step.value_or(steps.longest);
   scene.model.step = first_step;
+  scene.model.step_probes = scene.model.local_compliance = true;  // as the chosen model
 }
 
 void FirstRun::find_frequencies() {

@@ -30,6 +30,8 @@ class KinkEvents {
   /// the longest step, s.
   void list_kinks(const std::vector<base::SpeedLaw>& laws, double end, double step);
 
+  std::size_t passages() const { return kinks_.size(); }
+
   /// The time at which a wheel begins (end = 0) or ends (end = 1) to turn about a kink, and the tolerance for the end
   /// of a step there.
   struct KinkEvent {

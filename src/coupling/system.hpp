@@ -224,6 +224,7 @@ class System {
       if (is_driven(static_cast<int>(i))) laws[i] = law_of_wheel(static_cast<int>(i));
     kink_events_.list_kinks(laws, end, step);
   }
+  double kink_passages() const { return static_cast<double>(kink_events_.passages()); }
   /// KinkEvents::next and KinkEvents::time_of at the state y.
   std::optional<KinkEvents::KinkEvent> next_kink(double t, double h, const double* y) {
     return kink_events_.next(t, h, y, y + n_);

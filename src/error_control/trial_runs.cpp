@@ -18,17 +18,13 @@ namespace {
 constexpr std::size_t margin_spans =
     8;  // spans beyond the train's range that remain, because waves propagate ahead of it
 constexpr std::size_t max_whole_bridge = 24;  // bridges with at most this number of spans remain whole
-constexpr double steps_per_sample =
-    32.0;  // output interval in steps, for the energies; peaks are evaluated at every step
 constexpr double max_excess =
     10.0;  // ratio of a residual to its limit above which linear vehicles are rejected at once
 // Largest output interval over longest_spacing_for(). It is above 2, so that the comparison run with twice the step is
 // included.
 constexpr double interval_ratio = 2.1;
 constexpr double solves_per_step = 5.0;  // solves of the beam's equations in a step of the default method
-constexpr double steps_per_factorisation =
-    30.0;                      // number of steps with the cost of a factorisation for a new step length
-constexpr double lead = 12.0;  // bays before the bridge, over which the transient of the start decays
+constexpr double lead = 12.0;            // bays before the bridge, over which the transient of the start decays
 
 double foremost(const Scene& scene, std::size_t vehicle) {
   const std::vector<double> wheels = wheels_at_start(scene, vehicle);
@@ -157,7 +153,7 @@ const TrialRuns::StoredRun& TrialRuns::stored_run(int elements, double step, con
   for (const StoredRun& known : stored_)
     if (known.model == model) return known;
   Scene scene = with(scene_, model);
-  scene.output.interval = steps_per_sample * step;
+  scene.output.interval = trial_steps_per_sample * step;
   if (scene.model.vehicles == VehicleModel::automatic) {
     scene.model.vehicles = VehicleModel::linear;
     scene.model.residual_limit = residual_limit_;

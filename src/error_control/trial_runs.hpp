@@ -15,6 +15,9 @@
 
 namespace traverse::app {
 
+/// Output interval of trial runs in steps, for the energies; peaks are evaluated at every step.
+inline constexpr double trial_steps_per_sample = 32.0;
+
 /// The scene with a shorter approach: a train on a level layered track starts some bays before the bridge, and the
 /// track is shortened by the same distance. The removed motion contains no new event.
 Scene trim_approach(const Scene& scene);

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "integrate/integrators.hpp"
 #include "integrate/second_order.hpp"
 #include "integrator_choice.hpp"
+#include "structure/beam_operator.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::integrate {
@@ -117,6 +119,17 @@ void Stepper::set_up_type() {
   check(SNESSetType(snes, SNESSHELL));
   check(SNESShellSetContext(snes, this));
   check(SNESShellSetSolve(snes, shell_solve));
+}
+
+StepCount Stepper::count_steps(double end, double step, double interval) {
+  std::vector<double> stops;
+  std::merge(settings_.events.begin(), settings_.events.end(), settings_.crossing_times.begin(),
+             settings_.crossing_times.end(), std::back_inserter(stops));
+  StepCount count = integrate::count_steps(end, interval, step, stops, structure::stored_factors);
+  if (!settings_.kinks || multistep_) return count;
+  system_.list_kinks(end, step);
+  const double turns = 2.0 * system_.kink_passages();  // a wheel begins and ends to turn about each
+  return {count.steps + turns, count.lengths + turns};
 }
 
 long Stepper::rejected() const {

@@ -12,6 +12,7 @@
 #include "base/petsc.hpp"
 #include "coupling/contact_event_locator.hpp"
 #include "coupling/system.hpp"
+#include "integrate/step_count.hpp"
 #include "integrate/step_size_control.hpp"
 
 namespace traverse::integrate {
@@ -66,6 +67,10 @@ class Stepper {
   void keep(base::Archive& archive);
   /// The reason why the state cannot be written; empty: it can.
   std::string no_archive() const;
+
+  /// Before the run: the steps until `end`, with lengths of at most `step` and samples every `interval`, s, as far as
+  /// it is known where they end: impacts and rejected steps are not.
+  StepCount count_steps(double end, double step, double interval);
 
   long steps() const { return steps_; }
   long rejected() const;                                           // rejected steps

@@ -47,6 +47,10 @@ class Passage {
   const Plan& plan() const { return plan_; }
   long rejected() const { return stepper_ ? stepper_->rejected() : 0; }
   long steps() const { return stepper_ ? stepper_->steps() : modal_->steps(); }
+  /// See Stepper::count_steps.
+  integrate::StepCount count_steps(double end, double step, double interval) {
+    return stepper_->count_steps(end, step, interval);
+  }
   bool stopped_at_limit() const { return stepper_ ? stepper_->stopped_at_limit() : modal_->stopped_at_limit(); }
 
  private:

@@ -9,6 +9,9 @@
 
 namespace traverse::app {
 
+/// Number of steps with the cost of a factorisation for a new step length.
+inline constexpr double steps_per_factorisation = 30.0;
+
 /// Unknowns of the bridge with this number of elements in its longest span (of the rail in a sleeper bay); elements =
 /// 0: the present number, or about the number that will be chosen. 0 without a bridge.
 double unknowns_of(const Scene& scene, int elements = 0);

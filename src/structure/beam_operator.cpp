@@ -14,7 +14,6 @@
 namespace traverse::structure {
 namespace {
 
-constexpr std::size_t stored_factors = 12;
 constexpr int most_refinements = 30;            // limit of iterative refinements of a static solution
 constexpr double converged_correction = 4e-16;  // relative correction due to rounding
 constexpr double stagnant = 0.5;                // corrections that decrease by less do not converge

@@ -31,6 +31,8 @@ struct AddedSprings {
   std::vector<double> k, c;  // stiffness and damping of every point
 };
 
+inline constexpr std::size_t stored_factors = 12;  // factorisations of the latest shifts
+
 class BeamOperator {
  public:
   /// A matrix of this rank's rows, with the block that couples them to the left neighbour rank.

@@ -9,6 +9,7 @@
 
 #include "support/paths.hpp"
 #include "support/program.hpp"
+#include "support/scene_run.hpp"
 
 namespace traverse::test {
 namespace {
@@ -291,6 +292,36 @@ TEST(Check, RefusesWhatARunRefuses) {
   expect_refusal(workplace, workplace.run({"-check", "-ts_tpye", "esdirk4"}), {"ts_tpye"});
   expect_refusal(workplace, workplace.run({"-check", "-support_types", "free"}), {"support_types"});
   expect_refusal(workplace, workplace.run({"-check", "-ts_dt", "0.5"}), {"ts_dt"});
+}
+
+// --- the estimate counts what the run does
+// ----------------------------------------------------------------------------
+
+/// The steps that -check counts, and those of the run.
+void expect_counted_steps(const Workplace& workplace, double tolerance) {
+  const Outcome check = workplace.run({"-check"});
+  expect_success(check);
+  const std::string cost = section(check.out, "cost, estimated");
+  const std::size_t at = cost.find("  steps ");
+  ASSERT_NE(at, std::string::npos) << check.out;
+  const double counted = std::stod(cost.substr(at + 8));
+  expect_success(workplace.run({"-output_file", "r.h5"}));
+  const double taken = Results(workplace.path("r.h5")).attribute("/summary", "steps");
+  EXPECT_NEAR(counted, taken, tolerance * taken);
+}
+
+// Steps end at the rows of a table, of which there are four times as many as steps would be needed.
+TEST(CheckedSteps, EndAtTheRowsOfATable) {
+  const Workplace workplace(
+      "beam: {spans: [20.0], EI: 8.0e9, mass: 9.0e3, elements_per_span: 4, damping_ratios: 0.02}\n"
+      "support: {motion: motion.csv}\nload: {forces: 1.0e5, speed: 20.0}\nts: {dt: 0.02}\noutput: {interval: 0.1}\n");
+  std::string rows;
+  for (int i = 0; i <= 200; ++i) {
+    const double t = 0.005 * i, s = std::sin(3.14159265358979 * t);
+    rows += std::to_string(t) + ", " + std::to_string(1e-3 * s * s) + "\n";
+  }
+  workplace.write("motion.csv", rows);
+  expect_counted_steps(workplace, 0.02);
 }
 
 }  // namespace
