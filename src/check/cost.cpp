@@ -72,8 +72,9 @@ struct StepSeconds {
 StepSeconds step_seconds(const FirstRun& run) {
   const Scene& scene = run.scene;
   if (scene.exact_in_time())
-    return {modal_instant_seconds(scene, static_cast<double>(run.shared->modal->modes()),
-                                  run.shared->modal->dampers_couple())};
+    return {run.passage->instants() * modal_sample_seconds(static_cast<double>(run.shared->modal->modes()),
+                                                           run.bridge()->local_unknowns(),
+                                                           run.shared->modal->dampers_couple())};
   const options::Entry* type = scene.find_option("ts_type");
   const std::string method = type == nullptr ? scene.model.method : type->value;
   const bool by_petsc = type != nullptr && structure::find_method(method) == nullptr;

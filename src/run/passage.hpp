@@ -51,6 +51,8 @@ class Passage {
   integrate::StepCount count_steps(double end, double step, double interval) {
     return stepper_->count_steps(end, step, interval);
   }
+  /// The instants of a step of a run that is exact in time.
+  double instants() const { return modal_->instants(); }
   bool stopped_at_limit() const { return stepper_ ? stepper_->stopped_at_limit() : modal_->stopped_at_limit(); }
 
  private:

@@ -21,8 +21,10 @@ constexpr double per_contact_pair = 4e-8;   // of a mechanism: each of its conta
 constexpr double rough_track_factor = 3.0;  // factor for a rough track, where contacts need more iterations
 // Time for a run's stage in a batch, s: for a vehicle, for an element.
 constexpr double per_lane_vehicle = 1e-7, per_lane_element = 5e-9;
-// Time for an instant by modes, s: for a mode, for a mode at a probe; factor for dampers that couple the modes.
+// Time for an instant by modes, s: for a mode, for a mode at a probe; factor for dampers that couple the modes. In a
+// single run: constant part, for a mode with its energies, for a mode at an unknown.
 constexpr double per_mode = 2e-9, per_mode_and_probe = 4e-10, coupled_factor = 8.0;
+constexpr double per_sample = 3e-6, per_mode_with_energy = 5e-8, per_mode_and_unknown = 1e-9;
 
 double bodies_of(const Scene& scene) {
   double bodies = 0.0;
@@ -88,6 +90,11 @@ double batch_stage_seconds(const Scene& scene, double elements) {
 double modal_instant_seconds(const Scene& scene, double modes, bool coupled) {
   const auto probes = static_cast<double>(scene.output.probes.size());
   return (coupled ? coupled_factor : 1.0) * modes * (per_mode + per_mode_and_probe * probes);
+}
+
+double modal_sample_seconds(double modes, double unknowns, bool coupled) {
+  return per_sample +
+         modes * ((coupled ? coupled_factor : 1.0) * per_mode_with_energy + per_mode_and_unknown * unknowns);
 }
 
 }  // namespace traverse::app

@@ -25,5 +25,7 @@ double step_seconds(const Scene& scene, const std::string& method = {}, int elem
 double batch_stage_seconds(const Scene& scene, double elements);
 /// Computing time of an instant of an exact solution by modes, s; coupled: dampers couple the modes.
 double modal_instant_seconds(const Scene& scene, double modes, bool coupled);
+/// Computing time of such an instant of a single run, with nodal vectors and energies, s.
+double modal_sample_seconds(double modes, double unknowns, bool coupled);
 
 }  // namespace traverse::app
