@@ -38,9 +38,9 @@ std::string without_mount(const std::string& name) { return name.substr(options:
 
 long digest_of_texts(const std::vector<Pairs>& tables) {
   base::Digest digest;
-  for (const Pairs& table : tables) {
-    digest.add(std::to_string(table.size()) + ";");
-    for (const auto& [key, value] : table) {
+  for (const Pairs& set : tables) {
+    digest.add(std::to_string(set.size()) + ";");
+    for (const auto& [key, value] : set) {
       for (const std::string* text : {&key, &value}) {
         digest.add(std::to_string(text->size()) + ":");
         digest.add(*text);

@@ -178,7 +178,8 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
 
   int ranks = 1;
   MPI_Comm_size(comm_, &ranks);
-  std::vector<int> counts(static_cast<std::size_t>(ranks)), starts(counts.size(), 0);
+  const auto count = static_cast<std::size_t>(ranks);
+  std::vector<int> counts(count), starts(count);
   const int bytes = static_cast<int>(own_loads.size() * sizeof(beam::ElementLoad));
   MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_);
   std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
