@@ -145,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
 
 /// A bridge under a force, without damping.
-constexpr const char* forces = R"(
+constexpr const char* under_a_force = R"(
 beam: {spans: 30.0, EI: 1.6e11, mass: 2.0e4, elements_per_span: 8}
 load: {forces: 1.7e5, speed: 40.0}
 ts: {dt: 2.0e-3}
@@ -166,7 +166,7 @@ std::string unusual_of(const Workplace& workplace, const std::vector<std::string
 // The first frequency is pi/2/L^2 sqrt(EI/m) = 4.94 Hz: a/(2 omega) = 0.161 for a = 10 1/s, b omega/2 = 0.155 for b =
 // 0.01 s.
 TEST(UnusualInput, DampingHoweverItIsWritten) {
-  const Workplace workplace(forces);
+  const Workplace workplace(under_a_force);
   const std::vector<std::pair<std::vector<std::string>, const char*>> cases = {
       {{"-beam_damping_ratios", "0.2,0.2"}, "20 % of critical damping"},
       {{"-beam_rayleigh", "10,0"}, "16.1 % of critical damping"},
@@ -181,7 +181,7 @@ TEST(UnusualInput, DampingHoweverItIsWritten) {
 
 // Axles of 170 kN, given as 170 N: before the computation, once, and in the results file.
 TEST(UnusualInput, IsSaidByEveryVerb) {
-  const Workplace workplace(forces);
+  const Workplace workplace(under_a_force);
   workplace.write("record.csv", "0 0\n0.3 -1e-6\n0.6 0\n");
   const std::string found = "the largest load of a wheel or force is 170 N; forces are possibly given in kN";
   const std::vector<std::vector<std::string>> verbs = {

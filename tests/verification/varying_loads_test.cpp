@@ -243,14 +243,14 @@ INSTANTIATE_TEST_SUITE_P(VaryingLoads, LoadsThatEnterAndLeave,
 // Steps end where a moment passes a node and where an end of a line load passes an end of the beam: the error of
 // fourth order is not disturbed.
 TEST_P(LoadsThatEnterAndLeave, ConvergeAtFourthOrder) {
-  const std::string load = std::get<0>(GetParam()), modes = std::get<1>(GetParam());
+  const std::string load = std::get<0>(GetParam()), of_model = std::get<1>(GetParam());
   const auto run = [&](const char* step) {
     return run_yaml(
         "beam: {spans: 24, EI: 3.0e9, mass: 2500, elements_per_span: 6, damping_ratios: 0.02}\n"
         "scene: {start: given}\noutput: {probes: [9.0], interval: 0.024}\n"
         "ts: {max_time: 1.2}\n" +
             load,
-        {{"ts_dt", step}, {"model_modes", modes}});
+        {{"ts_dt", step}, {"model_modes", of_model}});
   };
   Results exact = run("1e-4"), rough = run("1.2e-3"), fine = run("4e-4");
   const double order = std::log(difference(rough, exact) / difference(fine, exact)) / std::log(3.0);
