@@ -16,7 +16,7 @@ namespace {
 constexpr double gradient = 1e-3;  // at the end, in standard errors
 constexpr double relative_gradient = 1e-8;
 constexpr double allowed_decrease = 1e-2;  // of the sum of squares by the linearised residuals, over their mean
-constexpr double least_mean = 1e-2;        // smallest mean square that is distinguished from 0
+constexpr double least_mean = 1.0;         // mean square of residuals as large as their standard deviations
 constexpr long most_iterations = 50;
 
 using Vector = Eigen::Map<Eigen::VectorXd>;
