@@ -356,37 +356,35 @@ int run_in_time(Job job) {
   Scene scene = job.scene;
   Accuracy accuracy = job.accuracy;
   results::Repeated repeated = is_continued ? job.earlier->repeated : results::Repeated();
-  std::optional<SharedBeam> own;
+  int halvings = is_continued || !scene.step_open ? 0 : most_halvings;
+  std::optional<SharedBeam> own;  // of a run that is repeated
   if (repeated.with_mechanisms) {
     std::vector<std::string> ignored;
     scene.model.vehicles = VehicleModel::full;  // instead of linear vehicles
     own.emplace(job.comm, scene, ignored);
   }
-  int halvings = is_continued || !scene.step_open ? 0 : most_halvings;
-  SharedBeam& beam_of_first = own ? *own : job.beam;
-  Job first{job.comm, scene, std::move(job.place), accuracy, beam_of_first, std::move(job.notes), job.earlier};
-  RunEnd end = run_once(first, repeated, halvings > 0);
-  while (end.again != Retry::none) {
-    std::vector<std::string> notes;
+  while (true) {
+    Job one{job.comm, scene, std::move(job.place), accuracy, own ? *own : job.beam, std::move(job.notes), job.earlier};
+    const RunEnd end = run_once(one, repeated, halvings > 0);
+    if (end.again == Retry::none) return end.status;
     if (end.again == Retry::mechanisms) {
       scene.model.vehicles = VehicleModel::full;
       repeated.with_mechanisms = true;
-      notes.push_back(fmt::format(
+      job.notes = {fmt::format(
           "the residual of the linearised vehicles exceeded {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
-          scene.model.residual_limit));
+          scene.model.residual_limit)};
     } else {
       --halvings;
       scene.model.step = 0.5 * end.step;
       accuracy.reject_all();
-      notes.push_back(fmt::format("the run is repeated with steps of {:g} s, without error estimates: {}",
-                                  *scene.model.step, end.why));
+      job.notes = {fmt::format("the run is repeated with steps of {:g} s, without error estimates: {}",
+                               *scene.model.step, end.why)};
     }
-    SharedBeam beam(job.comm, scene, notes);
-    Job again{job.comm, scene, results::claim_place(job.comm, scene.output.file), accuracy, beam, std::move(notes)};
-    end = run_once(again, repeated, halvings > 0);
+    job.earlier = nullptr;
+    own.emplace(job.comm, scene, job.notes);
+    job.place = results::claim_place(job.comm, scene.output.file);
   }
-  return end.status;
 }
 
 }  // namespace traverse::app

@@ -78,7 +78,6 @@ class Stepper {
   std::string method() const;                                      // e.g. "ARKIMEX 4, implicit"
   /// Whether too long steps would have no visible sign. This is true for an implicit method with constant steps.
   bool hides_long_steps() const { return implicit_ && !adaptive_; }
-  bool adaptive() const { return adaptive_; }      // whether an error control selects the steps
   bool high_order() const { return high_order_; }  // order above 2
 
  private:
