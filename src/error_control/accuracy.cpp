@@ -130,7 +130,7 @@ bool damps_all_modes(const Scene& scene) {
 Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
   Choice none{scene.model, {}, {}};
   if (takes_modes_for_damping(scene))
-    if (const Choice by_modes = modes_for_damping(comm, scene, notes); by_modes.model.modes > 0) return by_modes;
+    if (Choice by_modes = modes_for_damping(comm, scene, notes); by_modes.model.modes > 0) return by_modes;
   const bool without_bridge = chooses_multibody_step(scene);
   if (!without_bridge && !chooses(scene)) return none;
   if (const options::Entry* option = adaptive_step_option(scene)) {

@@ -88,7 +88,7 @@ std::vector<CaseResult> run_all(CaseRunner& runner, const std::vector<Sample>& s
 /// Passages by numbers of modes, each computed once.
 class ModalSamples {
  public:
-  explicit ModalSamples(const Scene& scene) : scene_(scene) {}
+  explicit ModalSamples(Scene scene) : scene_(std::move(scene)) {}
 
   CaseRunner& runner(int modes) {
     std::unique_ptr<CaseRunner>& runner = runners_[modes];

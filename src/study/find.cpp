@@ -195,7 +195,7 @@ namespace {
 
 /// Why the search has no answer; empty if it has one.
 std::string search_obstacle(const StudyTable& table) {
-  if (const std::string why = undetermined(table); !why.empty()) return why;
+  if (std::string why = undetermined(table); !why.empty()) return why;
   if (const std::vector<double> wanted = values_to_add(table); !wanted.empty())
     return fmt::format(
         "find_option: the intervals are not known to {:g} after {} values ({} more are needed): the results contain "
