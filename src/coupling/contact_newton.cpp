@@ -59,8 +59,8 @@ bool ContactNewton::iterate(train::Fleet& fleet, const StageData& s, double* x) 
   const bool statics = s.shift2 == 0.0;
   bool reused = true;
   EdgeShares edges(fleet);
-  int of_shares = 0;  // the iteration that has changed the shares last
-  for (int i = 0; i < of_shares + most_iterations && i < most_static_iterations; ++i) {
+  int last_change = 0;  // the last iteration that changed the shares
+  for (int i = 0; i < last_change + most_iterations && i < most_static_iterations; ++i) {
     const Loads loads = i > 0 ? Loads::found : statics ? Loads::none : Loads::expected;
     const bool evaluated = evaluate(fleet, s, x, loads);
     if (i == 0) contacts_.list(fleet);
@@ -89,7 +89,7 @@ bool ContactNewton::iterate(train::Fleet& fleet, const StageData& s, double* x) 
     if (i == 1) second_.record(reused ? loaded_contacts(fleet) : not_comparable, before, change_);
     if (has_converged(statics, reused && i == 1, before, deviation)) {
       if (edges.settle()) return true;
-      of_shares = i;
+      last_change = i;
     }
     for (std::size_t k = 0; k < work_.size(); ++k)
       fleet.vehicles[k].converged = !statics && work_[k].change * contraction_ <= tolerance_;
