@@ -50,10 +50,10 @@ class Sources:
         return None
 
     def room(self, path):
-        """The folder of a file in src or include/traverse; empty for other files."""
+        """The folder of a file in src or include/traverse; empty for other files. Headers of no folder belong to app."""
         for folder in (self.root / "include" / "traverse", self.root / "src"):
             if path.is_relative_to(folder):
-                return path.relative_to(folder).parts[0]
+                return "app" if path.parent == folder else path.relative_to(folder).parts[0]
         return ""
 
     def place(self, path, number):

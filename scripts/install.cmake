@@ -1,5 +1,5 @@
 # What `cmake --install` puts where, in two components: the program with its scripts, scenes and documents, and what a
-# program that embeds its library needs, find_package(Traverse) or pkg-config (examples/embed). And the Debian packages of
+# program that embeds its library needs, find_package(Traverse) or pkg-config (examples/embed, examples/simulate). And the Debian packages of
 # both, which scripts/package.sh makes.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -52,7 +52,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/traverse)
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 install(TARGETS traverse_core traverse_mechanics EXPORT traverse ARCHIVE)
 install(DIRECTORY include/traverse DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY examples/embed DESTINATION ${share}/examples)
+install(DIRECTORY examples/embed examples/simulate DESTINATION ${share}/examples)
 install(EXPORT traverse NAMESPACE traverse:: DESTINATION ${package_folder} FILE traverse-targets.cmake)
 # Names in small letters, which find_package(Traverse) and find_package(traverse) look for alike.
 write_basic_package_version_file(traverse-config-version.cmake COMPATIBILITY SameMinorVersion)

@@ -78,6 +78,46 @@ TRAVERSE_API int traverse_set_body_force(traverse_passage* passage, int vehicle,
                                          double moment);
 TRAVERSE_API int traverse_set_beam_force(traverse_passage* passage, double x, double force);
 
+/* Problems and their results, without a file or a process (include/traverse/simulate.hpp has the same in C++). */
+
+/* NOLINTBEGIN(modernize-use-using) */
+typedef struct traverse_problem traverse_problem;
+typedef struct traverse_results traverse_results;
+/* NOLINTEND(modernize-use-using) */
+
+/* A problem of the options of a text in YAML or JSON, or of a scene file; text: NULL for no options. *problem is NULL
+ * on failure. Most errors in options are found by traverse_simulate and traverse_open_problem. */
+TRAVERSE_API int traverse_problem_new(const char* text, traverse_problem** problem);
+TRAVERSE_API int traverse_problem_read(const char* file, traverse_problem** problem);
+/* Sets an option (its name without a dash, its value as text), or replaces its value; NULL removes the option. */
+TRAVERSE_API int traverse_problem_set(traverse_problem* problem, const char* name, const char* value);
+/* A table, row by row, in place of a file: an option that names the file `name`, such as "wave.csv", reads it. */
+TRAVERSE_API int traverse_problem_table(traverse_problem* problem, const char* name, size_t rows, size_t columns,
+                                        const double* values);
+TRAVERSE_API void traverse_problem_free(traverse_problem* problem);
+/* Like traverse_open, for a problem. */
+TRAVERSE_API int traverse_open_problem(const traverse_problem* problem, traverse_passage** passage);
+
+/* Runs all problems; those that differ in values of options only are computed together. all_ranks: 1: all processes of
+ * mpirun make this call and share the runs, 0: this process computes alone. go_on, which may be NULL, is called about
+ * twenty times a second with the share of the work that is done, 0 to 1; if it returns 0 the runs end with status 130.
+ * *results: the results of all problems, or, if a run failed, of those computed before (the others are NaN); NULL for
+ * invalid input. */
+TRAVERSE_API int traverse_simulate(size_t count, const traverse_problem* const* problems, int all_ranks,
+                                   int (*go_on)(void* context, double done), void* context, traverse_results** results);
+/* The results of a passage up to its present sample, once. */
+TRAVERSE_API int traverse_finish(traverse_passage* passage, traverse_results** results);
+
+/* The number of results, such as peak_deflection [run, probe], the description of result i, and its values, row by row;
+ * NaN: unknown. What no run knows, such as wheel forces without wheels, is not among them. */
+TRAVERSE_API size_t traverse_results_count(const traverse_results* results);
+TRAVERSE_API int traverse_results_describe(const traverse_results* results, size_t i, traverse_quantity* quantity);
+TRAVERSE_API int traverse_results_read(const traverse_results* results, const char* name, double* values, size_t count);
+/* A text: what = "model": how run i was computed; "criterion": the name of limit i; "unusual": line i on input
+ * that is probably not intended. NULL if there is none; valid until traverse_results_free. */
+TRAVERSE_API const char* traverse_results_text(const traverse_results* results, const char* what, size_t i);
+TRAVERSE_API void traverse_results_free(traverse_results* results);
+
 #ifdef __cplusplus
 }
 #endif

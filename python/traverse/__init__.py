@@ -8,7 +8,7 @@
 `run` computes a scene, `study` many runs of it, `find` the values of an option that keep limits, `sensitivity` the
 effects of uncertain options, `fit` estimates options from measurements, `screen` checks a stock of bridges under a
 fleet, and `open` reads a results file. Each returns an xarray.Dataset.
-`Passage` computes a scene step by step. A failed computation raises `Error` with the message of the program; input
+`simulate` computes a `Problem` or many of them in this process, without a file, and `Passage` a scene step by step. A failed computation raises `Error` with the message of the program; input
 that is probably not intended causes the warning `UnusualInput`.
 doc/python.md contains examples.
 """
@@ -22,6 +22,8 @@ except ImportError as missing:
 from .dataset import open_results as open  # noqa: A004
 from .passage import Passage
 from .places import Error, UnusualInput
+from .problem import Problem
 from .program import find, fit, run, screen, sensitivity, study
+from .simulation import simulate
 
-__all__ = ["Error", "Passage", "UnusualInput", "find", "fit", "open", "run", "screen", "sensitivity", "study"]
+__all__ = ["Error", "Passage", "Problem", "UnusualInput", "find", "fit", "open", "run", "screen", "sensitivity", "simulate", "study"]

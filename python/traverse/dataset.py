@@ -50,7 +50,7 @@ def _of_file(file):
         variables[name] = variable
     results = with_coordinates(variables)
     results.attrs = _attributes(file)
-    return _in_km_per_hour(_along_axes(results, file["study"]) if "study" in file else results)
+    return in_km_per_hour(_along_axes(results, file["study"]) if "study" in file else results)
 
 
 def _datasets(group, folder=""):
@@ -83,7 +83,7 @@ def _variable(file, item, samples):
     return xarray.Variable(dimensions, values, attributes)
 
 
-def _in_km_per_hour(results):
+def in_km_per_hour(results):
     """Adds to each coordinate in m/s one in km/h: speed_kmh to speed."""
     speeds = {name: results[name] for name in results.coords
               if results[name].ndim == 1 and results[name].attrs.get("units") == "m/s"}

@@ -1,75 +1,42 @@
 """A scene step by step, through the plain C interface of libtraverse.so (include/traverse/traverse.h)."""
 
-import contextlib
 import ctypes
-import functools
 import operator
-import os
 
 import numpy as np
 import xarray
 
-from . import places, words
+from . import places
 from .dataset import name_of, with_coordinates
+from .library import NUMBERS, Quantity, check, library, results_of
+from .problem import Problem, within
 
 _MOST_C_INT = 2**31 - 1
-
-
-class _Quantity(ctypes.Structure):
-    _fields_ = [("name", ctypes.c_char_p), ("unit", ctypes.c_char_p), ("dimensions", ctypes.c_size_t),
-                ("shape", ctypes.c_size_t * 2), ("varies", ctypes.c_int), ("names", ctypes.c_char_p)]
-
-
-@functools.lru_cache(maxsize=None)
-def _library():
-    try:
-        library = ctypes.CDLL(places.shared_library())
-    except OSError as failure:
-        raise places.Error(f"libtraverse.so cannot be loaded; build it by cmake --build build ({failure})", 4) from None
-    c = ctypes
-    for name, result, *arguments in (
-            ("open", c.c_int, c.c_int, c.POINTER(c.c_char_p), c.POINTER(c.c_void_p)), ("close", None, c.c_void_p),
-            ("error", c.c_char_p), ("time", c.c_double, c.c_void_p), ("end", c.c_double, c.c_void_p),
-            ("interval", c.c_double, c.c_void_p), ("advance", c.c_int, c.c_void_p, c.c_double),
-            ("quantities", c.c_size_t, c.c_void_p),
-            ("describe", c.c_int, c.c_void_p, c.c_size_t, c.POINTER(_Quantity)),
-            ("read", c.c_int, c.c_void_p, c.c_char_p, c.POINTER(c.c_double), c.c_size_t),
-            ("set_body_force", c.c_int, c.c_void_p, c.c_int, c.c_char_p, c.c_double, c.c_double, c.c_double),
-            ("set_beam_force", c.c_int, c.c_void_p, c.c_double, c.c_double)):
-        function = getattr(library, f"traverse_{name}")
-        function.restype, function.argtypes = result, arguments
-    return library
-
-
-def _checked(status, unsaid=""):
-    """Raises Error for a status other than 0, with the message of the library; unsaid: a text removed from it."""
-    if status != 0:
-        raise places.Error(_library().traverse_error().decode(errors="replace").replace(unsaid, ""), status)
 
 
 class Passage:
     """One scene, computed from sample to sample in this process.
 
-    scene, folder and options are those of `traverse.run`. Samples are at the multiples of output_interval, at which
+    scene, folder and options are those of `traverse.run`; scene may be a Problem. Samples are at the multiples of output_interval, at which
     steps end exactly; quantities are read and forces change there. Vehicles are mechanisms unless model_vehicles is
     set. Without a set force, the values are bit-identical to those of `run` with model_vehicles="full".
     """
 
     def __init__(self, scene, *, folder=None, **options):
         self._handle = None
-        self._library = _library()
-        with words.of_scenes(scene) as (files, scratch), _within(folder):
-            asked = [word.encode() for word in (*files, *words.of_options(options))]
-            handle = ctypes.c_void_p()
-            _checked(self._library.traverse_open(len(asked), (ctypes.c_char_p * len(asked))(*asked),
-                                                 ctypes.byref(handle)), scratch + os.sep)
+        self._library = library()
+        problem = scene.with_options(**options) if isinstance(scene, Problem) else \
+            Problem(scene, folder=folder, **options)
+        handle = ctypes.c_void_p()
+        with within(problem.folder), problem.handle() as described:
+            check(self._library.traverse_open_problem(described, ctypes.byref(handle)))
         self._handle = handle.value
         self._quantities = dict(self._described())
 
     def _described(self):
-        quantity = _Quantity()
+        quantity = Quantity()
         for i in range(self._library.traverse_quantities(self._handle)):
-            _checked(self._library.traverse_describe(self._handle, i, ctypes.byref(quantity)))
+            check(self._library.traverse_describe(self._handle, i, ctypes.byref(quantity)))
             path = quantity.name.decode()
             shape = tuple(quantity.shape[: quantity.dimensions])
             dimensions = tuple(quantity.names.decode().split())
@@ -104,7 +71,7 @@ class Passage:
         """Computes up to the first sample at or after `time` (s), or up to the next one. Returns its time, s."""
         if time is None:
             time = min(self.time + self.interval, self.end)
-        _checked(self._library.traverse_advance(self._open(), time))
+        check(self._library.traverse_advance(self._open(), time))
         return self.time
 
     def read(self, name=None):
@@ -121,7 +88,7 @@ class Passage:
     def _values(self, name):
         path, _, shape, _ = self._quantities[name]
         values = np.empty(shape)
-        _checked(self._library.traverse_read(self._open(), path, values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)),
+        check(self._library.traverse_read(self._open(), path, values.ctypes.data_as(NUMBERS),
                                              values.size))
         return values
 
@@ -137,11 +104,17 @@ class Passage:
             vehicle = operator.index(vehicle)
             if not 0 <= vehicle <= _MOST_C_INT:  # ctypes truncates larger numbers
                 raise places.Error(f"set_force: there is no vehicle {vehicle}: they count from 0", 2)
-            _checked(self._library.traverse_set_body_force(self._open(), vehicle, body.encode(), fx, fy, moment))
+            check(self._library.traverse_set_body_force(self._open(), vehicle, body.encode(), fx, fy, moment))
             return
         if fx != 0.0 or moment != 0.0:
             raise places.Error("set_force: at a station of the beam only fy acts", 2)
-        _checked(self._library.traverse_set_beam_force(self._open(), x, fy))
+        check(self._library.traverse_set_beam_force(self._open(), x, fy))
+
+    def results(self):
+        """The greatest results up to the current sample, as of `simulate`; once, after which only `close` is possible."""
+        made = ctypes.c_void_p()
+        check(self._library.traverse_finish(self._open(), ctypes.byref(made)))
+        return results_of(made)
 
     def close(self):
         """Frees the memory; the passage cannot be used afterwards."""
@@ -157,15 +130,3 @@ class Passage:
 
     def __del__(self):
         self.close()
-
-
-@contextlib.contextmanager
-def _within(folder):
-    """Changes the working directory, to which the files of a scene are relative, within this context."""
-    before = os.getcwd()
-    if folder is not None:
-        os.chdir(folder)
-    try:
-        yield
-    finally:
-        os.chdir(before)

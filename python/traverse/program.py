@@ -115,7 +115,7 @@ def screen(stock, fleet, limits, speeds=None, *, folder=None, ranks=1, output=No
     return _computed([scene], folder, ranks, output, {**asked, **options})
 
 
-def _number_of(ranks):
+def number_of_ranks(ranks):
     """The number of ranks, a whole number from 1 to MOST_RANKS; Error otherwise."""
     try:
         number = 0 if isinstance(ranks, bool) else operator.index(ranks)
@@ -136,7 +136,7 @@ def _version_of(path):
 
 
 def _computed(scenes, folder, ranks, output, options):
-    ranks = _number_of(ranks)
+    ranks = number_of_ranks(ranks)
     with words.of_scenes(*scenes) as (files, scratch):
         kept = pathlib.Path(folder or ".", output) if output is not None else pathlib.Path(scratch, "results.h5")
         asked = [places.program(), *files, *words.of_options(options), "-output_quiet", "true",
@@ -145,7 +145,7 @@ def _computed(scenes, folder, ranks, output, options):
             asked = ["mpirun", "-n", str(ranks), *asked]
         earlier = _version_of(kept)
         ended = subprocess.run([*asked, "-output_file", str(kept.resolve())], cwd=folder, capture_output=True,
-                               text=True, errors="replace", env=_environment(), stdin=subprocess.DEVNULL)
+                               text=True, errors="replace", env=environment(), stdin=subprocess.DEVNULL)
         for line in words.unusual_input(ended.stdout):
             warnings.warn(line, places.UnusualInput, stacklevel=3)
         if ended.returncode != 0:
@@ -156,7 +156,7 @@ def _computed(scenes, folder, ranks, output, options):
         return open_results(kept)
 
 
-def _environment():
+def environment():
     """Environment variables: more ranks than processors and mpirun as root, as in run.sh; no options of PETSc."""
     defaults = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}
     if os.geteuid() == 0:

@@ -22,16 +22,17 @@ def plain(value):
     return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
-def _text(value):
+def text(value):
+    """A number, a text, a boolean or a list as the program reads it."""
     value = plain(value)
     if isinstance(value, bool):
         return "true" if value else "false"
-    return ",".join(map(_text, value)) if isinstance(value, list) else str(value)
+    return ",".join(map(text, value)) if isinstance(value, list) else str(value)
 
 
 def of_options(options):
     """{"train_speed": 70.0} as ["-train_speed", "70.0"]; a value may be a number, a text, a boolean or a list."""
-    return [word for name, value in options.items() for word in (f"-{name}", _text(value))]
+    return [word for name, value in options.items() for word in (f"-{name}", text(value))]
 
 
 @contextlib.contextmanager

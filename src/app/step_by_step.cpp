@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "error_control/sweep_model.hpp"
+#include "run/signals.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
@@ -27,17 +30,23 @@ void check_goes_in_time(const Scene& scene) {
 
 }  // namespace
 
-Scene StepByStep::chosen(Scene scene, Accuracy& accuracy, std::vector<std::string>& notes) {
+ChosenScene choose_for_one_run(Scene scene) {
   check_goes_in_time(scene);
   scene.quiet = true;
-  accuracy = choose_model(PETSC_COMM_SELF, scene, notes);
-  return scene;
+  std::vector<std::string> ignored;
+  Accuracy accuracy = choose_model(PETSC_COMM_SELF, scene, ignored);
+  return {std::move(scene), std::move(accuracy)};
 }
 
-StepByStep::StepByStep(const Scene& scene)
-    : scene_(chosen(scene, accuracy_, notes_)), shared_(PETSC_COMM_SELF, scene_, notes_) {
-  prepare(scene_, accuracy_, shared_, notes_);
-  simulation_.emplace(scene_, shared_, Wants{.stored = true}, notes_);
+StepByStep::StepByStep(ChosenScene chosen) : scene_(std::move(chosen.scene)), shared_(PETSC_COMM_SELF, scene_, notes_) {
+  const double cutoff = prepare(scene_, chosen.accuracy, shared_, notes_);
+  simulation_.emplace(scene_, shared_,
+                      Wants{.stored = true,
+                            .limits = scene_.has_run_limits(),
+                            .wheel_filter = true,
+                            .deck_cutoff = cutoff,
+                            .trials_until = chosen.accuracy.covered_until},
+                      notes_);
   outputs_.emplace(outputs_of({scene_, simulation_->system().fleet(), shared_.bridge()}));
   if (shared_.beam) shared_.beam->release_matrices();
   simulation_->begin({this});
@@ -49,7 +58,9 @@ void StepByStep::sample(const integrate::Instant& instant) {
   outputs_->fill(simulation_->evaluation().observed(), values_);
 }
 
-bool StepByStep::step(double t, long /*steps*/) { return t < wanted_ - same_sample * interval(); }
+bool StepByStep::step(double t, long /*steps*/) {
+  return t < wanted_ - same_sample * interval() && caught_signal() == 0;
+}
 
 double StepByStep::interval() const {
   return simulation_->plan().interval * static_cast<double>(simulation_->plan().stored);
@@ -64,9 +75,54 @@ void StepByStep::advance(double t) {
   if (wanted_ <= time_ + slack) return;
   failed_ = true;
   simulation_->run({this});
+  if (caught_signal() != 0) throw Error("the run was stopped", 128 + caught_signal());
   if (time_ < wanted_ - slack)
     throw SolverError(fmt::format("the passage ended at {:g} s, at the limit of ts_max_steps", time_));
   failed_ = false;
+}
+
+std::span<const double> StepByStep::read(const std::string& dataset) const {
+  std::size_t first = 0;
+  for (const auto& field : layout().fields) {
+    if (field.name == dataset) return std::span(values_).subspan(first, field.width());
+    first += field.width();
+  }
+  for (const auto& constant : layout().constants)
+    if (constant.name == dataset) return constant.values;
+  throw InputError("there is no quantity " + dataset + "; traverse_describe lists the available quantities");
+}
+
+traverse::Result StepByStep::result() {
+  const double residual = simulation_->system().linearisation_residual();
+  if (residual <= scene_.model.residual_limit) simulation_->evaluation().check_balance();
+  const Result found = simulation_->result();
+  const base::PassagePeaks peaks = found.passage_peaks();
+  const std::vector<double> statics = simulation_->static_deflections();
+  const auto extreme = [](const base::Extreme& one) { return traverse::Extreme{one.value, one.time}; };
+  traverse::Result result;
+  for (std::size_t p = 0; p < peaks.peaks.size(); ++p)
+    result.probes.push_back({scene_.output.probes[p], extreme(peaks.peaks[p].deflection),
+                             extreme(peaks.peaks[p].acceleration), extreme(peaks.peaks[p].moment), statics[p]});
+  if (!simulation_->system().fleet().wheels.empty()) {
+    result.least_wheel_force = peaks.least_wheel_force;
+    result.greatest_wheel_force = peaks.greatest_wheel_force;
+    result.contact_losses = peaks.contact_losses;
+    result.longest_loss = peaks.longest_loss;
+  }
+  std::vector<options::VerdictLimit> limits;
+  for (const results::Verdict& verdict : found.verdicts) limits.push_back(verdict.limit);
+  const std::vector<std::string> names = results::names_of_limits(limits);
+  for (std::size_t l = 0; l < limits.size(); ++l) {
+    const results::EvaluatedQuantity& value = found.verdicts[l].found;
+    result.limits.push_back(
+        {names[l], limits[l].quantity, found.verdicts[l].unit, limits[l].value, value.value, value.x, value.why});
+  }
+  const double scale = found.summary.energy_scale;
+  result.energy_residual = scale > 0.0 ? found.summary.energy_residual / scale : 0.0;
+  result.linearisation_residual = residual;
+  result.steps = static_cast<double>(found.summary.steps);
+  result.model = scene_.beam ? results::method_of(stored_model(scene_, {})) : "";
+  return result;
 }
 
 void StepByStep::check_takes_forces() {
@@ -74,7 +130,7 @@ void StepByStep::check_takes_forces() {
     throw InputError("forces cannot be set where modes move exactly in time: model_modes 0");
 }
 
-void StepByStep::apply_to_body(int vehicle, const std::string& body, const Eigen::Vector3d& action) {
+void StepByStep::set_body_force(int vehicle, const std::string& body, const std::array<double, 3>& force) {
   check_takes_forces();
   const std::vector<train::Member>& members = simulation_->system().fleet().members;
   if (vehicle < 0 || vehicle >= static_cast<int>(members.size()))
@@ -84,11 +140,12 @@ void StepByStep::apply_to_body(int vehicle, const std::string& body, const Eigen
   const auto& bodies = type.mechanism.bodies;
   const auto found = std::find_if(bodies.begin(), bodies.end(), [&](const auto& b) { return b.name == body; });
   if (found == bodies.end()) throw InputError(fmt::format("vehicle {} ({}) has no body {}", vehicle, type.name, body));
+  const Eigen::Vector3d action(force[0], force[1], force[2]);
   if (!action.allFinite()) throw InputError("a force has to be a finite number");
   simulation_->system().apply_to_body(vehicle, static_cast<int>(found - bodies.begin()), action);
 }
 
-void StepByStep::apply_to_beam(double x, double force) {
+void StepByStep::set_beam_force(double x, double force) {
   check_takes_forces();
   if (!std::isfinite(force)) throw InputError("a force has to be a finite number");
   simulation_->system().apply_to_beam(x, force);

@@ -1,25 +1,36 @@
 // A scene whose motion another program advances from sample to sample, with forces that it may set between samples.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "prepare.hpp"
 #include "run/outputs.hpp"
 #include "run/simulation.hpp"
+#include "traverse/simulate.hpp"
 
 namespace traverse::app {
 
+/// A scene with the model that was chosen for it on this process.
+struct ChosenScene {
+  Scene scene;
+  Accuracy accuracy;
+};
+/// Throws Error like `run`, and InputError for a scene without motion in time.
+ChosenScene choose_for_one_run(Scene scene);
+
 /// Runs on this process alone. The time steps are equal to the steps of `run` for the same scene. The results are equal
 /// too if no force is set.
-class StepByStep : private Observer {
+class StepByStep : public Instant, private Observer {
  public:
-  /// Sets up the state at t = 0. Throws Error like `run`, and InputError for a scene without motion in time.
-  explicit StepByStep(const Scene& scene);
+  /// Sets up the state at t = 0. Throws Error like `run`.
+  explicit StepByStep(ChosenScene chosen);
 
-  double time() const { return time_; }  // s, time of the present sample
-  double end() const { return simulation_->plan().end_time; }
+  double time() const override { return time_; }  // s, time of the present sample
+  double end() const override { return simulation_->plan().end_time; }
   double interval() const;  // s between samples
 
   /// Advances to the first sample at or after t, s; does nothing if it is already reached. Throws InputError if t is
@@ -30,20 +41,22 @@ class StepByStep : private Observer {
   const results::Layout& layout() const { return outputs_->layout(); }
   const std::vector<double>& values() const { return values_; }
 
-  /// Sets a force that is constant from now on: (N, N, N m) on a body of a vehicle, numbered as in the train, or a
-  /// vertical force (N, upward) on the beam at a station x (m). It replaces the previous force there. Throws InputError
-  /// if the body or the station does not exist, and for a model that does not admit such forces.
-  void apply_to_body(int vehicle, const std::string& body, const Eigen::Vector3d& action);
-  void apply_to_beam(double x, double force);
+  std::span<const double> read(const std::string& dataset) const override;
+  /// The force replaces the previous one there. Throws InputError if the body or the station does not exist, and for a
+  /// model that does not admit such forces.
+  void set_body_force(int vehicle, const std::string& body, const std::array<double, 3>& force) override;
+  void set_beam_force(double x, double force) override;
+
+  /// After the last sample, once. SolverError if the energies show that the motion is invalid.
+  traverse::Result result();
+  double step_length() const { return simulation_->plan().time_step; }  // s, of the longest step
 
  private:
-  static Scene chosen(Scene scene, Accuracy& accuracy, std::vector<std::string>& notes);
   void sample(const integrate::Instant& instant) override;
   bool step(double t, long steps) override;
   void check_takes_forces();
 
   std::vector<std::string> notes_;
-  Accuracy accuracy_;
   Scene scene_;
   SharedBeam shared_;
   std::optional<Simulation> simulation_;

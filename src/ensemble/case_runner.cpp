@@ -221,18 +221,8 @@ CaseResult CaseRunner::run_by_elements(const Scene& scene, std::size_t train, co
   }
   simulation.evaluation().check_balance();
   const Result found = simulation.result();
-  for (std::size_t p = 0; p < result.peaks.size(); ++p) {
-    const auto peak = [&](Quantity q) {
-      const Extreme& extreme = found.peaks.largest_of_each(q)[p];
-      return base::Extreme{std::abs(extreme.value), extreme.time};
-    };
-    result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
-  }
+  static_cast<base::PassagePeaks&>(result) = found.passage_peaks();
   for (const results::Verdict& verdict : found.verdicts) result.evaluated.push_back(verdict.found);
-  result.least_wheel_force = found.summary.least_wheel_force;
-  result.greatest_wheel_force = found.summary.greatest_wheel_force;
-  result.contact_losses = found.summary.contact_losses;
-  result.longest_loss = found.summary.longest_loss;
   result.outside_trials = found.has_uncovered_event(scene.model.trials_lost_contact ? covered_until : 0.0);
   set_static_deflection(train, simulation);
   result.static_deflection = static_deflection_[train];
@@ -243,13 +233,8 @@ CaseResult CaseRunner::run_by_elements(const Scene& scene, std::size_t train, co
 // Trains whose wheels keep their distances have the same static deflections in all runs.
 void CaseRunner::set_static_deflection(std::size_t train, Simulation& simulation) {
   std::vector<double>& static_deflection = static_deflection_[train];
-  const train::WheelPaths& paths = simulation.evaluation().paths();
-  coupling::QuasiStaticResponse& weights = simulation.system().weights();
-  if (!static_deflection.empty() && weights.pass_together(paths)) return;
-  static_deflection.clear();
-  for (const double x : scene_.output.probes)
-    if (caught_signal() == 0)
-      static_deflection.push_back(weights.static_peak(x, paths, simulation.evaluation().time()));
+  if (static_deflection.empty() || !simulation.system().weights().pass_together(simulation.evaluation().paths()))
+    static_deflection = simulation.static_deflections();
 }
 
 const modal_engine::MovingForcePassages& CaseRunner::passages_of(std::size_t train) {

@@ -197,8 +197,7 @@ Input read_input(int argc, char** argv, const std::vector<Entry>& before, bool p
   }
   use_own_names(input.entries);
   if (petscrc) input.notes = add_weakest(read_petscrc(files), input.entries);
-  input.entries.set_default({"scene_name", scene_name.empty() ? "scene" : scene_name, "options_file", 0});
-  check_for_petsc(input.entries);
+  input.entries = complete(std::move(input.entries), scene_name.empty() ? "scene" : scene_name);
   input.petsc_words = {argc > 0 ? argv[0] : "traverse", "-skip_petscrc", "true", "-options_left", "false"};
   for (const Entry& entry : input.entries) {
     if (!passes_to_petsc(entry.name)) continue;
@@ -208,6 +207,13 @@ Input read_input(int argc, char** argv, const std::vector<Entry>& before, bool p
     if (!option->value.empty()) input.petsc_words.push_back(option->value);
   }
   return input;
+}
+
+Entries complete(Entries entries, const std::string& scene_name) {
+  use_own_names(entries);
+  entries.set_default({"scene_name", scene_name, "options_file", 0});
+  check_for_petsc(entries);
+  return entries;
 }
 
 Arguments::Arguments(std::vector<std::string> words) : words_(std::move(words)) {
@@ -222,6 +228,18 @@ void put_into_petsc(const Input& input) {
     if (is_read_by_solvers(entry)) put(entry);
   last_put = input.entries;
   last_notes = input.notes;
+}
+
+InPetsc::InPetsc(const Entries& entries) {
+  for (const Entry& entry : entries) {
+    if (!is_read_by_solvers(entry)) continue;
+    put(entry);
+    names_.push_back("-" + name_in_petsc(entry.name));
+  }
+}
+
+InPetsc::~InPetsc() {
+  for (const std::string& name : names_) (void)PetscOptionsClearValue(nullptr, name.c_str());
 }
 
 WithoutMonitors::WithoutMonitors() {

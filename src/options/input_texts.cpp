@@ -22,6 +22,8 @@ struct Mounted {
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 Mounted mounted_inputs;  // one per process, as PETSc's options
+constexpr std::string_view memory_prefix = "table ";
+const std::map<std::string, std::string>* tables_in_memory = nullptr;
 std::vector<InputText> recorded;
 std::vector<char> recorded_tables;  // for each recorded text: 1 for a table
 
@@ -34,6 +36,7 @@ const InputText* find_mounted(const std::string& path) {
 }
 
 void record(const std::string& path, const std::string& text, bool table) {
+  if (tables_in_memory != nullptr) return;
   const std::string name = path.substr(mounted(path).size());
   if (std::any_of(recorded.begin(), recorded.end(), [&](const InputText& file) { return file.name == name; })) return;
   recorded.push_back({name, text});
@@ -69,11 +72,22 @@ void check_characters(std::string_view text, const std::string& name) {
 
 std::string read_text(const std::string& path, const TextKind& kind) {
   const InputText* stored = find_mounted(path);
-  std::string text = stored != nullptr ? stored->text : text_on_disk(path, kind);
+  std::string text = path.starts_with(memory_prefix) && tables_in_memory != nullptr
+                         ? tables_in_memory->at(path.substr(memory_prefix.size()))
+                     : stored != nullptr ? stored->text
+                                         : text_on_disk(path, kind);
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   check_characters(text, path);
   record(path, text, kind.table);
   return text;
+}
+
+TablesInMemory::TablesInMemory(const std::map<std::string, std::string>& tables) { tables_in_memory = &tables; }
+TablesInMemory::~TablesInMemory() { tables_in_memory = nullptr; }
+
+std::string in_memory(const std::string& name) {
+  const bool known = tables_in_memory != nullptr && tables_in_memory->contains(name);
+  return known ? std::string(memory_prefix) + name : "";
 }
 
 void record_text(const std::string& path, const std::string& text) { record(path, text, true); }

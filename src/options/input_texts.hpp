@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,18 @@ void record_text(const std::string& path, const std::string& text);
 const std::vector<InputText>& inputs_read();
 /// The recorded texts except options files, because the entries of these are stored as options.
 std::vector<InputText> tables_read();
+
+/// Tables of a program in place of files, by their names, as long as the object exists: files of these names are not
+/// looked for on the disk. What is read meanwhile is not recorded. Only one may exist at a time.
+class TablesInMemory {
+ public:
+  explicit TablesInMemory(const std::map<std::string, std::string>& tables);
+  ~TablesInMemory();
+  TablesInMemory(const TablesInMemory&) = delete;
+  TablesInMemory& operator=(const TablesInMemory&) = delete;
+};
+/// The path of a table in memory for read_text; empty if there is none of this name.
+std::string in_memory(const std::string& name);
 
 /// From now on a path that begins with `prefix` refers to one of these files.
 void mount_inputs(const std::string& prefix, std::vector<InputText> files);

@@ -304,6 +304,7 @@ std::vector<Entry> parse_words(const std::vector<std::string>& words, const std:
 }
 
 std::string find_file(const std::string& path, const std::string& named_in) {
+  if (std::string table = in_memory(path); !table.empty()) return table;
   if (const std::string& prefix = mounted(named_in); !prefix.empty()) {
     const std::filesystem::path folder = std::filesystem::path(named_in.substr(prefix.size())).parent_path();
     for (const std::filesystem::path& at :

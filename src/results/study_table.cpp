@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "base/broadcast.hpp"
 #include "results/engineering_units.hpp"
 #include "results/sweep.hpp"
 
@@ -64,6 +65,12 @@ void StudyTable::merge(std::size_t row, const double* numbers) {
       if (replaced[k] == 1 || (follows && replaced[k] == 2 && *numbers < value)) value = *numbers;
     }
   }
+}
+
+void StudyTable::broadcast(MPI_Comm comm) {
+  for (Column& column : columns_) column.values = base::broadcast(comm, std::move(column.values));
+  finished_ = base::broadcast(comm, std::move(finished_));
+  for (std::string& reason : reasons_) reason = base::broadcast(comm, std::move(reason));
 }
 
 options::Study rows_of(const options::Study& study) {

@@ -1,6 +1,8 @@
 // The results of a study, one row for each run: stored under /study and /summary, and printed as a table.
 #pragma once
 
+#include <mpi.h>
+
 #include <limits>
 #include <string>
 #include <vector>
@@ -58,6 +60,8 @@ class StudyTable {
   /// after the last one and has their greatest values, for least forces their least values. runs: number of runs of
   /// this row of which the numbers are the greatest.
   void put(std::size_t run, const double* numbers, std::size_t runs = 1);
+  /// Collective. Copies the rows and reasons of rank 0 to all ranks.
+  void broadcast(MPI_Comm comm);
   /// Sets the reason why runs cannot evaluate the quantity of a limit, in words.
   void set_reason(std::size_t limit, const std::string& why) { reasons_[limit] = why; }
   /// The reason that was set last; empty if there is none.

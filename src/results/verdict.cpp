@@ -71,14 +71,18 @@ void print_verdicts(const std::vector<Verdict>& verdicts, const std::vector<std:
   std::fflush(stdout);
 }
 
-void record_limits(Recorder& recorder, const std::vector<options::VerdictLimit>& limits) {
+std::vector<std::string> names_of_limits(const std::vector<options::VerdictLimit>& limits) {
   std::vector<std::string> names;
   std::map<std::string, int> times;
   for (const options::VerdictLimit& limit : limits) {
     const int time = ++times[limit.quantity];
     names.push_back(time == 1 ? limit.quantity : fmt::format("{}_{}", limit.quantity, time));
   }
-  recorder.names("/criterion", names);
+  return names;
+}
+
+void record_limits(Recorder& recorder, const std::vector<options::VerdictLimit>& limits) {
+  recorder.names("/criterion", names_of_limits(limits));
 }
 
 void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts) {

@@ -54,8 +54,10 @@ struct LimitResults {
 /// A verdict on each limit by the run with the greatest value; run_text(i) names run i.
 std::vector<Verdict> worst_of(const LimitResults& results, const std::function<std::string(std::size_t)>& run_text);
 
-/// Writes /criterion, the dimension of all datasets with a value for each limit: its quantity, "deck_acceleration",
-/// with a number from the second limit of a quantity on, "deck_acceleration_2".
+/// A name for each limit: its quantity, "deck_acceleration", with a number from the second limit of a quantity on,
+/// "deck_acceleration_2".
+std::vector<std::string> names_of_limits(const std::vector<options::VerdictLimit>& limits);
+/// Writes /criterion, the dimension of all datasets with a value for each limit, with their names.
 void record_limits(Recorder& recorder, const std::vector<options::VerdictLimit>& limits);
 /// Writes /verdicts of the results file.
 void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts);

@@ -25,6 +25,19 @@ constexpr double max_static_work =
 
 }  // namespace
 
+base::PassagePeaks Result::passage_peaks() const {
+  base::PassagePeaks found{{}, summary.least_wheel_force, summary.greatest_wheel_force,
+                           static_cast<double>(summary.contact_losses), summary.longest_loss};
+  for (std::size_t p = 0; p < peaks.probes(); ++p) {
+    const auto peak = [&](Quantity q) {
+      const Extreme& extreme = peaks.largest_of_each(q)[p];
+      return base::Extreme{std::abs(extreme.value), extreme.time};
+    };
+    found.peaks.push_back({peak(deflection), peak(acceleration), peak(moment)});
+  }
+  return found;
+}
+
 void Result::record(results::Recorder& recorder) const {
   recorder.datasets(datasets);
   recorder.tables(tables);

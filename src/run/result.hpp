@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/passage_peaks.hpp"
 #include "results/recorder.hpp"
 #include "results/verdict.hpp"
 #include "run/response_extremes.hpp"
@@ -13,6 +14,9 @@
 namespace traverse::app {
 
 struct Result {
+  /// The magnitudes of the peaks at each probe, and the extremes of all wheels.
+  base::PassagePeaks passage_peaks() const;
+
   ResponseExtremes peaks;                        // of each quantity at every probe and wheel
   results::Summary summary;                      // greatest values; energies, residuals and cost of the run
   std::vector<results::Separation> separations;  // losses of contact

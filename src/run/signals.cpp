@@ -10,8 +10,11 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
+#include <thread>
+#include <utility>
 
 #include "results/place.hpp"
 #include "results/stage.hpp"
@@ -34,6 +37,13 @@ std::array<HandledSignal, 7> signals = {{{SIGINT, "2", false},
                                          {SIGUSR1, "10", false}}};
 
 std::atomic<int> caught{0}, deferring{0};
+/// What a StopRequest asks.
+struct Asked {
+  std::function<bool()> go_on;
+  std::thread::id thread;
+  std::chrono::steady_clock::time_point last;
+};
+Asked asked;
 std::atomic<bool> printing{true}, checkpoint_flag{false};
 
 /// Calls async-signal-safe functions only.
@@ -104,7 +114,23 @@ DeferredSignals::DeferredSignals() { ++deferring; }
 
 DeferredSignals::~DeferredSignals() { --deferring; }
 
-int caught_signal() { return caught; }
+StopRequest::StopRequest(std::function<bool()> go_on) { asked = {std::move(go_on), std::this_thread::get_id(), {}}; }
+
+StopRequest::~StopRequest() {
+  asked = {};
+  caught = 0;
+}
+
+int caught_signal() {
+  if (asked.go_on && caught == 0 && std::this_thread::get_id() == asked.thread) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - asked.last > std::chrono::milliseconds(50)) {
+      asked.last = now;
+      if (!asked.go_on()) caught = SIGINT;
+    }
+  }
+  return caught;
+}
 
 bool checkpoint_requested() { return checkpoint_flag.exchange(false); }
 

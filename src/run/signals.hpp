@@ -4,6 +4,8 @@
 
 #include <mpi.h>
 
+#include <functional>
+
 namespace traverse::app {
 
 /// Stores which signals are ignored (nohup); they remain ignored. Called before libraries are initialised, because UCX
@@ -29,6 +31,16 @@ class DeferredSignals {
 
 /// The deferred signal, or 0.
 int caught_signal();
+
+/// For programs that have their own signals: as long as the object exists, `caught_signal` asks `go_on` in this thread,
+/// at most twenty times a second, and is SIGINT once that has returned false.
+class StopRequest {
+ public:
+  explicit StopRequest(std::function<bool()> go_on);
+  ~StopRequest();
+  StopRequest(const StopRequest&) = delete;
+  StopRequest& operator=(const StopRequest&) = delete;
+};
 /// Whether SIGUSR1 has requested a checkpoint since the last call.
 bool checkpoint_requested();
 /// Collective. The signal of any rank of comm.

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "run/signals.hpp"
+
 namespace traverse::app {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr double rounding_worth_a_note = 1e-9;  // relative error of static defl
 
 Simulation::Simulation(const Scene& scene, const SharedBeam& shared, const Wants& wants,
                        std::vector<std::string>& notes, const Plan* earlier)
-    : comm_(shared.comm), passage_(scene, shared, notes, earlier) {
+    : comm_(shared.comm), scene_(scene), passage_(scene, shared, notes, earlier) {
   passage_.start(notes);
   if (const double error = system().static_error(); error > rounding_worth_a_note)
     notes.push_back(fmt::format(
@@ -57,6 +59,14 @@ Result Simulation::result() {
     MPI_Allreduce(MPI_IN_PLACE, &summary.energy_left, 1, MPI_DOUBLE, MPI_SUM, comm_);
   }
   return result;
+}
+
+std::vector<double> Simulation::static_deflections() {
+  std::vector<double> deflections;
+  for (const double x : scene_.output.probes)
+    deflections.push_back(
+        caught_signal() == 0 ? system().weights().static_peak(x, evaluation_->paths(), evaluation_->time()) : 0.0);
+  return deflections;
 }
 
 void Simulation::keep(base::Archive& archive) {

@@ -28,6 +28,9 @@ class Simulation {
   /// Collective. After the last step, once.
   Result result();
 
+  /// After the last step: the largest static deflection at each probe while the same loads pass, m; 0 after a signal.
+  std::vector<double> static_deflections();
+
   /// Collective. Writes the state between two steps, or reads it after the start.
   void keep(base::Archive& archive);
 
@@ -40,6 +43,7 @@ class Simulation {
   void sample(const integrate::Instant& instant, Observers observers);
 
   MPI_Comm comm_;
+  const Scene& scene_;
   Passage passage_;
   std::optional<Evaluation> evaluation_;  // there after the start
 };

@@ -270,6 +270,14 @@ std::string why_not_varied(const Options& o, const std::string& option) {
   return row.count > 1 ? fmt::format("it needs {}, not one number", options::allowed(row)) : "it is not a number";
 }
 
+std::vector<std::string> not_varied(Options given, const std::vector<std::string>& names) {
+  declare_parts(given);
+  std::vector<std::string> found;
+  for (const std::string& name : names)
+    if (!given.knows(name) || !why_not_varied(given, name).empty()) found.push_back(name);
+  return found;
+}
+
 bool describes_study(const Options& o) { return o.first_with_prefix(study_prefix) != nullptr || describes_search(o); }
 
 Scene read_study(const Options& given) {

@@ -13,9 +13,7 @@
 #include "base/broadcast.hpp"
 #include "base/notes.hpp"
 #include "engine/processor.hpp"
-#include "error_control/choice_cache.hpp"
 #include "error_control/mode_choice.hpp"
-#include "error_control/sweep_model.hpp"
 #include "results/sweep.hpp"
 #include "results/terminal.hpp"
 #include "run/deflection_check.hpp"
@@ -23,9 +21,8 @@
 #include "run/process.hpp"
 #include "run/signals.hpp"
 #include "study/find.hpp"
-#include "study/local_steps.hpp"
+#include "study/prepared_study.hpp"
 #include "study/study_file.hpp"
-#include "study/study_model.hpp"
 #include "study/study_refinement.hpp"
 #include "study/study_runs.hpp"
 #include "study/sweep_findings.hpp"
@@ -131,10 +128,6 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
     suggest_modes(scene, seconds, ranks, model.accuracy > 0.0, notes);
 }
 
-bool has_wheels(const Scene& scene) {
-  return std::any_of(scene.vehicles.begin(), scene.vehicles.end(), [](const Vehicle& v) { return !v.wheels.empty(); });
-}
-
 std::size_t max_values_of(const Study& study, std::size_t given) {
   return study.refine < 0.0 ? max_speeds_by_default(given) : max_speeds(given);
 }
@@ -185,7 +178,7 @@ class Rounds {
     course.known = std::count(known_.begin(), known_.end(), 1);
     while (true) {
       file_.emplace(comm_, std::move(place), scene_, model_, *table_, notes_);
-      RunFailure failure = compute_runs(comm_, scenes_, known_, *table_, *file_);
+      RunFailure failure = compute_runs(comm_, scenes_, known_, *table_, [this] { file_->update(); });
       if (!adds_values(scenes_.study())) return failure;
       const bool ends = failure.failed() || signal_on_any(comm_) != 0;
       const std::vector<double> more = ends ? std::vector<double>() : next();
@@ -288,28 +281,15 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  StudyScenes scenes(given);
-  for (const std::size_t base : scenes.extreme_bases())
-    scenes.base(base);  // checks all input before the first computation
-  std::vector<std::string> notes;
-  Choice choice;
-  ChoiceCache cache(comm, given);
-  if (!cache.read(given, notes, choice)) {
-    choice = choose_for_study(scenes, notes);
-    if (choice.accuracy.measured) cache.write(notes, choice);
-  }
-  scenes.choose(choice.model);
-  const Scene scene = with(scenes.base(scenes.extreme_bases().front()), choice.model);
-  const results::RunModel model = stored_model(scene, choice.accuracy);
-  const std::shared_ptr<CaseRunner> runner = scenes.runner(0, &notes).runs;
-  const CaseRunner& first = *runner;
-  std::vector<std::string> of_others;
-  for (const std::size_t base : scenes.bases_of_model()) scenes.runner(base, &of_others);
-  reduce_local_steps(scenes);
+  PreparedStudy prepared(comm, given);
+  StudyScenes& scenes = prepared.scenes;
+  std::vector<std::string>& notes = prepared.notes;
+  const Scene& scene = prepared.scene;
+  const results::RunModel& model = prepared.model;
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
   for (const std::string& note : options::notes_on_unused(*given.given)) notes.push_back(note);
   std::optional<SweepFindings> findings;
-  if (scenes.study().sweep) findings.emplace(scene, first);
+  if (scenes.study().sweep) findings.emplace(scene, *prepared.first);
   SweepFindings* const found = findings ? &*findings : nullptr;
   Rounds rounds(comm, findings ? scene : given, scenes, model, findings ? findings->width_of_resonance() : 0.0,
                 stored_of(comm, given, model), notes);

@@ -178,11 +178,11 @@ void compute_run(StudyScenes& scenes, std::size_t run, results::StudyTable& tabl
 }
 
 RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,
-                        StudyFile& file) {
+                        const std::function<void()>& stored) {
   const results::Stage stage(scenes.study().sweep ? "runs of the sweep" : "runs of the study");
   ResultGather gather(comm, [&](const std::vector<double>& row) {
     table.put(static_cast<std::size_t>(row[0]), row.data() + 2, static_cast<std::size_t>(row[1]));
-    file.update();
+    stored();
   });
   const Groups groups = groups_of(scenes, known);
   RunFailure failure = run_cases_in_parallel(comm, work_of(scenes, groups, table, gather), scenes.quiet());

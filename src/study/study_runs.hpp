@@ -3,11 +3,11 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <vector>
 
 #include "ensemble/parallel_cases.hpp"
 #include "results/study_table.hpp"
-#include "study/study_file.hpp"
 #include "study/study_scenes.hpp"
 
 namespace traverse::app {
@@ -16,8 +16,8 @@ namespace traverse::app {
 void compute_run(StudyScenes& scenes, std::size_t run, results::StudyTable& table);
 
 /// Collective. Computes the runs that are not `known` until the end or a failure, and stores their results in the table
-/// of rank 0. Returns the failure of the earliest run.
+/// of rank 0, where `stored` is called after each row. Returns the failure of the earliest run.
 RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,
-                        StudyFile& file);
+                        const std::function<void()>& stored);
 
 }  // namespace traverse::app

@@ -61,7 +61,9 @@ void check_speeds(const Scene& scene) {
 
 }  // namespace
 
-StudyScenes::StudyScenes(const Scene& scene) : scene_(scene) {
+StudyScenes::StudyScenes(const Scene& scene, Read read) : scene_(scene), read_(std::move(read)) {
+  if (!read_)
+    read_ = [this](const auto& values) { return read_scene_of_study(options::Options(*scene_.given), values); };
   if (scene.study) check_speeds(scene);
   enumerate(scene.study ? *scene.study : study_of_sweep(scene));
 }
@@ -126,7 +128,7 @@ void StudyScenes::enumerate(const Study& study) {
 
 Scene StudyScenes::base(std::size_t base) const {
   if (study_.sweep) return scene_;
-  Scene scene = read_scene_of_study(options::Options(*scene_.given), values_of_run(study(), first_run_[base]));
+  Scene scene = read_(values_of_run(study(), first_run_[base]));
   if (scene.output.probes.size() != scene_.output.probes.size())
     throw InputError(fmt::format("output_probes: a run has {} probes, others have {}; name as many for all",
                                  scene.output.probes.size(), scene_.output.probes.size()));

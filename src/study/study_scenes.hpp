@@ -3,8 +3,10 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ensemble/case_runner.hpp"
@@ -23,9 +25,11 @@ struct StudyRun {
 /// A base is a scene of a study. Runs of one base differ in speed and track seed only; bases differ in other options.
 class StudyScenes {
  public:
-  /// The scene must have a study or a sweep and must outlive this object. Throws InputError if speeds contradict each
-  /// other.
-  explicit StudyScenes(const Scene& scene);
+  /// The scene of a run with these values of the varied options, as texts.
+  using Read = std::function<Scene(const std::vector<std::pair<std::string, std::string>>& values)>;
+  /// The scene must have a study or a sweep and must outlive this object. read: empty: read_scene_of_study. Throws
+  /// InputError if speeds contradict each other.
+  explicit StudyScenes(const Scene& scene, Read read = {});
   /// Replaces the study by one with more speeds between its slowest and its fastest, or with other values.
   void enumerate(const Study& study);
 
@@ -71,6 +75,7 @@ class StudyScenes {
 
  private:
   const Scene& scene_;
+  Read read_;
   Study study_;
   std::optional<NumericalModel> chosen_;
   std::vector<double> speeds_;        // speeds of all runs, ascending, m/s

@@ -88,6 +88,13 @@ class Scripts(InAFolder):
         self.assertEqual(row["scene"], "r3_sprung_mass")
         self.assert_positive([row], "estimate, s", "taken, s")
 
+    def test_simulate(self):
+        self.assertIn("quarter car", self.run_smallest("simulate"))
+        rows = self.table("simulate.csv", ["case", "runs", "seconds by simulate", "seconds by study", "ratio", "difference"])
+        self.assertEqual([(row["case"], row["runs"], float(row["difference"])) for row in rows],
+                         [("force", "20", 0.0), ("quarter car", "20", 0.0)])
+        self.assert_positive(rows, "seconds by simulate", "seconds by study", "ratio")
+
     def test_promises(self):
         text = self.run_smallest("promises")
         self.assertIn("kept in 2 of 2 runs", text)

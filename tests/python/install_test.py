@@ -1,9 +1,11 @@
-"""cmake --install: a program of one's own over what is installed, examples/embed, by CMake and by pkg-config, and one in C;
+"""cmake --install: programs of one's own over what is installed, examples/embed and examples/simulate, by CMake and by pkg-config, and in C;
 the program and its scenes from another folder; the Python package; the Debian packages."""
 
 import ast
+import math
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -18,6 +20,10 @@ BUILD = pathlib.Path(os.environ.get("TRAVERSE_BINARY", SOURCE / "build/traverse"
 
 SCENE = ("beam: {spans: 25, EI: 2.8e9, mass: 2303, elements_per_span: 4}\nmodel: {axial: false}\n"
          "load: {forces: 1e5, speed: 20}\nts: {dt: 5e-3, max_time: 0.5}\n")
+
+
+MPIRUN = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+          "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}
 
 
 def succeed(*words, cwd=None, **environment):
@@ -59,28 +65,40 @@ class Install(unittest.TestCase):
         said = succeed(self.prefix / "bin/traverse-report", self.folder / "by_cmake/embed_20.h5", "-o", self.folder / "installed")
         self.assertIn("installed.pdf", said)
 
-    def test_a_contact_law_from_outside(self):
-        build = self.folder / "build_law"
-        succeed("cmake", "-G", "Ninja", "-S", SOURCE / "examples/contact_law", "-B", build,
-                f"-DCMAKE_PREFIX_PATH={self.prefix}")
+    def test_problems_in_a_program(self):
+        """examples/simulate: what each of them prints, against the program and what they are for."""
+        build = self.folder / "build_simulate"
+        succeed("cmake", "-G", "Ninja", "-S", SOURCE / "examples/simulate", "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}")
         succeed("cmake", "--build", build)
-        scene = ("-options_file", SOURCE / "options/scenes/wheel_over_a_bump.yml", "-output_quiet")
-        forces = {}
-        for name, program in (("hertz", self.prefix / "bin/traverse"), ("tyre", build / "contact_law")):
-            file = self.folder / f"{name}.h5"
-            succeed(program, *scene, "-output_file", file)
-            with h5py.File(file) as results:
-                summary = results["summary"].attrs
-                self.assertLess(summary["energy_residual"], 1e-5 * summary["energy_scale"])
-                forces[name] = results["vehicles/0/wheel/normal_force"][()], results["vehicles/0/wheel/penetration"][()]
-        normal, penetration = forces["tyre"]
-        self.assertGreater(abs(normal - forces["hertz"][0]).max(), 1e4)
-        touching = normal > 1.0
-        law = 1.5e6 * penetration + 4.0e9 * penetration**3
-        self.assertLess(abs(normal - law)[touching].max(), 1e-6 * normal.max())
-        refused = subprocess.run([build / "contact_law", *scene, "-study_vary_train_speed", "20,30"],
-                                 capture_output=True, text=True, cwd=self.folder)
-        self.assertIn("without contact laws of the program", refused.stderr)
+
+        def numbers(name, *before, **environment):
+            said = succeed(*before, build / name, cwd=SOURCE, **environment)
+            return [[float(number) for number in re.findall(r"-?\d+(?:\.\d+)?(?:e-?\d+)?", line)] for line in said.splitlines()]
+
+        lines = numbers("bridge_and_train")
+        self.assertEqual([line[0] for line in lines[:3]], [16.0, 52.0, 88.0])
+        self.assertEqual(lines[3][0], max(line[1] for line in lines[:3]))
+        file = self.folder / "three_spans.h5"
+        succeed(self.prefix / "bin/traverse", "-beam_spans", "32,40,32", "-beam_EI", "5.9e10", "-beam_mass", "1.2e4",
+                "-beam_damping_ratios", "0.01", "-vehicle_coach_file", "options/vehicles/velaro.yml", "-train_vehicles",
+                "coach*8", "-train_speed", "300 km/h", "-accuracy", "1e-2", "-output_file", file, cwd=SOURCE)
+        with h5py.File(file) as results:
+            self.assertAlmostEqual(1e3 * abs(results["summary"].attrs["deflection"]) / lines[3][0], 1.0, delta=1e-2)
+        gains, peaks, free = zip(*numbers("controller"))
+        self.assertEqual(gains, (0.0, 50000.0, 200000.0))
+        for falling in (peaks, free):
+            self.assertEqual(list(falling), sorted(falling, reverse=True))
+        self.assertLess(free[2], 0.5 * free[0])
+        plain, tyre, profile, damper, force = numbers("own_laws")
+        for line in (plain, tyre, profile, damper):
+            self.assertLess(line[3], 1e-4)
+        self.assertEqual(len({plain[2], tyre[2], profile[2], damper[2]}), 4)
+        self.assertGreater(force[0], 1.0)
+        alone = numbers("sweep")
+        self.assertEqual(alone[0][0], 1000)
+        first_frequency = math.pi / 2.0 / 25.0**2 * math.sqrt(2.0e10 / 1.0e4)  # Hz; axles are 18 m apart
+        self.assertAlmostEqual(alone[0][3] / (18.0 * first_frequency), 1.0, delta=0.03)
+        self.assertEqual(numbers("sweep", "mpirun", "-n", "2", **MPIRUN), alone)
 
     def test_a_program_by_pkg_config(self):
         path = next(self.prefix.glob("lib*/**/pkgconfig"))
@@ -143,7 +161,22 @@ int main(void) {
   double energy = 0.0;
   if (traverse_read(passage, "/energy/kinetic", &energy, 1) != 0) return 4;
   printf("%s %d\\n", traverse_error(), energy > 0.0);
+  traverse_results* results = NULL;
+  double peaks[2][1], read = 0.0;
+  if (traverse_finish(passage, &results) != 0 || traverse_results_read(results, "peak_deflection", &read, 1) != 0) return 5;
+  traverse_results_free(results);
   traverse_close(passage);
+  traverse_problem *one = NULL, *other = NULL;
+  if (traverse_problem_read("scene.yml", &one) != 0 || traverse_problem_read("scene.yml", &other) != 0) return 6;
+  if (traverse_problem_set(other, "beam_EI", "5.6e9") != 0) return 7;
+  const traverse_problem* both[] = {one, other};
+  if (traverse_simulate(2, both, 0, NULL, NULL, &results) != 0) return puts(traverse_error()), 8;
+  if (traverse_results_read(results, "peak_deflection", &peaks[0][0], 2) != 0) return 9;
+  if (traverse_results_text(results, "model", 2) != NULL) return 10;
+  printf("%d %d\\n", peaks[0][0] > 0.999 * read && peaks[0][0] < 1.001 * read, peaks[1][0] < peaks[0][0]);
+  traverse_results_free(results);
+  traverse_problem_free(one);
+  traverse_problem_free(other);
   return 0;
 }
 """, encoding="utf-8")
@@ -151,7 +184,7 @@ int main(void) {
         program = self.folder / "steps"
         succeed("cc", "-std=c99", "-pedantic", "-Wall", "-Werror", source, "-o", program, f"-I{self.prefix / 'include'}", library,
                 f"-Wl,-rpath,{library.parent}")
-        self.assertRegex(succeed(program, cwd=self.folder), r"30.* is not on the beam.* 1\n")
+        self.assertRegex(succeed(program, cwd=self.folder), r"30.* is not on the beam.* 1\n1 1\n")
 
     def test_words_about_options(self):
         page = (self.prefix / "share/man/man1/traverse.1").read_text(encoding="utf-8")

@@ -170,7 +170,7 @@ class Forces(InFolder):
 
 class Errors(InFolder):
     def test_scenes_that_are_refused(self):
-        self.refused(2, "beam_EI.*scene.yml", traverse.Passage, FORCES | {"beam": BRIDGE | {"EI": -1.0}})
+        self.refused(2, "beam_EI = -1.*problem", traverse.Passage, FORCES | {"beam": BRIDGE | {"EI": -1.0}})
         self.refused(2, "not_there.yml", traverse.Passage, "not_there.yml")
         self.refused(2, "a sweep", traverse.Passage, FORCES | {"sweep": {"speed": [30.0, 50.0, 5.0]}})
         self.refused(2, "scene_analysis", traverse.Passage, FORCES, scene_analysis="modes")

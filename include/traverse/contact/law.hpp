@@ -48,7 +48,7 @@ constexpr std::optional<LawKind> law_kind(std::string_view name) {
 }
 
 /// An elastic contact law that a program defines itself: a force over the penetration, which starts at zero and
-/// increases. examples/contact_law has one.
+/// increases. examples/simulate/own_laws.cpp has one.
 class ElasticLaw {
  public:
   virtual ~ElasticLaw() = default;

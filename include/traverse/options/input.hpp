@@ -34,6 +34,10 @@ struct Input {
 /// `before`: options that the command line overrides. InputError for options of PETSc that are not permitted.
 Input read_input(int argc, char** argv, const std::vector<Entry>& before = {}, bool petscrc = true);
 
+/// The entries as a scene is read from them: options of PETSc by their names in Traverse, and a name of the scene (by
+/// default scene_name). InputError for options of PETSc that are not permitted.
+Entries complete(Entries entries, const std::string& scene_name);
+
 /// The words as argc and argv, which are valid as long as the object exists.
 class Arguments {
  public:
@@ -50,6 +54,18 @@ class Arguments {
 
 /// Sets the options in force and copies the options of TS into PETSc's table. Call after PetscInitialize.
 void put_into_petsc(const Input& input);
+
+/// Sets those of these options that the solvers of PETSc read in its table, as long as the object exists.
+class InPetsc {
+ public:
+  explicit InPetsc(const Entries& entries);
+  ~InPetsc();
+  InPetsc(const InPetsc&) = delete;
+  InPetsc& operator=(const InPetsc&) = delete;
+
+ private:
+  std::vector<std::string> names_;
+};
 
 /// Hides from PETSc, as long as the object exists, the options that print the progress of its solvers or end a run
 /// early: they apply to the requested run and not to trial runs.

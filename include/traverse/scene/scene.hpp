@@ -200,6 +200,8 @@ std::vector<std::pair<std::string, std::string>> values_of_run(const Study& stud
 /// The scene of a study with these values, given as texts, of some of its options; it is a sweep of a single run.
 Scene read_scene_of_study(const options::Options& given,
                           const std::vector<std::pair<std::string, std::string>>& values);
+/// Those of these given options whose values no study varies.
+std::vector<std::string> not_varied(options::Options given, const std::vector<std::string>& names);
 /// The scene of a fit with these values of its parameters: its run, or its natural modes.
 Scene read_scene_of_fit(const options::Options& given, const options::Fit& fit, const std::vector<double>& values,
                         bool modes);
