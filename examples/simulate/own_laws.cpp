@@ -62,7 +62,7 @@ int main() {
         .set("track_profile_shape", "spline");
     print("profile", profile);
 
-    traverse::Problem damper = plain;  // blows off: N over m/s
+    traverse::Problem damper = profile;  // blows off: N over m/s
     damper.table(
         "blow_off.csv", [](double v) { return 8e3 * std::tanh(v / 0.1); }, -1.0, 1.0, 0.02);
     damper.remove("vehicle_sprung_wheel_suspension_damping")

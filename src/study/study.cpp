@@ -100,8 +100,8 @@ void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
         fmt::format("up to {} runs{} are advanced together, one in each lane of {} vectors", first.width(),
                     study.sweep ? "" : fmt::format(" that differ in {} only", differences(scenes.mixing())),
                     engine::instructions())));
-  else if (!first.lane_obstacle().empty() && !scene.vehicles.empty())
-    notes.push_back("runs are computed one by one: " + first.lane_obstacle());
+  else if (!first.why_not_in_batches().empty() && !scene.vehicles.empty())
+    notes.push_back("runs are computed one by one: " + first.why_not_in_batches());
   if (study.find) notes.emplace_back("values of the option are added until all ends of its intervals are known");
   if (study.refine > 0.0)
     notes.push_back(
