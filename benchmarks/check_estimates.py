@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How near the times come that -check estimates, over the processor time that runs have taken beyond their start.
+"""How near the times come that -describe estimates, over the processor time that runs have taken beyond their start.
 /usr/bin/python3 benchmarks/check_estimates.py [BUILD_FOLDER] [OUT_FOLDER] [SCENE...] [--smallest]
 
 SCENE is the name of a file of options/scenes, such as r3_sprung_mass; left out: all but the longest one. Writes
@@ -48,7 +48,7 @@ def main():
     near, table = {3: 0, 10: 0}, []
     with tempfile.TemporaryDirectory() as folder:
         for scene in scenes:
-            said, start = run(given.build, scene, folder, "-check")
+            said, start = run(given.build, scene, folder, "-describe")
             estimates = re.findall(r"^  (?:trial runs|time) +(about .*)$", said, re.MULTILINE)
             if not estimates:
                 continue

@@ -5,7 +5,7 @@
 
 One mutant in three is a copy of options/ in which one or two places of one file are changed: lines lost, doubled,
 exchanged or moved, numbers replaced, names misspelt, bytes garbled, the end cut off. Small scenes are computed for a
-moment, the others read and shown by -check. The others are small files of mutated_files.py (scenes that run to their
+moment, the others read and shown by -describe. The others are small files of mutated_files.py (scenes that run to their
 end, studies, limits, modes, results, checkpoints), in whose binary ones bits are flipped. Wrong are signals, more than
 CPU_SECONDS of the processor, a failure without exactly one line that says why, numbers that are none (nan, inf, words)
 where the run takes them without a word, and other numbers at status 0 where a results file or a checkpoint was damaged.
@@ -153,7 +153,7 @@ def mutant(build, scene, file, seed, kept):
         place = options / file.relative_to(OPTIONS)
         changed, no_number = spoil(generator, place.read_bytes())
         place.write_bytes(changed)
-        words = A_MOMENT if scene.stem in COMPUTED else ["-check"]
+        words = A_MOMENT if scene.stem in COMPUTED else ["-describe"]
         run = subprocess.run([os.path.abspath(runs.traverse(build)), "-options_file", options / scene.relative_to(OPTIONS), "-output_file",
                               "none", *words], cwd=folder, env=runs.environment(), capture_output=True, preexec_fn=limit)
         found = wrong(run, no_number)

@@ -35,7 +35,7 @@ int run_modes(Job job);
 int run_rail(Job job);      // forces between rail and bridge along the track
 int run_envelope(Job job);  // the largest static effects of the loads over all their positions
 int run_screen(Job job);    // every formation of a fleet over every bridge of a stock
-int check_screen(MPI_Comm comm, const Scene& scene);  // -check of a screen: reads everything, and describes it
+int check_screen(MPI_Comm comm, const Scene& scene);  // -describe of a screen: reads everything, and describes it
 
 struct AnalysisRun {
   options::Analysis analysis;

@@ -66,7 +66,7 @@ int run(MPI_Comm comm, const Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const results::Heartbeat heartbeat(given.quiet || rank != 0);
-  if (given.check) return given.screen ? check_screen(comm, given) : run_check(comm, given);
+  if (given.describe) return given.screen ? check_screen(comm, given) : run_check(comm, given);
   if ((given.study || given.fit) && has_own_contact_law(given))
     throw InputError(fmt::format("{}: its scenes are read from the options, without contact laws of the program",
                                  given.study ? "study_vary" : "fit_vary"));

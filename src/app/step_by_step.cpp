@@ -21,7 +21,7 @@ void check_goes_in_time(const Scene& scene) {
   const char* other = scene.study                               ? "a study"
                       : scene.fit                               ? "a fit"
                       : scene.sweep                             ? "a sweep"
-                      : scene.check                             ? "-check"
+                      : scene.describe                          ? "-describe"
                       : scene.find_option("restart") != nullptr ? "-restart"
                       : scene.analysis != Analysis::transient   ? "scene_analysis"
                                                                 : nullptr;

@@ -1,4 +1,4 @@
-// Prints the page of -check section by section: drawing, bridge, vehicles, loads, support reactions, planned runs,
+// Prints the page of -describe section by section: drawing, bridge, vehicles, loads, support reactions, planned runs,
 // estimated cost and unusual input.
 #include "check.hpp"
 
@@ -130,7 +130,7 @@ void print_vehicles(const Page& page, const FirstRun& run, const std::vector<Axl
         (count == 1 ? vehicle.name : fmt::format("{} x {}", count, vehicle.name)) + (back ? ", to the left" : ""),
         fmt::format("{}{}{}", mass_text(mass), count > 1 ? " each" : "", wheels.empty() ? "" : "; kN: " + wheels));
   }
-  page.line("all", fmt::format("{}, degrees of freedom {}", mass_text(all), run.passage->system().freedom()));
+  page.line("all", fmt::format("{}, degrees of freedom {}", mass_text(all), run.simulation->system().freedom()));
 }
 
 void print_load(const Page& page, const std::string& name, const MovingLoad& load) {
@@ -224,10 +224,10 @@ void print_page(const Scene& given, const FirstRun& run, const std::vector<std::
                 const std::vector<Axle>& axles, const StaticResponse& response) {
   const OutputStyle style = output_style();
   const Page page(style);
-  page.heading(fmt::format("{}: no time steps are computed (-check)", given.name));
+  page.heading(fmt::format("{}: no time steps are computed (-describe)", given.name));
   for (const std::string& line : drawing_of(run.scene, style)) fmt::print("{}\n", line);
   if (run.scene.beam) print_bridge(page, run);
-  if (run.passage) print_vehicles(page, run, axles);
+  if (run.simulation) print_vehicles(page, run, axles);
   print_loads(page, run);
   if (run.scene.beam && !axles.empty()) print_response(page, response);
   print_notes(page, run.notes);

@@ -1,4 +1,4 @@
-// The option -check: the model of a scene, its estimated cost and unusual input, without time steps.
+// The option -describe: the model of a scene, its estimated cost and unusual input, without time steps.
 #pragma once
 
 #include <mpi.h>

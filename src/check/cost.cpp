@@ -72,9 +72,9 @@ struct StepSeconds {
 StepSeconds step_seconds(const FirstRun& run) {
   const Scene& scene = run.scene;
   if (scene.exact_in_time())
-    return {run.passage->instants() * modal_sample_seconds(static_cast<double>(run.shared->modal->modes()),
-                                                           run.bridge()->local_unknowns(),
-                                                           run.shared->modal->dampers_couple())};
+    return {run.simulation->passage().instants() * modal_sample_seconds(static_cast<double>(run.shared->modal->modes()),
+                                                                        run.bridge()->local_unknowns(),
+                                                                        run.shared->modal->dampers_couple())};
   const options::Entry* type = scene.find_option("ts_type");
   const std::string method = type == nullptr ? scene.model.method : type->value;
   const bool by_petsc = type != nullptr && structure::find_method(method) == nullptr;
@@ -90,16 +90,17 @@ StepSeconds step_seconds(const FirstRun& run) {
 
 /// Of trial runs with the first step.
 integrate::StepCount trial_steps(const FirstRun& run) {
-  return run.passage->count_steps(run.trial_window, run.first_step, trial_steps_per_sample * run.first_step);
+  return run.simulation->passage().count_steps(run.trial_window, run.first_step,
+                                               trial_steps_per_sample * run.first_step);
 }
 
 void count_single(const FirstRun& run, Cost& cost) {
-  const Plan& plan = run.passage->plan();
-  const Outputs outputs = outputs_of({run.scene, run.passage->system().fleet(), run.bridge()});
+  const Plan& plan = run.simulation->plan();
+  const Outputs outputs = outputs_of({run.scene, run.simulation->system().fleet(), run.bridge()});
   const double samples = plan.end_time / (plan.interval * static_cast<double>(plan.stored)) + 1.0;
-  const integrate::StepCount count = run.scene.exact_in_time()
-                                         ? integrate::StepCount{plan.end_time / plan.interval}
-                                         : run.passage->count_steps(plan.end_time, plan.time_step, plan.interval);
+  const integrate::StepCount count =
+      run.scene.exact_in_time() ? integrate::StepCount{plan.end_time / plan.interval}
+                                : run.simulation->passage().count_steps(plan.end_time, plan.time_step, plan.interval);
   cost.steps = count.steps;
   cost.seconds = step_seconds(run).of({refinement(run) * count.steps, count.lengths});
   cost.stored = bytes_per_number * samples * static_cast<double>(outputs.layout().width() + 1);
@@ -108,7 +109,7 @@ void count_single(const FirstRun& run, Cost& cost) {
 void count_runs(const FirstRun& run, Cost& cost) {
   Scene scene = run.whole;
   scene.beam = run.scene.beam;
-  if (!scene.exact_in_time()) scene.model.step = run.passage->plan().time_step;
+  if (!scene.exact_in_time()) scene.model.step = run.simulation->plan().time_step;
   // the usual choice of trial runs
   if (scene.model.vehicles == VehicleModel::automatic) scene.model.vehicles = VehicleModel::linear;
   std::vector<std::string> ignored;
@@ -131,7 +132,7 @@ void count_runs(const FirstRun& run, Cost& cost) {
 Cost cost_of(const FirstRun& run) {
   Cost cost;
   if (const beam::Beam* beam = run.bridge()) cost.unknowns = static_cast<double>(beam->columns()) * beam->block();
-  if (run.passage) cost.unknowns += run.passage->system().freedom();
+  if (run.simulation) cost.unknowns += run.simulation->system().freedom();
   cost.memory = program_bytes + memory_of(run.scene);
   if (run.scene.analysis != Analysis::transient) return cost;
   run.whole.sweep ? count_runs(run, cost) : count_single(run, cost);

@@ -54,8 +54,7 @@ FirstRun::FirstRun(const Scene& given) : whole(checked_scene(given)), scene(firs
   if (has_motion) shared->prepare(scene, notes);
   if (has_motion) choose_mesh_and_step();
   if (has_motion) {
-    passage = std::make_unique<Passage>(scene, *shared, notes);
-    passage->start(notes);
+    simulation = std::make_unique<Simulation>(scene, *shared, Wants(), notes);
   }
   for (const std::string& note : options::notes_on_unused(*scene.given)) notes.push_back(note);
   notes.insert(notes.end(), whole.notes.begin(), whole.notes.end());

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "run/passage.hpp"
+#include "run/simulation.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
@@ -23,13 +23,13 @@ struct FirstRun {
   bool has_trial_runs = false;      // trial runs choose mesh and step, starting from mesh and step of `scene`
   double first_step = 0.0, longest_step = 0.0, trial_window = 0.0;  // s; trial_window: duration of a trial run
   std::unique_ptr<SharedBeam> shared;
-  std::unique_ptr<Passage> passage;  // at its start; null for an analysis of modes
-  std::vector<double> frequencies;   // Hz, the first distinct ones of the bridge
-  std::size_t runs = 1;              // number of runs of a sweep or a study
+  std::unique_ptr<Simulation> simulation;  // at its start; null for an analysis of modes
+  std::vector<double> frequencies;         // Hz, the first distinct ones of the bridge
+  std::size_t runs = 1;                    // number of runs of a sweep or a study
 
   const beam::Beam* bridge() const { return shared->bridge(); }
   /// s; 0 without motion.
-  double end_time() const { return passage ? passage->plan().end_time : 0.0; }
+  double end_time() const { return simulation ? simulation->plan().end_time : 0.0; }
 
  private:
   void choose_mesh_and_step();

@@ -37,6 +37,9 @@ std::string CaseBatch::obstacle(const Scene& scene, const SharedBeam& shared) {
   if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
   if (!scene.train.courses.empty()) return "several trains run, or one whose speed changes or is below 0";
   if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
+  for (const Vehicle& vehicle : scene.vehicles)
+    for (const multibody::Body& body : vehicle.mechanism.bodies)
+      if (!body.velocity.isZero(0.0)) return "bodies of vehicles have velocities at the start";
   if (!integrate::own_method(scene.model.method)) return "ts_type is one of PETSc's own";
   if (!scene.model.step) return "the step is not known";
   if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";

@@ -55,7 +55,8 @@ RunFailure run_cases_in_parallel(MPI_Comm comm, const SharedWork& work, bool qui
   RunFailure failure;
   while (const auto piece = queue.next()) {
     const auto fail = [&](const Error& error) {
-      failure = {static_cast<int>(*piece), error.status(), work.name(*piece) + " failed: " + error.what()};
+      failure = {static_cast<int>(*piece), error.status(),
+                 work.name ? work.name(*piece) + " failed: " + error.what() : error.what()};
       queue.stop();
     };
     const double duration = work.pieces[*piece].duration;

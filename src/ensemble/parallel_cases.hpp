@@ -20,7 +20,7 @@ struct SharedWork {
   std::vector<RunPiece> pieces;  // in the order of distribution
   /// Computes a piece; `reached` is called with the simulated time, s.
   std::function<void(std::size_t piece, const std::function<void(double)>& reached)> compute;
-  /// The name of a piece in the message of a failure.
+  /// The name of a piece in the message of a failure; empty: the message of the error alone.
   std::function<std::string(std::size_t piece)> name;
 };
 

@@ -1,5 +1,5 @@
-// A number of points is broadcast, then the points; every rank computes its groups of points, and the results are
-// added, with zeros from all other ranks, so that they do not depend on the number of ranks.
+// A number of points is broadcast, then the points; each rank computes the next group of points when it is free, and
+// the results are added, with zeros from all other ranks, so that they do not depend on the number of ranks.
 #include "fit/evaluator.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "ensemble/parallel_cases.hpp"
-#include "run/process.hpp"
 #include "run/signals.hpp"
 #include "traverse/base/error.hpp"
 
@@ -24,25 +23,21 @@ Evaluator::Evaluator(MPI_Comm comm, std::size_t dimension, std::size_t size, std
 }
 
 void Evaluator::compute_in_turn(const Values& points, std::vector<Values>& results) {
-  const std::size_t count = points.size() / dimension_;
-  results.assign(count, Values());
-  RunFailure failure;
-  const auto ranks = static_cast<std::size_t>(ranks_);
+  const std::size_t count = points.size() / dimension_, ranks = static_cast<std::size_t>(ranks_);
   const std::size_t group = std::min(width_, (count + ranks - 1) / ranks);
-  for (std::size_t i = group * static_cast<std::size_t>(rank_); i < count && !failure.failed(); i += group * ranks) {
-    try {
-      std::vector<Values> own;
-      for (std::size_t k = i; k < std::min(i + group, count); ++k) {
-        const auto from = points.begin() + static_cast<std::ptrdiff_t>(k * dimension_);
-        own.emplace_back(from, from + static_cast<std::ptrdiff_t>(dimension_));
-      }
-      std::vector<Values> computed = compute_(own);
-      std::move(computed.begin(), computed.end(), results.begin() + static_cast<std::ptrdiff_t>(i));
-    } catch (const std::exception& error) {
-      const Error known = as_error(error);
-      failure = {static_cast<int>(i), known.status(), known.what()};
+  results.assign(count, Values());
+  SharedWork work;
+  for (std::size_t first = 0; first < count; first += group)
+    work.pieces.push_back({std::min(group, count - first), 1.0});
+  work.compute = [&](std::size_t piece, const std::function<void(double)>& /*reached*/) {
+    std::vector<Values> own;
+    for (std::size_t k = piece * group; k < std::min((piece + 1) * group, count); ++k) {
+      const auto from = points.begin() + static_cast<std::ptrdiff_t>(k * dimension_);
+      own.emplace_back(from, from + static_cast<std::ptrdiff_t>(dimension_));
     }
-  }
+    std::ranges::move(compute_(own), results.begin() + static_cast<std::ptrdiff_t>(piece * group));
+  };
+  RunFailure failure = run_cases_in_parallel(comm_, work, true);
   const int signal = signal_on_any(comm_);
   failure = first_of(comm_, std::move(failure));
   if (signal != 0) throw Interrupted{signal};

@@ -20,7 +20,7 @@ constexpr Heading headings[] = {
     {"options", "scene", "Scene and analysis"},
     {"gravity", "scene", ""},
     {"modes", "scene", ""},
-    {"check", "scene", ""},
+    {"describe", "scene", ""},
     {"help", "scene", ""},
     {"bridge", "bridge", "Bridge by given modes"},
     {"beam", "beam", "Bridge"},

@@ -61,7 +61,7 @@ the reason.
 .SH EXAMPLES
 .nf
 traverse \-options_file options/scenes/three_span_train.yml
-traverse \-options_file options/scenes/three_span_train.yml \-train_speed 70 \-check
+traverse \-options_file options/scenes/three_span_train.yml \-train_speed 70 \-describe
 traverse \-help beam
 traverse\-report results/three_span_train.h5
 .fi

@@ -9,14 +9,16 @@
 namespace traverse::options {
 
 void use_own_names(Entries& entries) {
-  for (const base::RenamedOption& option : base::renamed_options) {
-    const Entry *one = entries.find(option.name), *other = entries.find(option.newer);
-    if (other == nullptr) continue;
+  const auto rename = [&](const char* from, const char* to) {
+    const Entry *one = entries.find(to), *other = entries.find(from);
+    if (other == nullptr) return;
     if (one != nullptr)
       throw InputError(
           fmt::format("{}: this is another name of {}; give only one of the two", other->given(), one->given()));
-    entries.rename(option.newer, option.name);
-  }
+    entries.rename(from, to);
+  };
+  for (const base::RenamedOption& option : base::renamed_options) rename(option.newer, option.name);
+  rename("check", "describe");  // its name before `traverse check`, the verdict of EN 1991-2
 }
 
 std::string name_in_petsc(const std::string& name) {

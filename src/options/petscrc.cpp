@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 5> command_line_only = {"options_file", "help", "check", "restart",
+constexpr std::array<std::string_view, 5> command_line_only = {"options_file", "help", "describe", "restart",
                                                                "skip_petscrc"};
 
 std::string_view kind_of(std::string_view name) { return name.substr(0, name.find('_')); }

@@ -282,7 +282,7 @@ constexpr Row later_rows[] = {
   {"tao_converged_reason", flag, "", "false", any, "", 0, "prints why each minimisation ended"},
   {"tao_view", flag, "", "false", any, "", 0, "prints PETSc's description of the method"},
 
-  {"check", flag, "", "false", any, "", 0, "reads everything, shows model, static loads, selected methods, cost and unusual input, and stops without a run"},
+  {"describe", flag, "", "false", any, "", 0, "reads everything, shows model, static loads, selected methods, cost and unusual input, and stops without a run"},
   {"help", text, "", "", any, "", 0, "prints this list; -help beam, -help wheel, ...: one group; -help beam_EI: one option"},
 
   {"log_view", flag, "", "false", any, "", 0, "prints PETSc's summary of time, calls and messages at the end"},

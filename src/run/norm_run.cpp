@@ -9,7 +9,7 @@
 
 #include "norm/load_models.hpp"
 #include "results/stage.hpp"
-#include "run/passage.hpp"
+#include "run/simulation.hpp"
 
 namespace traverse::app {
 
@@ -39,9 +39,8 @@ std::vector<norm::LoadModel> static_trains(const Scene& given, const SharedBeam&
       continue;
     }
     std::vector<std::string> ignored;
-    Passage passage(scene, shared, ignored);
-    passage.start(ignored);
-    trains.push_back(static_train(std::move(name), passage.system().weights().all()));
+    Simulation at_start(scene, shared, {}, ignored);
+    trains.push_back(static_train(std::move(name), at_start.system().weights().all()));
   }
   return trains;
 }

@@ -1,4 +1,4 @@
-// Model of the computing time of steps, used by -check, for the cost limit of trial runs, for the order of runs and for
+// Model of the computing time of steps, used by -describe, for the cost limit of trial runs, for the order of runs and for
 // the number of ranks. It counts operations, so that no decision depends on the clock. The times were measured on the
 // processor of doc/performance.md; benchmarks/check_estimates.py compares them with measurements.
 #pragma once

@@ -221,7 +221,7 @@ void read_output(const Options& o, Scene& scene) {
   scene.output.interval = o.optional_number("output_interval");
   scene.quiet = o.flag("output_quiet");
   scene.verbose = o.flag("verbose");
-  scene.check = o.flag("check");
+  scene.describe = o.flag("describe");
   read_probes(o, scene);
   read_filter(o, scene);
   read_wheel_filter(o, scene);

@@ -1,4 +1,4 @@
-"""-check on a terminal: its characters and colours are for terminals alone, and only as far as these show them."""
+"""-describe on a terminal: its characters and colours are for terminals alone, and only as far as these show them."""
 
 import fcntl
 import os
@@ -16,12 +16,12 @@ SCENE = SOURCE / "options/scenes/three_span_half_car.yml"
 
 
 def on_terminal(columns=100, **environment):
-    """What -check writes to a terminal."""
+    """What -describe writes to a terminal."""
     leader, follower = pty.openpty()
     fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 40, columns, 0, 0))
     wanted = {name: value for name, value in os.environ.items() if name not in ("LC_ALL", "LC_CTYPE", "LANG", "NO_COLOR")}
     with tempfile.TemporaryDirectory() as folder:
-        child = subprocess.Popen([BINARY, "-options_file", SCENE, "-check"], stdout=follower, stderr=subprocess.PIPE, cwd=folder,
+        child = subprocess.Popen([BINARY, "-options_file", SCENE, "-describe"], stdout=follower, stderr=subprocess.PIPE, cwd=folder,
                                  env=wanted | {"TERM": "xterm"} | environment)
         os.close(follower)
         written = b""

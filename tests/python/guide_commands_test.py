@@ -100,7 +100,7 @@ class GuideCommands(unittest.TestCase):
                 continue
             checked += 1
             with self.subTest(page.name), tempfile.TemporaryDirectory() as folder:
-                ended = subprocess.run([PROGRAM, *words[1:], "-check", "-output_file", f"{folder}/results.h5"], cwd=SOURCE,
+                ended = subprocess.run([PROGRAM, *words[1:], "-describe", "-output_file", f"{folder}/results.h5"], cwd=SOURCE,
                                        capture_output=True, text=True)
                 self.assertEqual(ended.returncode, 0, ended.stderr)
         self.assertGreater(checked, 30)

@@ -113,11 +113,11 @@ class Install(unittest.TestCase):
         self.assertIn("traverse", succeed(program, "-version"))
         elsewhere = self.folder / "elsewhere"
         elsewhere.mkdir()
-        said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-check", cwd=elsewhere)
+        said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-describe", cwd=elsewhere)
         self.assertIn("three_span_half_car: no time steps are computed", said)
         (elsewhere / "options/scenes").mkdir(parents=True)
         shutil.copy(self.scene, elsewhere / "options/scenes/three_span_half_car.yml")  # the nearer one
-        said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-check", cwd=elsewhere)
+        said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-describe", cwd=elsewhere)
         self.assertIn("25 m, 1 span", said)
 
     def test_the_python_package(self):

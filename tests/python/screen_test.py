@@ -195,7 +195,7 @@ class Screen(unittest.TestCase):
         def noted(heading, **tables):
             self.write(**tables)
             text = self.screened()["text"]
-            checked = self.start("-check").stdout
+            checked = self.start("-describe").stdout
             self.write(stock=STOCK, fleet=FLEET)
             said = [lines.split("\n")[0] for lines in text.split("unusual input\n  ")[1:]]
             self.assertEqual(len(said) == 1, heading != "", text)

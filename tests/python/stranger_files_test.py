@@ -52,7 +52,7 @@ class ResultsFiles(Files):
         cls.compute("part", FORCES, "-ts_max_steps", "60")
 
     def test_a_flipped_bit_of_a_text_is_refused(self):
-        self.assertEqual(self.program("run.h5", "-check").returncode, 0)
+        self.assertEqual(self.program("run.h5", "-describe").returncode, 0)
         content = self.bytes_of("run.h5")
         for text in (b"1.234e10", b"[20.0]", b"load_speed"):
             at = content.find(text)
@@ -61,7 +61,7 @@ class ResultsFiles(Files):
                 flipped = bytearray(content)
                 flipped[at + 3] ^= 1
                 self.write("flipped.h5", flipped)
-                done = self.program("flipped.h5", "-check")
+                done = self.program("flipped.h5", "-describe")
                 if done.returncode == 0:  # a text that is for people alone: /options
                     self.assertIn("1.234e+10", done.stdout.replace("1.23e+10", "1.234e+10"))
                 else:
@@ -80,7 +80,7 @@ class ResultsFiles(Files):
                 flipped = bytearray(content)
                 flipped[at + offset] ^= 1 << bit
                 self.write("flipped.h5", flipped)
-                done = self.program("flipped.h5", "-check")
+                done = self.program("flipped.h5", "-describe")
                 self.assertIn(done.returncode, range(0, 127), (at, offset, done.stderr))
                 self.assertEqual(len(done.stderr.splitlines()), 0 if done.returncode == 0 else 1, done.stderr)
 
@@ -129,8 +129,8 @@ class ResultsFiles(Files):
             file["input/options"] = h5py.ExternalLink("pipe.h5", "/input/options")
         os.mkfifo(self.folder / "pipe.h5")  # it would be waited for
         (self.folder / "elsewhere.yml").write_text("bridge: {modes_file: leading.h5}\nload: {forces: [2.0e5], speed: 40.0}\n")
-        self.refused("stand in other files", "-options_file", "elsewhere.yml", "-check")
-        self.refused("stand in other files", "leading.h5", "-check")
+        self.refused("stand in other files", "-options_file", "elsewhere.yml", "-describe")
+        self.refused("stand in other files", "leading.h5", "-describe")
 
     def test_modes_of_a_damaged_file(self):
         self.compute("modes", FORCES, "-scene_analysis", "modes", "-modes_count", "3")
@@ -141,7 +141,7 @@ class ResultsFiles(Files):
             flipped = bytearray(content)
             flipped[at] ^= 1 << int(generator.integers(8))
             self.write("bad.h5", flipped)
-            done = self.program("-options_file", "given.yml", "-check")
+            done = self.program("-options_file", "given.yml", "-describe")
             self.assertIn(done.returncode, range(0, 127), (at, done.stderr))
             self.assertEqual(len(done.stderr.splitlines()), 0 if done.returncode == 0 else 1, done.stderr)
 

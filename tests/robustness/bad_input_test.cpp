@@ -100,7 +100,7 @@ TEST(BadNumbers, DampingThatFeedsEnergy) {
                      {{"-beam_damping_ratios", "0.05,0.01"}, falls},
                      {{"-beam_damping_ratios", "0.05,0.01", "-model_modes", "4"}, falls},
                      {{"-beam_damping_ratios", "0.05,0.01", "-sweep_speed", "40,50,5"}, falls},
-                     {{"-beam_damping_ratios", "0.05,0.01", "-check"}, falls},
+                     {{"-beam_damping_ratios", "0.05,0.01", "-describe"}, falls},
                      {{"-beam_damping_ratios", "0.05,0"}, {"beam_damping_ratios = 0.05,0", "from 0.0124", "to 0.2000"}},
                      {{"-beam_damping_ratios", "0.01,0.05"}, {"beam_damping_ratios = 0.01,0.05", "negative a"}},
                      {{"-beam_damping_ratios", "0.01,0.02", "-beam_damping_frequencies", "5,6"}, {"0.01,0.02"}},

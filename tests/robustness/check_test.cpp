@@ -1,4 +1,4 @@
-// -check: every scene of options/, what it shows, what it finds unusual and what not, and what it leaves alone.
+// -describe: every scene of options/, what it shows, what it finds unusual and what not, and what it leaves alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ std::string section(const std::string& text, const std::string& heading) {
 class CheckedFile : public testing::TestWithParam<std::string> {};
 TEST_P(CheckedFile, IsShownAndNotRun) {
   const Workplace workplace("");
-  const Outcome outcome = workplace.run({"-options_file", GetParam(), "-check"});
+  const Outcome outcome = workplace.run({"-options_file", GetParam(), "-describe"});
   expect_success(outcome);
   EXPECT_FALSE(workplace.has("results"));
   EXPECT_EQ(std::count_if(outcome.out.begin(), outcome.out.end(), [](char c) { return c < 32 && c != '\n'; }), 0)
@@ -95,7 +95,7 @@ class Unusual : public testing::TestWithParam<Case> {};
 TEST_P(Unusual, IsFoundWhereItIs) {
   const Workplace workplace(usual);
   std::vector<std::string> words = GetParam().words;
-  words.emplace_back("-check");
+  words.emplace_back("-describe");
   const Outcome outcome = workplace.run(words);
   expect_success(outcome);
   EXPECT_TRUE(contains(section(outcome.out, "unusual input"), GetParam().found)) << outcome.out;
@@ -226,7 +226,7 @@ TEST(UnusualInput, ProfilesThatAreElsewhere) {
     std::string text;
     for (double x = from; x < to; x += 1.0) text += std::to_string(x) + "," + std::to_string(1e-3 * std::sin(x)) + "\n";
     workplace.write("profile.csv", text + std::to_string(to) + "," + std::to_string(end) + "\n");
-    return unusual_of(workplace, {"-track_profile", "profile.csv", "-check"});
+    return unusual_of(workplace, {"-track_profile", "profile.csv", "-describe"});
   };
   EXPECT_TRUE(contains(profile(12340.0, 12540.0, 0.0), "goes from x = 12340 to 12540 m, but the wheels"));
   EXPECT_TRUE(contains(profile(-500.0, -100.0, 0.0), "but the wheels and the bridge are between"));
@@ -242,17 +242,17 @@ TEST(UnusualInput, SpeedsOfARunningTimeProgram) {
       "load: {forces: 1.0e5, speed_file: speeds.csv, speed_over: position}\n");
   workplace.write("speeds.csv", "0,0\n0.1,45\n0.5,80\n");
   EXPECT_TRUE(
-      contains(unusual_of(workplace, {"-check"}), "load_speed_file: the speed changes by up to 1.012e+04 m/s2"));
+      contains(unusual_of(workplace, {"-describe"}), "load_speed_file: the speed changes by up to 1.012e+04 m/s2"));
   workplace.write("speeds.csv", "0,0\n100,12.5\n500,22\n");
-  EXPECT_FALSE(contains(unusual_of(workplace, {"-check"}), "load_speed_file"));
+  EXPECT_FALSE(contains(unusual_of(workplace, {"-describe"}), "load_speed_file"));
 }
 
 TEST(Check, FindsNothingUnusualInWhatIsUsual) {
   const Workplace workplace(usual);
-  const Outcome outcome = workplace.run({"-check"});
+  const Outcome outcome = workplace.run({"-describe"});
   expect_success(outcome);
   EXPECT_EQ(section(outcome.out, "unusual input"), "  nothing               \n") << outcome.out;
-  const Outcome quiet = workplace.run({"-check", "-output_quiet"});
+  const Outcome quiet = workplace.run({"-describe", "-output_quiet"});
   expect_success(quiet);
   EXPECT_EQ(quiet.out, "");
 }
@@ -261,7 +261,7 @@ TEST(Check, FindsNothingUnusualInWhatIsUsual) {
 // other 4 m away: 98.1 (1 + 26/30) kN, and half of the bridge's 600 t.
 TEST(Check, ShowsLoadsAndReactionsAtRest) {
   const Workplace workplace(usual);
-  const std::string out = workplace.run({"-check"}).out;
+  const std::string out = workplace.run({"-describe"}).out;
   EXPECT_TRUE(contains(out, "a 98.1, b 98.1")) << out;
   const std::string supports = section(out, "support reactions");
   EXPECT_TRUE(contains(supports, "support at 0 m              2943             0       183.1")) << supports;
@@ -272,15 +272,15 @@ TEST(Check, ShowsLoadsAndReactionsAtRest) {
 
 TEST(Check, OnTwoRanksIsTheSame) {
   const Workplace workplace(usual);
-  const Outcome outcome = workplace.run({"-check"}, 2);
+  const Outcome outcome = workplace.run({"-describe"}, 2);
   expect_success(outcome);
-  EXPECT_EQ(lines_of(outcome.out), lines_of(workplace.run({"-check"}).out));
+  EXPECT_EQ(lines_of(outcome.out), lines_of(workplace.run({"-describe"}).out));
 }
 
 TEST(Check, LeavesResultsThatAreThereAlone) {
   const Workplace workplace(usual);
   workplace.write("mine.h5", "not a results file");
-  const Outcome outcome = workplace.run({"-check", "-output_file", "mine.h5"});
+  const Outcome outcome = workplace.run({"-describe", "-output_file", "mine.h5"});
   expect_success(outcome);
   EXPECT_TRUE(contains(outcome.out, "the file exists")) << outcome.out;
   EXPECT_EQ(std::filesystem::file_size(workplace.path("mine.h5")), 18u);
@@ -288,18 +288,18 @@ TEST(Check, LeavesResultsThatAreThereAlone) {
 
 TEST(Check, RefusesWhatARunRefuses) {
   const Workplace workplace(usual);
-  expect_refusal(workplace, workplace.run({"-check", "-beam_EI", "-5"}), {"beam_EI"});
-  expect_refusal(workplace, workplace.run({"-check", "-ts_tpye", "esdirk4"}), {"ts_tpye"});
-  expect_refusal(workplace, workplace.run({"-check", "-support_types", "free"}), {"support_types"});
-  expect_refusal(workplace, workplace.run({"-check", "-ts_dt", "0.5"}), {"ts_dt"});
+  expect_refusal(workplace, workplace.run({"-describe", "-beam_EI", "-5"}), {"beam_EI"});
+  expect_refusal(workplace, workplace.run({"-describe", "-ts_tpye", "esdirk4"}), {"ts_tpye"});
+  expect_refusal(workplace, workplace.run({"-describe", "-support_types", "free"}), {"support_types"});
+  expect_refusal(workplace, workplace.run({"-describe", "-ts_dt", "0.5"}), {"ts_dt"});
 }
 
 // --- the estimate counts what the run does
 // ----------------------------------------------------------------------------
 
-/// The steps that -check counts, and those of the run.
+/// The steps that -describe counts, and those of the run.
 void expect_counted_steps(const Workplace& workplace, double tolerance) {
-  const Outcome check = workplace.run({"-check"});
+  const Outcome check = workplace.run({"-describe"});
   expect_success(check);
   const std::string cost = section(check.out, "cost, estimated");
   const std::size_t at = cost.find("  steps ");

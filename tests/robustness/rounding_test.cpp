@@ -25,7 +25,7 @@ TEST(Rounding, HidesElementsBesideMuchLongerOnes) {
 // Sums of spans and of widths are rounded: what is meant to be one station is one.
 TEST(Rounding, DividesNoBeamTwiceAtOnePlace) {
   const Workplace workplace(beam);
-  const std::vector<std::string> spans = {"-beam_spans", "13.1,13.2,10", "-check"};
+  const std::vector<std::string> spans = {"-beam_spans", "13.1,13.2,10", "-describe"};
   for (std::vector<std::string> words : std::vector<std::vector<std::string>>{
            {"-beam_hinges", "26.3"},
            {"-beam_cracks_x", "26.3", "-beam_cracks_k", "1e9"},
@@ -45,7 +45,7 @@ TEST(Rounding, HidesBendingBesideShear) {
 TEST(Rounding, HidesFrequenciesOfTooManyElements) {
   const std::vector<std::string> many = {"-beam_spans", "20*5", "-beam_elements_per_span", "20000"};
   std::vector<std::string> check = many, modes = many;
-  check.insert(check.end(), {"-check"});
+  check.insert(check.end(), {"-describe"});
   modes.insert(modes.end(), {"-scene_analysis", "modes", "-modes_count", "3"});
   for (const std::vector<std::string>& words : {check, modes})
     expect_refused(words, {"beam_elements_per_span", "rounding hides the lowest frequencies"});

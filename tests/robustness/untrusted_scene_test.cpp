@@ -19,7 +19,7 @@ TEST(UntrustedScene, RunsNoCommandAndWritesNoOtherFile) {
         "viewer_binary_filename: victim\n", "start_in_debugger: 'touch,victim'\n"}) {
     SCOPED_TRACE(line);
     const Workplace workplace(forces(line));
-    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{}, {"-check"}}) {
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{}, {"-describe"}}) {
       const Outcome outcome = workplace.run(words);
       EXPECT_EQ(outcome.status, 2);
       ASSERT_EQ(complaints(outcome).size(), 1U) << outcome.err;
@@ -44,7 +44,7 @@ TEST(Petscrc, InTheFolderIsSaidOnStandardOutput) {
   workplace.write(".petscrc", "-beam_damping_ratios 0.5\n-load_speed 41\n-python touch\n");
   std::vector<std::string> command = workplace.command({});
   command.insert(command.begin(), {"env", "PETSC_OPTIONS=-gravity 1 -info victim", "HOME=/nonexistent"});
-  for (const char* word : {"-output_quiet", "-check"}) {
+  for (const char* word : {"-output_quiet", "-describe"}) {
     std::vector<std::string> words = command;
     words.emplace_back(word);
     const Outcome outcome = Child(words, workplace.folder()).wait();

@@ -13,7 +13,12 @@ namespace {
 
 const std::string bridge = "beam: {spans: 20.0, EI: 8.3e9, mass: 2303.0, elements_per_span: 8, damping_ratios: 0.01}\n";
 const std::string force = "load: {forces: 1e5, speed: 30}\n";
-const std::string car = vehicle_yaml + "train: {vehicles: car, speed: 30}\nmodel: {vehicles: linear}\n";
+/// The car of scene_helpers, whose body moves at the start, or rests.
+std::string car_with(const std::string& velocity) {
+  std::string yaml = vehicle_yaml;
+  return yaml.replace(yaml.find("[0, 0.1, 0]"), 11, velocity);
+}
+const std::string car = car_with("[0, 0, 0]") + "train: {vehicles: car, speed: 30}\nmodel: {vehicles: linear}\n";
 
 /// The engines that serve the runs of a scene, each with its results at two speeds, and the reasons of the others.
 struct Served {
@@ -66,6 +71,12 @@ TEST(Engines, OfLinearVehicles) {
   EXPECT_TRUE(served.why[batches].empty() && served.why[single].empty());
   EXPECT_LT(served.difference(batches), 1e-4);
   EXPECT_NE(served.why[modes], "");
+}
+
+TEST(Engines, OfVehiclesThatMoveAtTheStart) {
+  const Served served(bridge + vehicle_yaml +
+                      "train: {vehicles: car, speed: 30}\nmodel: {vehicles: linear}\nts: {dt: 1e-3}\n");
+  EXPECT_EQ(served.why[batches], "bodies of vehicles have velocities at the start");
 }
 
 TEST(Engines, OfMechanisms) {

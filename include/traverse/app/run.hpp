@@ -1,4 +1,4 @@
-// Runs a scene: -check, one analysis (in time, static, or natural modes), a sweep or a study.
+// Runs a scene: -describe, one analysis (in time, static, or natural modes), a sweep or a study.
 #pragma once
 
 #include <mpi.h>

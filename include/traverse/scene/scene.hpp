@@ -136,7 +136,7 @@ struct Scene {
   std::optional<options::Screen> screen;                     // bridges and trains of scene_analysis screen
   bool quiet = false;                                        // -output_quiet: no progress display
   bool verbose = false;                                      // -verbose: details of the model are printed
-  bool check = false;                                        // -check: the scene is reported, without a run
+  bool describe = false;                                     // -describe: the scene is reported, without a run
   std::vector<std::string> notes;                            // choices with their reasons, one line each
   std::vector<std::string> unusual;                          // the notes on possible but unusual input
   std::vector<std::pair<std::string, std::string>> options;  // all given options, also the options in vehicle files
