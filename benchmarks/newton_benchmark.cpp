@@ -83,7 +83,7 @@ class Ride {
  public:
   Ride(int coaches, double step) : step_(step) {
     const int number = std::max(coaches, 1);
-    const app::Scene scene = app::read_scene(options::Options({
+    const scene::Scene scene = scene::read_scene(options::Options({
         {"beam_spans", "32.0*" + std::to_string(spans)},
         {"beam_elements_per_span", "10"},
         {"beam_EI", "3.795e11"},

@@ -23,7 +23,7 @@ struct Setup {
   double shift = 4000.0;  // 1/s, of a stage of ARKIMEX 4, or of esdirk4, at steps of 1 ms
 
   Setup(int spans, int coaches) {
-    const app::Scene scene = app::read_scene(options::Options({
+    const scene::Scene scene = scene::read_scene(options::Options({
         {"beam_spans", "32.0*" + std::to_string(spans)},
         {"beam_elements_per_span", "10"},
         {"beam_EI", "3.795e11"},

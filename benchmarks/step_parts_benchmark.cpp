@@ -35,20 +35,20 @@ struct Part {
 
 struct Integrator {
   const char* name;
-  structure::Method method;
+  base::Method method;
 };
 
 std::vector<Integrator> integrators() {
-  return {{"esdirk4", structure::esdirk4()}, {"genalpha", structure::generalised_alpha(0.9)}};
+  return {{"esdirk4", base::esdirk4()}, {"genalpha", base::generalised_alpha(0.9)}};
 }
 
 /// The beam's stages and the step's end, apart from the system around them.
 struct Stages {
   structure::BeamMotion motion;
-  structure::Method method;
+  base::Method method;
   std::vector<double> v, w;
 
-  Stages(const beam::Beam& beam, structure::BeamOperator& op, structure::Method unit)
+  Stages(const beam::Beam& beam, structure::BeamOperator& op, base::Method unit)
       : motion(beam, op, nullptr), method(std::move(unit)), v(static_cast<std::size_t>(op.unknowns()), 1e-3), w(v) {
     method.scale_to(step);
     motion.begin(method);
@@ -65,7 +65,7 @@ struct Steps {
   std::vector<double> start, y;
   double t = 0.0;
 
-  Steps(int unknowns, Spans kind, int coaches, const structure::Method& method)
+  Steps(int unknowns, Spans kind, int coaches, const base::Method& method)
       : scene(unknowns, kind, coaches), start(static_cast<std::size_t>(scene.system->local_size())) {
     scene.system->start(true, start.data());
     scene.system->begin_motion(method);
@@ -135,7 +135,7 @@ double resident() {
 void measure_memory(int size, Spans kind, std::ofstream& table) {
   malloc_trim(0);  // what was freed before would serve again, unseen
   const double before = resident();
-  Steps steps(size, kind, 8, structure::esdirk4());
+  Steps steps(size, kind, 8, base::esdirk4());
   const int unknowns = steps.scene.unknowns(), few = size <= 100'000 ? 100 : 10;
   const auto bytes = [&] { return (resident() - before) * ranks() / unknowns; };
   const double built = bytes();

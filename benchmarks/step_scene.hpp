@@ -56,7 +56,7 @@ struct StepScene {
     if (coaches > 0)
       text += "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/s300.yml}}\ntrain: {vehicles: coach*" +
               std::to_string(coaches) + ", speed: 83.333}\n";
-    const app::Scene scene = app::read_scene(options::Options::from_yaml(text));
+    const scene::Scene scene = scene::read_scene(options::Options::from_yaml(text));
     beam = std::make_unique<beam::Beam>(PETSC_COMM_WORLD, *scene.beam);
     beam->set_rayleigh({0.5, 5e-4});
     system = std::make_unique<coupling::System>(

@@ -19,7 +19,7 @@ void train_build(benchmark::State& state, const std::string& vehicle, bool start
   const int coaches = 16;
   double freedom = 0.0;
   for (auto _ : state) {
-    const app::Scene scene = app::read_scene(options::Options({
+    const scene::Scene scene = scene::read_scene(options::Options({
         {"beam_spans", "32.0*3"},
         {"beam_elements_per_span", "10"},
         {"beam_EI", "3.795e11"},

@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     traverse::options::Arguments petsc(input.petsc_words);
     if (SlepcInitialize(petsc.argc(), petsc.argv(), nullptr, nullptr) != 0) return 1;
     traverse::options::put_into_petsc(input);
-    traverse::app::Scene scene = traverse::app::read_scene();
+    traverse::scene::Scene scene = traverse::scene::read_scene();
     for (const double speed : {20.0, 30.0, 40.0}) {  // m/s
       scene.train.speed = scene.load.speed = speed;
       scene.output.file = "embed_" + std::to_string(static_cast<int>(speed)) + ".h5";

@@ -45,9 +45,9 @@ int main() {
     print("plain", plain);
 
     traverse::Problem tyre = plain;
-    tyre.change([law = std::make_shared<Tyre>(1.5e6, 4.0e9)](traverse::app::Scene& scene) {
-      for (traverse::app::Vehicle& vehicle : scene.vehicles)
-        for (traverse::app::Wheel& wheel : vehicle.wheels) {
+    tyre.change([law = std::make_shared<Tyre>(1.5e6, 4.0e9)](traverse::scene::Scene& scene) {
+      for (traverse::train::Vehicle& vehicle : scene.vehicles)
+        for (traverse::train::Wheel& wheel : vehicle.wheels) {
           wheel.law.kind = traverse::contact::LawKind::other;
           wheel.law.elastic = law;
         }

@@ -36,7 +36,7 @@ class Value {
 /// the program (`traverse -help`, without the dash). They are read when the scene is needed, not before.
 class Problem {
  public:
-  using Change = std::function<void(app::Scene&)>;
+  using Change = std::function<void(scene::Scene&)>;
 
   Problem() = default;  // without options
   /// The options by their names.
@@ -61,9 +61,9 @@ class Problem {
   Problem& change(Change change);
 
   /// The scene of these options, checked and changed. Throws InputError with one line.
-  app::Scene scene() const;
+  scene::Scene scene() const;
   /// The scene that `read` reads, such as that of a run of a study, with the tables and changes of this problem.
-  app::Scene scene(const std::function<app::Scene()>& read) const;
+  scene::Scene scene(const std::function<scene::Scene()>& read) const;
 
   /// The options with their sources, as given.
   const options::Entries& entries() const { return entries_; }

@@ -23,8 +23,8 @@
 
 namespace traverse {
 
-/// Starts MPI, PETSc and SLEPc if they are not started yet, and ends those that it has started. Signals remain those of
-/// the program. Runs need one during their time.
+/// Starts MPI, PETSc and SLEPc if they are not started yet, and ends those that it has started, once in a process.
+/// Signals remain those of the program. Runs need one during their time, and all calls are made in one thread.
 class Session {
  public:
   /// petsc_words: options of PETSc's own, such as {"-log_view"}.
@@ -123,7 +123,7 @@ class RunsFailed : public Error {
 /// Collective. The result of each case, in their order, on every rank of comm, and the same for any number of ranks.
 /// Problems that differ in the values of options only are computed together as the runs of a study, with one numerical
 /// model and in batches. Cases with observers are computed alone; observers are called on the rank that computes their
-/// case. Throws InputError, before anything is computed, and RunsFailed.
+/// case. Throws InputError, before anything is computed, RunsFailed, and what an observer throws.
 std::vector<Result> simulate(std::span<const Case> cases, const Progress& progress = {}, MPI_Comm comm = MPI_COMM_SELF);
 std::vector<Result> simulate(std::span<const Problem> problems, const Progress& progress = {},
                              MPI_Comm comm = MPI_COMM_SELF);

@@ -21,10 +21,10 @@ namespace traverse::app {
 /// A scene with all data for its computation.
 struct Job {
   MPI_Comm comm;
-  const Scene& scene;  // with all selected values
+  const scene::Scene& scene;  // with all selected values
   results::Place place;
-  const Accuracy& accuracy;
-  SharedBeam& beam;
+  const error_control::Accuracy& accuracy;
+  run::SharedBeam& beam;
   std::vector<std::string> notes;
   const results::Checkpoint* earlier = nullptr;  // checkpoint that the run continues; null: none
 };
@@ -35,7 +35,8 @@ int run_modes(Job job);
 int run_rail(Job job);      // forces between rail and bridge along the track
 int run_envelope(Job job);  // the largest static effects of the loads over all their positions
 int run_screen(Job job);    // every formation of a fleet over every bridge of a stock
-int check_screen(MPI_Comm comm, const Scene& scene);  // -describe of a screen: reads everything, and describes it
+int check_screen(MPI_Comm comm,
+                 const scene::Scene& scene);  // -describe of a screen: reads everything, and describes it
 
 struct AnalysisRun {
   options::Analysis analysis;

@@ -20,7 +20,7 @@ int call_and_catch(Body&& body) {
     body();
     return 0;
   } catch (const std::exception& failure) {
-    const Error error = as_error(failure);
+    const Error error = run::as_error(failure);
     last_error() = error.what();
     return error.status();
   }

@@ -95,7 +95,7 @@ StepByStep& require_open(const traverse_passage* passage) {
 
 traverse_passage* open_passage(Problem problem) {
   if (!problem.entries().has("model_vehicles")) problem.set("model_vehicles", "full");
-  const Scene scene = problem.scene();
+  const scene::Scene scene = problem.scene();
   const options::InPetsc petsc(problem.entries());
   auto steps = std::make_unique<StepByStep>(choose_for_one_run(scene));
   std::vector<std::string> names = names_of_dimensions(steps->layout());

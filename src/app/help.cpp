@@ -16,7 +16,7 @@ std::string help_about(const std::string& what) {
   if (what == "man") return options::manual_page(integrators);
   if (what == "bash") {
     std::vector<std::string> types;
-    for (const structure::MethodRow& row : structure::methods()) types.emplace_back(row.name);
+    for (const base::MethodRow& row : base::methods()) types.emplace_back(row.name);
     for (const integrate::PetscType& type : integrate::petsc_types()) types.emplace_back(type.name);
     return options::bash_completion(types);
   }

@@ -31,7 +31,7 @@
 namespace {
 
 // The system calls the functions of this section before it initialises the libraries.
-[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = traverse::app::store_ignored_signals;
+[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = traverse::run::store_ignored_signals;
 
 /// Whether this is the first rank. Open MPI's mpirun passes the rank's number in the environment, before MPI_Init.
 bool first_rank() {
@@ -47,7 +47,7 @@ bool first_rank() {
 }
 
 int print_error(const traverse::Error& error) {
-  if (first_rank()) traverse::app::print_error(error);
+  if (first_rank()) traverse::run::print_error(error);
   return error.status();
 }
 
@@ -87,11 +87,11 @@ traverse::options::Input read_input(int argc, char** argv) {
 int run(traverse::options::Input& input) {
   try {
     traverse::options::put_into_petsc(input);
-    return traverse::app::run(PETSC_COMM_WORLD, traverse::app::read_scene());
+    return traverse::app::run(PETSC_COMM_WORLD, traverse::scene::read_scene());
   } catch (const traverse::Error& error) {
     return print_error(error);
   } catch (const std::exception& failure) {  // the failure may be on this rank only, and other ranks wait for it
-    traverse::app::leave_together(PETSC_COMM_WORLD, traverse::app::as_error(failure));
+    traverse::run::leave_together(PETSC_COMM_WORLD, traverse::run::as_error(failure));
   }
 }
 
@@ -109,9 +109,9 @@ int after_output(int status) {
 int main(int argc, char** argv) {
   (void)H5dont_atexit();  // HDF5's exit handler may crash if a file could not be written
   traverse::app::guard_standard_output();
-  traverse::app::install_handlers();
-  traverse::app::set_cpu_limit_timer();
-  traverse::app::print_signals(first_rank());
+  traverse::run::install_handlers();
+  traverse::run::set_cpu_limit_timer();
+  traverse::run::print_signals(first_rank());
   traverse::app::start_lightly();
   try {
     start_verb(argc, argv);
@@ -125,8 +125,8 @@ int main(int argc, char** argv) {
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
     traverse::app::started();
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-    traverse::app::install_handlers();  // replaces the handlers of PETSc
-    traverse::app::print_signals(first_rank());
+    traverse::run::install_handlers();  // replaces the handlers of PETSc
+    traverse::run::print_signals(first_rank());
     const int status = run(input);
     (void)SlepcFinalize();
     return after_output(status);
@@ -135,6 +135,6 @@ int main(int argc, char** argv) {
     if (!first_rank()) std::this_thread::sleep_for(std::chrono::seconds(1));
     return print_error(error);
   } catch (const std::exception& failure) {
-    return print_error(traverse::app::as_error(failure));
+    return print_error(traverse::run::as_error(failure));
   }
 }

@@ -14,43 +14,44 @@
 namespace traverse::app {
 namespace {
 
-Choice try_models(MPI_Comm comm, Scene scene, std::vector<std::string>& notes) {
-  if (chooses_mode_mesh(scene)) return choose_mode_mesh(comm, scene, notes);
-  if (chooses(scene)) set_low_pass(comm, scene, notes);
-  Choice choice = choose(comm, scene, notes);
+error_control::Choice try_models(MPI_Comm comm, scene::Scene scene, std::vector<std::string>& notes) {
+  if (error_control::chooses_mode_mesh(scene)) return error_control::choose_mode_mesh(comm, scene, notes);
+  if (error_control::chooses(scene)) error_control::set_low_pass(comm, scene, notes);
+  error_control::Choice choice = error_control::choose(comm, scene, notes);
   choice.low_pass = scene.output.low_pass;
   return choice;
 }
 
 }  // namespace
 
-Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
-  ChoiceCache kept(comm, scene);
-  Choice choice;
+error_control::Accuracy choose_model(MPI_Comm comm, scene::Scene& scene, std::vector<std::string>& notes) {
+  error_control::ChoiceCache kept(comm, scene);
+  error_control::Choice choice;
   std::vector<std::string> own;
   if (!kept.read(scene, own, choice)) {
     choice = try_models(comm, scene, own);
     if (choice.accuracy.measured) kept.write(own, choice);
   }
   notes.insert(notes.end(), own.begin(), own.end());
-  scene = with(scene, choice.model);
+  scene = error_control::with(scene, choice.model);
   if (choice.low_pass) scene.output.low_pass = choice.low_pass;
   return choice.accuracy;
 }
 
-double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::vector<std::string>& notes) {
-  const bool moves = scene.analysis != Analysis::static_response;
+double prepare(scene::Scene& scene, const error_control::Accuracy& accuracy, run::SharedBeam& shared,
+               std::vector<std::string>& notes) {
+  const bool moves = scene.analysis != options::Analysis::static_response;
   const beam::Beam* beam = shared.bridge();
-  const bool cheap = beam != nullptr && frequencies_are_cheap(*beam);
+  const bool cheap = beam != nullptr && run::frequencies_are_cheap(*beam);
   if (beam != nullptr)
     shared.damp(scene, moves && (accuracy.measured || !scene.model.step || scene.model.modes > 0 || cheap), notes);
   shared.prepare(scene, notes);
   const bool limited = scene.limits_deck_acceleration();
   const double counting =
-      limited || scene.output.low_pass_requested ? cutoff_frequency(scene, shared, cheap || limited, notes) : 0.0;
-  if (counting > 0.0) scene.sampling_interval = spacing_for(counting);
-  if (filters_wheels(scene))
-    scene.sampling_interval = std::min(scene.sampling_interval, spacing_for(scene.output.wheel_low_pass));
+      limited || scene.output.low_pass_requested ? run::cutoff_frequency(scene, shared, cheap || limited, notes) : 0.0;
+  if (counting > 0.0) scene.sampling_interval = run::spacing_for(counting);
+  if (run::filters_wheels(scene))
+    scene.sampling_interval = std::min(scene.sampling_interval, run::spacing_for(scene.output.wheel_low_pass));
   return counting;
 }
 

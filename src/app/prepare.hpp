@@ -13,10 +13,11 @@
 namespace traverse::app {
 
 /// Collective. Selects the parts of the numerical model that the scene does not prescribe, for the wanted accuracy.
-Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
+error_control::Accuracy choose_model(MPI_Comm comm, scene::Scene& scene, std::vector<std::string>& notes);
 
 /// Collective. Computes the beam's damping and factorisation, and sets the sampling interval of the responses. Returns
 /// the cut-off frequency of the filter for deck accelerations, Hz; 0 without a filter.
-double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::vector<std::string>& notes);
+double prepare(scene::Scene& scene, const error_control::Accuracy& accuracy, run::SharedBeam& shared,
+               std::vector<std::string>& notes);
 
 }  // namespace traverse::app

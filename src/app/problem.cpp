@@ -98,13 +98,13 @@ Problem& Problem::change(Change change) {
   return *this;
 }
 
-app::Scene Problem::scene() const {
-  return scene([this] { return app::read_scene(options::Options(options::complete(entries_, source))); });
+scene::Scene Problem::scene() const {
+  return scene([this] { return scene::read_scene(options::Options(options::complete(entries_, source))); });
 }
 
-app::Scene Problem::scene(const std::function<app::Scene()>& read) const {
+scene::Scene Problem::scene(const std::function<scene::Scene()>& read) const {
   const options::TablesInMemory tables(tables_);
-  app::Scene scene = read();
+  scene::Scene scene = read();
   for (const std::shared_ptr<const Change>& one : changes_) (*one)(scene);
   scene.output.file.clear();
   scene.quiet = true;

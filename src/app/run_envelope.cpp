@@ -7,13 +7,13 @@
 namespace traverse::app {
 
 int run_envelope(Job job) {
-  const Scene& scene = job.scene;
-  SharedBeam& shared = job.beam;
+  const scene::Scene& scene = job.scene;
+  run::SharedBeam& shared = job.beam;
   shared.damp(scene, false, job.notes);
   if (!scene.vehicles.empty()) shared.prepare(scene, job.notes);
   for (const std::string& note : options::notes_on_unused(*scene.given)) job.notes.push_back(note);
-  print_notes(job.comm, scene, job.notes);
-  const norm::NormCheck check = norm_check(scene, static_trains(scene, shared));
+  run::print_notes(job.comm, scene, job.notes);
+  const norm::NormCheck check = run::norm_check(scene, run::static_trains(scene, shared));
   if (check.effects().loads.empty())
     throw InputError(
         "scene_analysis: there is nothing to envelop; allowed: load_forces, train_vehicles, norm_load_models");

@@ -43,9 +43,9 @@ struct RunEnd {
   double step = 0.0;  // s, longest computed time step, for shorter_steps
 };
 
-std::optional<Plan> plan_of(const results::Checkpoint* earlier) {
+std::optional<run::Plan> plan_of(const results::Checkpoint* earlier) {
   if (earlier == nullptr) return std::nullopt;
-  return Plan{0.0, earlier->time_step, earlier->interval, earlier->stored};
+  return run::Plan{0.0, earlier->time_step, earlier->interval, earlier->stored};
 }
 
 /// A run at its start: the input is checked, the notes are printed, and no motion is computed yet.
@@ -57,11 +57,11 @@ struct ReadyRun {
 
   Job& job;
   int rank = 0;
-  Scene scene;
-  Accuracy accuracy;
-  double counting;              // Hz, cut-off frequency of deck accelerations; 0: no filter
-  std::optional<Plan> earlier;  // plan of the run that this run continues
-  Simulation simulation;
+  scene::Scene scene;
+  error_control::Accuracy accuracy;
+  double counting;                   // Hz, cut-off frequency of deck accelerations; 0: no filter
+  std::optional<run::Plan> earlier;  // plan of the run that this run continues
+  run::Simulation simulation;
 };
 
 ReadyRun::ReadyRun(Job& given)
@@ -83,7 +83,7 @@ ReadyRun::ReadyRun(Job& given)
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  simulation.plan().end_time));
   for (const std::string& note : options::notes_on_unused(*scene.given)) job.notes.push_back(note);
-  if (counting > 0.0 && !simulation.evaluation().filters_deck()) accuracy.estimates[low_passed].accepted = false;
+  if (counting > 0.0 && !simulation.evaluation().filters_deck()) accuracy.estimates[run::low_passed].accepted = false;
   if (is_continued()) {
     base::Archive archive(job.comm, job.earlier->of_ranks);
     simulation.keep(archive);
@@ -94,27 +94,29 @@ ReadyRun::ReadyRun(Job& given)
                       simulation.passage().steps()));
     job.notes.push_back(fmt::format("goes on from t = {:g} s", job.earlier->time));
   }
-  print_notes(job.comm, scene, job.notes);
+  run::print_notes(job.comm, scene, job.notes);
 }
 
 /// Compares the error estimates with the results of a refined run. Returns false if an estimate is exceeded.
-bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const ResponseExtremes& peaks) {
-  if (!scene.beam) return report_multibody(comm, scene, accuracy);
-  const Scene fine = refined(scene);
-  const ResponseExtremes truth = [&] {
+bool report(MPI_Comm comm, const scene::Scene& scene, const error_control::Accuracy& accuracy,
+            const run::ResponseExtremes& peaks) {
+  if (!scene.beam) return error_control::report_multibody(comm, scene, accuracy);
+  const scene::Scene fine = error_control::refined(scene);
+  const run::ResponseExtremes truth = [&] {
     const results::Stage stage("the refined run of -accuracy_report");
     const options::WithoutMonitors without_monitors;
-    return peaks_of(comm, fine).peaks;
+    return error_control::peaks_of(comm, fine).peaks;
   }();
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   int all_kept = 1;
-  if (rank == 0) report_head("half the step and elements half as long", "peak of");
-  for (std::size_t i = 0; i < quantities; ++i) {
-    const auto q = static_cast<Quantity>(i);
+  if (rank == 0) error_control::report_head("half the step and elements half as long", "peak of");
+  for (std::size_t i = 0; i < run::quantities; ++i) {
+    const auto q = static_cast<run::Quantity>(i);
     if (truth.largest(q).value == 0.0) continue;
-    const double error = peak_difference(peaks, truth, q);
-    const bool kept = report_row(quantity_names[i], accuracy.estimates[i], scene.accuracy, error, rank == 0);
+    const double error = run::peak_difference(peaks, truth, q);
+    const bool kept =
+        error_control::report_row(run::quantity_names[i], accuracy.estimates[i], scene.accuracy, error, rank == 0);
     all_kept = kept ? all_kept : 0;
   }
   MPI_Bcast(&all_kept, 1, MPI_INT, 0, comm);  // only the first rank has the low-passed accelerations
@@ -122,20 +124,20 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const R
 }
 
 /// Creates the results file, or opens the file of the run that this run continues.
-results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
+results::Recorder recorder_of(ReadyRun& ready, const run::Outputs& outputs) {
   Job& job = ready.job;
   results::Layout layout = outputs.layout();
-  const Plan& plan = ready.simulation.plan();
-  if (ready.scene.analysis != Analysis::static_response) {
+  const run::Plan& plan = ready.simulation.plan();
+  if (ready.scene.analysis != options::Analysis::static_response) {
     layout.interval = plan.interval * static_cast<double>(plan.stored);
     layout.rows = static_cast<std::size_t>(plan.end_time / layout.interval) + 2;
   }
   if (ready.is_continued()) return {job.comm, std::move(job.place), layout, job.earlier->results};
-  results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, ready.scene),
+  results::Recorder recorder(job.comm, std::move(job.place), layout, run::attributes(job.comm, ready.scene),
                              ready.scene.options);
-  recorder.of_scene(digest_of(ready.scene));
-  record_model(ready.scene, job.notes, recorder);
-  record_modes(job.beam, recorder);
+  recorder.of_scene(run::digest_of(ready.scene));
+  run::record_model(ready.scene, job.notes, recorder);
+  run::record_modes(job.beam, recorder);
   return recorder;
 }
 
@@ -149,7 +151,7 @@ results::Checkpoint so_far(const Job& job, results::Repeated repeated) {
 }
 
 /// A run in time that is recorded, with checkpoints and a display of its progress.
-class RecordedRun : private Observer {
+class RecordedRun : private run::Observer {
  public:
   RecordedRun(ReadyRun& ready, results::Repeated repeated, bool may_shorten);
   RunEnd run();
@@ -168,23 +170,23 @@ class RecordedRun : private Observer {
   bool prints() const { return ready_.rank == 0; }
 
   ReadyRun& ready_;
-  const Scene& scene_;
+  const scene::Scene& scene_;
   bool may_shorten_;  // whether the run may be repeated with shorter steps after StepTooLong
-  Simulation& simulation_;
+  run::Simulation& simulation_;
   coupling::System& system_;
-  std::optional<DeferredSignals> noted_{
+  std::optional<run::DeferredSignals> noted_{
       std::in_place};  // signals are delayed from here on, so that the file remains readable
-  Outputs outputs_;
+  run::Outputs outputs_;
   results::Recorder recorder_;
   results::Sample sample_;
-  Checkpoints checkpoints_;
+  run::Checkpoints checkpoints_;
   double before_, reached_;  // s: wall time of the continued run; simulated time reached so far
   results::Progress progress_;
   Clock::time_point begin_ = Clock::now();
-  Requests asked_;
+  run::Requests asked_;
   bool reaches_end_ = false;
   bool repeated_ = false;  // the run is repeated
-  Result result_;
+  run::Result result_;
 };
 
 RecordedRun::RecordedRun(ReadyRun& ready, results::Repeated repeated, bool may_shorten)
@@ -193,7 +195,7 @@ RecordedRun::RecordedRun(ReadyRun& ready, results::Repeated repeated, bool may_s
       may_shorten_(may_shorten),
       simulation_(ready.simulation),
       system_(simulation_.system()),
-      outputs_(outputs_of({scene_, system_.fleet(), ready.job.beam.bridge()})),
+      outputs_(run::outputs_of({scene_, system_.fleet(), ready.job.beam.bridge()})),
       recorder_(recorder_of(ready, outputs_)),
       checkpoints_(ready.job.comm, scene_, simulation_, recorder_, so_far(ready.job, repeated)),
       before_(ready.is_continued() ? ready.job.earlier->wall_seconds : 0.0),
@@ -216,7 +218,7 @@ bool RecordedRun::step(double t, long steps) {
   reached_ = t;
   progress_.update(t, steps);
   results::Stage::advance(t / simulation_.plan().end_time);
-  asked_ = requests_on_any(ready_.job.comm, checkpoints_.wanted());
+  asked_ = run::requests_on_any(ready_.job.comm, checkpoints_.wanted());
   return asked_.signal == 0;
 }
 
@@ -259,7 +261,7 @@ void RecordedRun::summarise(const std::string& ended) {
 
 /// The error estimates that are invalid, in words.
 std::vector<std::string> RecordedRun::invalidate() {
-  Accuracy& accuracy = ready_.accuracy;
+  error_control::Accuracy& accuracy = ready_.accuracy;
   return {accuracy.invalidate_by_contact_loss(result_.losses), accuracy.invalidate_by_new_event(result_.new_event),
           accuracy.invalidate_if_rougher(result_.roughness, scene_.accuracy),
           accuracy.invalidate_at_end(result_.filter_unsettled)};
@@ -268,8 +270,8 @@ std::vector<std::string> RecordedRun::invalidate() {
 /// The comparison with EN 1991-2 if the scene requests it; its verdicts are appended to `verdicts`.
 std::optional<norm::NormCheck> RecordedRun::judge_by_norm(std::vector<results::Verdict>& verdicts) {
   if (!scene_.norm) return std::nullopt;
-  norm::NormCheck check = norm_check(scene_, {static_train("train", system_.weights().all())});
-  if (compares_with_lm71(scene_)) check.compare(peaks_of_run(scene_, result_.peaks));
+  norm::NormCheck check = run::norm_check(scene_, {run::static_train("train", system_.weights().all())});
+  if (run::compares_with_lm71(scene_)) check.compare(run::peaks_of_run(scene_, result_.peaks));
   check.find(verdicts);
   check.record(recorder_);
   return check;
@@ -307,7 +309,7 @@ RunEnd RecordedRun::run() {
     }
     if (system_.linearisation_residual() <= scene_.model.residual_limit) simulation_.evaluation().check_balance();
   } catch (const FileError& error) {
-    leave_together(comm, error);
+    run::leave_together(comm, error);
   } catch (const StepTooLong& error) {
     repeated_ = may_shorten_;
     summarise(error.what());
@@ -324,14 +326,14 @@ RunEnd RecordedRun::run() {
               : at_limit  ? "ended at the limit of -ts_max_steps"
                           : "reached its end");
   } catch (const FileError& error) {
-    leave_together(comm, error);
+    run::leave_together(comm, error);
   }
   print_notes_of_run(has_checkpoint);
   if (reaches_end_ && !at_limit) checkpoints_.forget();
   noted_.reset();
   if (reaches_end_ && result_.summary.linearisation_residual > scene_.model.residual_limit)
     return {0, Retry::mechanisms, {}, 0.0};
-  check_deflection(comm, scene_, result_.summary.deflection.value);
+  run::check_deflection(comm, scene_, result_.summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, result_.peaks))
     throw SolverError(fmt::format(
@@ -353,14 +355,14 @@ RunEnd run_once(Job& job, results::Repeated repeated, bool may_shorten) {
 
 int run_in_time(Job job) {
   const bool is_continued = job.earlier != nullptr;
-  Scene scene = job.scene;
-  Accuracy accuracy = job.accuracy;
+  scene::Scene scene = job.scene;
+  error_control::Accuracy accuracy = job.accuracy;
   results::Repeated repeated = is_continued ? job.earlier->repeated : results::Repeated();
   int halvings = is_continued || !scene.step_open ? 0 : most_halvings;
-  std::optional<SharedBeam> own;  // of a run that is repeated
+  std::optional<run::SharedBeam> own;  // of a run that is repeated
   if (repeated.with_mechanisms) {
     std::vector<std::string> ignored;
-    scene.model.vehicles = VehicleModel::full;  // instead of linear vehicles
+    scene.model.vehicles = scene::VehicleModel::full;  // instead of linear vehicles
     own.emplace(job.comm, scene, ignored);
   }
   while (true) {
@@ -368,7 +370,7 @@ int run_in_time(Job job) {
     const RunEnd end = run_once(one, repeated, halvings > 0);
     if (end.again == Retry::none) return end.status;
     if (end.again == Retry::mechanisms) {
-      scene.model.vehicles = VehicleModel::full;
+      scene.model.vehicles = scene::VehicleModel::full;
       repeated.with_mechanisms = true;
       job.notes = {fmt::format(
           "the residual of the linearised vehicles exceeded {:.1g} of their weights: the run is repeated with "

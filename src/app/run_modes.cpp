@@ -53,14 +53,14 @@ modes::DampedModes damped_by_ratios(const modes::Modes& modes) {
 
 int run_modes(Job job) {
   const MPI_Comm comm = job.comm;
-  const Scene& scene = job.scene;
-  SharedBeam& shared = job.beam;
+  const scene::Scene& scene = job.scene;
+  run::SharedBeam& shared = job.beam;
   std::vector<std::string>& notes = job.notes;
   shared.damp(scene, true, notes);
   const beam::Beam& beam = *shared.beam;
   const auto [omega1, omega2] = *shared.omega;
   const beam::Rayleigh ab = shared.rayleigh;
-  print_notes(comm, scene, notes);
+  run::print_notes(comm, scene, notes);
   const bool of_each_mode = !scene.damping_of_modes.empty() && beam.dampers() == nullptr;
   const beam::ShapePoints points(beam.mesh());
   const modes::Modes found = [&] {
@@ -78,7 +78,7 @@ int run_modes(Job job) {
     return damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
   }();
   results::Layout layout;
-  layout.constants = stations({}, beam.mesh().span_ends());
+  layout.constants = run::stations({}, beam.mesh().span_ends());
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   if (rank == 0) results::print_modes(found, omega1, omega2, ab.a, ab.b, damped);
@@ -87,9 +87,9 @@ int run_modes(Job job) {
         "  damped modes are listed below |lambda| = 1/b = {:.6g} rad/s: above it the elements decide, not the beam\n",
         1.0 / std::abs(ab.b));
   if (scene.output.file.empty()) return 0;
-  const DeferredSignals noted;  // signals are delayed until the file is complete
-  results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
-  record_model(scene, notes, recorder);
+  const run::DeferredSignals noted;  // signals are delayed until the file is complete
+  results::Recorder recorder(comm, std::move(job.place), layout, run::attributes(comm, scene), scene.options);
+  run::record_model(scene, notes, recorder);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);
   if (damping) recorder.damped_modes(damped);
   std::vector<results::Attribute> summary = {{"ended", "reached its end"}};

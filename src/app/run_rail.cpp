@@ -8,7 +8,7 @@ namespace traverse::app {
 
 int run_rail(Job job) {
   for (const std::string& note : options::notes_on_unused(*job.scene.given)) job.notes.push_back(note);
-  print_notes(job.comm, job.scene, job.notes);
+  run::print_notes(job.comm, job.scene, job.notes);
   return report_at_rest(job, rail::RailForces(*job.scene.beam, *job.scene.rail_loads));
 }
 

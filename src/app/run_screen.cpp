@@ -12,7 +12,7 @@
 
 namespace traverse::app {
 
-int check_screen(MPI_Comm comm, const Scene& scene) {
+int check_screen(MPI_Comm comm, const scene::Scene& scene) {
   const screen::Problem problem = screen::read_problem(scene);
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
@@ -35,7 +35,7 @@ int run_screen(Job job) {
   if (job.scene.screen->pair.empty()) {
     const std::vector<std::string> unusual = screen::unusual_in(problem);
     results::print_unusual(unusual);
-    print_notes(job.comm, job.scene, job.notes);
+    run::print_notes(job.comm, job.scene, job.notes);
     job.notes.insert(job.notes.end(), unusual.begin(), unusual.end());
     return screen::run(job.comm, std::move(job.place), problem, job.notes);
   }

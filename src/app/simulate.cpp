@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <map>
 #include <utility>
 
@@ -24,8 +25,8 @@
 namespace traverse {
 namespace {
 
-using app::Scene;
 using app::StepByStep;
+using scene::Scene;
 using Indices = std::vector<std::size_t>;
 
 constexpr int most_halvings = 4;  // of a selected time step that was too long
@@ -71,7 +72,7 @@ std::vector<Group> groups_of(std::span<const Case> cases) {
         if (std::ranges::any_of(part,
                                 [&](std::size_t i) { return value_of(cases[i].problem, entry.name) != entry.value; }))
           varied.push_back(entry.name);
-      const std::vector<std::string> fixed = app::not_varied(options::Options(first.entries()), varied);
+      const std::vector<std::string> fixed = scene::not_varied(options::Options(first.entries()), varied);
       std::erase_if(varied, [&](const std::string& name) { return std::ranges::find(fixed, name) != fixed.end(); });
       std::map<std::vector<std::string>, Indices> by_fixed;
       for (const std::size_t i : part) {
@@ -142,7 +143,7 @@ Result run_alone(const Scene& scene, const std::vector<Observer*>& observers) {
         for (Observer* observer : observers) observer->end(result);
         return result;
       }
-      chosen.scene.model.vehicles = app::VehicleModel::full;
+      chosen.scene.model.vehicles = scene::VehicleModel::full;
     } catch (const StepTooLong&) {
       if (halvings-- == 0) throw;
       chosen.scene.model.step = 0.5 * run.step_length();
@@ -176,13 +177,16 @@ class Runs {
  public:
   Runs(std::span<const Case> cases, const Progress& progress, MPI_Comm comm)
       : cases_(cases), progress_(progress), comm_(comm), results_(cases.size()) {
+    PetscBool running = PETSC_FALSE;
+    if (PetscInitialized(&running) != 0 || running == PETSC_FALSE)
+      throw InputError("simulate: PETSc is not started; a traverse::Session starts it");
     MPI_Comm_rank(comm, &rank_);
     MPI_Comm_size(comm, &ranks_);
     for (const Group& group : groups_of(cases)) read(group);
   }
 
   std::vector<Result> run() {
-    const app::StopRequest stop([this] {
+    const run::StopRequest stop([this] {
       const double all = static_cast<double>(cases_.size());
       return !progress_ || progress_(static_cast<double>(done_) / all);
     });
@@ -204,12 +208,12 @@ class Runs {
     std::map<std::size_t, Scene> scenes;
     scenes.emplace(first, scene_of(first));
     const bool is_study = !group.varied.empty() && group.cases.size() > 1 && scenes.at(first).beam &&
-                          scenes.at(first).analysis == app::Analysis::transient;
+                          scenes.at(first).analysis == options::Analysis::transient;
     if (is_study) {
       try {
         const Problem& problem = cases_[first].problem;
         Scene scene = problem.scene(
-            [&] { return app::read_scene(options::Options(options::complete(study_of(cases_, group), "problem"))); });
+            [&] { return scene::read_scene(options::Options(options::complete(study_of(cases_, group), "problem"))); });
         studies_.push_back({group, std::move(scene)});
         return;
       } catch (const InputError&) {  // one of them is invalid, or no study has such runs
@@ -233,7 +237,7 @@ class Runs {
             throw InputError(fmt::format("{}: a problem is one run; simulate has lists of problems", entry.given()));
       Scene scene = cases_[i].problem.scene();
       if (!cases_[i].observers.empty() && !cases_[i].problem.entries().has("model_vehicles"))
-        scene.model.vehicles = app::VehicleModel::full;
+        scene.model.vehicles = scene::VehicleModel::full;
       return scene;
     } catch (const InputError& error) {
       if (cases_.size() == 1) throw;
@@ -244,42 +248,52 @@ class Runs {
   void compute(const Study& study) {
     const Problem& problem = cases_[study.group.cases.front()].problem;
     const options::InPetsc petsc(problem.entries());
-    app::PreparedStudy prepared(comm_, study.scene, [&](const auto& values) {
-      return problem.scene([&] { return app::read_scene_of_study(options::Options(*study.scene.given), values); });
+    study::PreparedStudy prepared(comm_, study.scene, [&](const auto& values) {
+      return problem.scene([&] { return scene::read_scene_of_study(options::Options(*study.scene.given), values); });
     });
     const std::size_t before = done_;
-    app::RunFailure failure = prepared.compute(comm_, [this] { ++done_; });
+    ensemble::RunFailure failure = prepared.compute(comm_, [this] { ++done_; });
     done_ = before + study.group.cases.size();
     const std::string model = results::method_of(prepared.model);
     for (std::size_t run = 0; run < study.group.cases.size(); ++run)
       results_[study.group.cases[run]] = result_of(prepared.table(), run, model);
-    results_[study.group.cases.front()].unusual = app::unusual_in(study.scene);
+    results_[study.group.cases.front()].unusual = check::unusual_in(study.scene);
     check(failure);
   }
 
   /// Collective. Throws the failure of a rank, or that the runs were stopped.
-  void check(const app::RunFailure& failure) {
+  void check(const ensemble::RunFailure& failure) {
     if (failure.failed()) throw RunsFailed(failure.message, failure.status, std::move(results_));
-    if (const int signal = app::signal_on_any(comm_); signal != 0)
+    if (const int signal = run::signal_on_any(comm_); signal != 0)
       throw RunsFailed("the runs were stopped", 128 + signal, std::move(results_));
   }
 
   /// Each case by the next rank that is free.
   void compute_alone() {
     std::vector<int> owners(alone_.size(), -1);
-    app::SharedWork work;
+    ensemble::SharedWork work;
     work.pieces.assign(alone_.size(), {1, 1.0});
-    work.name = [this](std::size_t piece) { return fmt::format("problem {}", alone_[piece].first); };
+    if (cases_.size() > 1)
+      work.name = [this](std::size_t piece) { return fmt::format("problem {}", alone_[piece].first); };
+    std::exception_ptr of_observer;
     work.compute = [&](std::size_t piece, const std::function<void(double)>&) {
       const auto& [i, scene] = alone_[piece];
       const options::InPetsc petsc(cases_[i].problem.entries());
       owners[piece] = rank_;
-      results_[i] = run_alone(scene, cases_[i].observers);
-      results_[i].unusual = app::unusual_in(scene);
+      try {
+        results_[i] = run_alone(scene, cases_[i].observers);
+      } catch (const Error&) {
+        throw;
+      } catch (...) {
+        if (!cases_[i].observers.empty()) of_observer = std::current_exception();
+        throw;
+      }
+      results_[i].unusual = check::unusual_in(scene);
       ++done_;
     };
-    app::RunFailure failure = app::run_cases_in_parallel(comm_, work, true);
-    failure = app::first_of(comm_, std::move(failure));
+    ensemble::RunFailure failure = ensemble::run_cases_in_parallel(comm_, work, true);
+    if (of_observer && ranks_ == 1) std::rethrow_exception(of_observer);
+    failure = ensemble::first_of(comm_, std::move(failure));
     if (ranks_ > 1) {
       MPI_Allreduce(MPI_IN_PLACE, owners.data(), static_cast<int>(owners.size()), MPI_INT, MPI_MAX, comm_);
       for (std::size_t piece = 0; piece < owners.size(); ++piece)

@@ -21,7 +21,7 @@ namespace traverse::app {
 /// record(recorder). Returns the exit status.
 template <class Found>
 int report_at_rest(Job& job, const Found& found) {
-  const Scene& scene = job.scene;
+  const scene::Scene& scene = job.scene;
   std::vector<results::Verdict> verdicts;
   for (const options::VerdictLimit& limit : scene.limits)
     verdicts.push_back({limit, std::string(options::limit_quantity(limit.quantity)->unit), {}, 1, 0});
@@ -33,11 +33,11 @@ int report_at_rest(Job& job, const Found& found) {
     results::print_verdicts(verdicts, scene.unusual);
   }
   if (scene.output.file.empty()) return 0;
-  const DeferredSignals noted;  // signals are delayed until the file is complete
+  const run::DeferredSignals noted;  // signals are delayed until the file is complete
   results::Layout layout;
-  layout.constants = stations({}, job.beam.beam->mesh().span_ends());
-  results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, scene), scene.options);
-  record_model(scene, job.notes, recorder);
+  layout.constants = run::stations({}, job.beam.beam->mesh().span_ends());
+  results::Recorder recorder(job.comm, std::move(job.place), layout, run::attributes(job.comm, scene), scene.options);
+  run::record_model(scene, job.notes, recorder);
   found.record(recorder);
   results::record_verdicts(recorder, verdicts);
   recorder.finish_with({{"ended", "reached its end"}});

@@ -17,37 +17,37 @@ namespace {
 
 constexpr double same_sample = 1e-6;  // relative to the interval: times closer than this are the same sample
 
-void check_goes_in_time(const Scene& scene) {
-  const char* other = scene.study                               ? "a study"
-                      : scene.fit                               ? "a fit"
-                      : scene.sweep                             ? "a sweep"
-                      : scene.describe                          ? "-describe"
-                      : scene.find_option("restart") != nullptr ? "-restart"
-                      : scene.analysis != Analysis::transient   ? "scene_analysis"
-                                                                : nullptr;
-  if (other != nullptr) throw InputError(fmt::format("traverse_open computes one run in time; remove {}", other));
+void check_goes_in_time(const scene::Scene& scene) {
+  const char* other = scene.study                                      ? "a study"
+                      : scene.fit                                      ? "a fit"
+                      : scene.sweep                                    ? "a sweep"
+                      : scene.describe                                 ? "-describe"
+                      : scene.find_option("restart") != nullptr        ? "-restart"
+                      : scene.analysis != options::Analysis::transient ? "scene_analysis"
+                                                                       : nullptr;
+  if (other != nullptr) throw InputError(fmt::format("a problem is one run in time; remove {}", other));
 }
 
 }  // namespace
 
-ChosenScene choose_for_one_run(Scene scene) {
+ChosenScene choose_for_one_run(scene::Scene scene) {
   check_goes_in_time(scene);
   scene.quiet = true;
   std::vector<std::string> ignored;
-  Accuracy accuracy = choose_model(PETSC_COMM_SELF, scene, ignored);
+  error_control::Accuracy accuracy = choose_model(PETSC_COMM_SELF, scene, ignored);
   return {std::move(scene), std::move(accuracy)};
 }
 
 StepByStep::StepByStep(ChosenScene chosen) : scene_(std::move(chosen.scene)), shared_(PETSC_COMM_SELF, scene_, notes_) {
   const double cutoff = prepare(scene_, chosen.accuracy, shared_, notes_);
   simulation_.emplace(scene_, shared_,
-                      Wants{.stored = true,
-                            .limits = scene_.has_run_limits(),
-                            .wheel_filter = true,
-                            .deck_cutoff = cutoff,
-                            .trials_until = chosen.accuracy.covered_until},
+                      run::Wants{.stored = true,
+                                 .limits = scene_.has_run_limits(),
+                                 .wheel_filter = true,
+                                 .deck_cutoff = cutoff,
+                                 .trials_until = chosen.accuracy.covered_until},
                       notes_);
-  outputs_.emplace(outputs_of({scene_, simulation_->system().fleet(), shared_.bridge()}));
+  outputs_.emplace(run::outputs_of({scene_, simulation_->system().fleet(), shared_.bridge()}));
   if (shared_.beam) shared_.beam->release_matrices();
   simulation_->begin({this});
 }
@@ -59,7 +59,7 @@ void StepByStep::sample(const integrate::Instant& instant) {
 }
 
 bool StepByStep::step(double t, long /*steps*/) {
-  return t < wanted_ - same_sample * interval() && caught_signal() == 0;
+  return t < wanted_ - same_sample * interval() && run::caught_signal() == 0;
 }
 
 double StepByStep::interval() const {
@@ -75,9 +75,9 @@ void StepByStep::advance(double t) {
   if (wanted_ <= time_ + slack) return;
   failed_ = true;
   simulation_->run({this});
-  if (caught_signal() != 0) throw Error("the run was stopped", 128 + caught_signal());
+  if (run::caught_signal() != 0) throw Error("the run was stopped", 128 + run::caught_signal());
   if (time_ < wanted_ - slack)
-    throw SolverError(fmt::format("the passage ended at {:g} s, at the limit of ts_max_steps", time_));
+    throw SolverError(fmt::format("the run ended at {:g} s, at the limit of ts_max_steps", time_));
   failed_ = false;
 }
 
@@ -95,7 +95,7 @@ std::span<const double> StepByStep::read(const std::string& dataset) const {
 traverse::Result StepByStep::result() {
   const double residual = simulation_->system().linearisation_residual();
   if (residual <= scene_.model.residual_limit) simulation_->evaluation().check_balance();
-  const Result found = simulation_->result();
+  const run::Result found = simulation_->result();
   const base::PassagePeaks peaks = found.passage_peaks();
   const std::vector<double> statics = simulation_->static_deflections();
   const auto extreme = [](const base::Extreme& one) { return traverse::Extreme{one.value, one.time}; };
@@ -121,7 +121,7 @@ traverse::Result StepByStep::result() {
   result.energy_residual = scale > 0.0 ? found.summary.energy_residual / scale : 0.0;
   result.linearisation_residual = residual;
   result.steps = static_cast<double>(found.summary.steps);
-  result.model = scene_.beam ? results::method_of(stored_model(scene_, {})) : "";
+  result.model = scene_.beam ? results::method_of(error_control::stored_model(scene_, {})) : "";
   return result;
 }
 

@@ -16,15 +16,15 @@ namespace traverse::app {
 
 /// A scene with the model that was chosen for it on this process.
 struct ChosenScene {
-  Scene scene;
-  Accuracy accuracy;
+  scene::Scene scene;
+  error_control::Accuracy accuracy;
 };
 /// Throws Error like `run`, and InputError for a scene without motion in time.
-ChosenScene choose_for_one_run(Scene scene);
+ChosenScene choose_for_one_run(scene::Scene scene);
 
 /// Runs on this process alone. The time steps are equal to the steps of `run` for the same scene. The results are equal
 /// too if no force is set.
-class StepByStep : public Instant, private Observer {
+class StepByStep : public Instant, private run::Observer {
  public:
   /// Sets up the state at t = 0. Throws Error like `run`.
   explicit StepByStep(ChosenScene chosen);
@@ -57,10 +57,10 @@ class StepByStep : public Instant, private Observer {
   void check_takes_forces();
 
   std::vector<std::string> notes_;
-  Scene scene_;
-  SharedBeam shared_;
-  std::optional<Simulation> simulation_;
-  std::optional<Outputs> outputs_;
+  scene::Scene scene_;
+  run::SharedBeam shared_;
+  std::optional<run::Simulation> simulation_;
+  std::optional<run::Outputs> outputs_;
   double time_ = 0.0, wanted_ = 0.0;  // s: the present sample; the end of the steps under way
   std::vector<double> values_;
   bool failed_ = false;

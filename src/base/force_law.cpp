@@ -9,7 +9,7 @@
 
 #include "traverse/base/error.hpp"
 
-namespace traverse::multibody {
+namespace traverse::base {
 
 namespace {
 
@@ -136,4 +136,4 @@ double stored_energy(const ForceLaw& law, double elongation) {
   return law.elastic.integral(law.can_disengage() ? engaged(law, elongation) : elongation);
 }
 
-}  // namespace traverse::multibody
+}  // namespace traverse::base

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace traverse::structure {
+namespace traverse::base {
 namespace {
 
 constexpr MethodRow rows[] = {
@@ -128,4 +128,4 @@ Method generalised_alpha(double radius) {
   return m;
 }
 
-}  // namespace traverse::structure
+}  // namespace traverse::base

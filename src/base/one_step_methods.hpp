@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace traverse::structure {
+namespace traverse::base {
 
 inline constexpr int most_accelerations = 6;
 using Weights = std::array<double, most_accelerations>;
@@ -78,4 +78,4 @@ std::span<const MethodRow> methods();
 /// The method of this name, or null.
 const MethodRow* find_method(std::string_view name);
 
-}  // namespace traverse::structure
+}  // namespace traverse::base

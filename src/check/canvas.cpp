@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace traverse::app {
+namespace traverse::check {
 namespace {
 
 constexpr int min_width = 40, max_width = 160;
@@ -78,4 +78,4 @@ std::vector<std::string> Canvas::lines() const {
 
 std::string Canvas::legend() const { return fmt::format("{}", fmt::join(legend_, ", ")); }
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::check {
 
 /// Capabilities of the standard output.
 struct OutputStyle {
@@ -49,4 +49,4 @@ class Canvas {
   std::vector<std::string> legend_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::check

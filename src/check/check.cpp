@@ -19,7 +19,7 @@
 #include "run/rank_choice.hpp"
 #include "unusual.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 namespace {
 
 constexpr int label_width = 22;
@@ -105,12 +105,12 @@ void print_bridge(const Page& page, const FirstRun& run) {
 }
 
 void print_vehicles(const Page& page, const FirstRun& run, const std::vector<Axle>& axles) {
-  const Scene& scene = run.scene;
+  const scene::Scene& scene = run.scene;
   if (scene.train.vehicles.empty()) return;
   page.heading("vehicles and their static wheel loads");
   double all = 0.0;
   for (std::size_t type = 0; type < scene.vehicles.size(); ++type) {
-    const Vehicle& vehicle = scene.vehicles[type];
+    const train::Vehicle& vehicle = scene.vehicles[type];
     double mass = 0.0;
     for (const multibody::Body& body : vehicle.mechanism.bodies) mass += body.mass;
     const auto count = std::count(scene.train.vehicles.begin(), scene.train.vehicles.end(), static_cast<int>(type));
@@ -133,7 +133,7 @@ void print_vehicles(const Page& page, const FirstRun& run, const std::vector<Axl
   page.line("all", fmt::format("{}, degrees of freedom {}", mass_text(all), run.simulation->system().freedom()));
 }
 
-void print_load(const Page& page, const std::string& name, const MovingLoad& load) {
+void print_load(const Page& page, const std::string& name, const train::MovingLoad& load) {
   if (load.forces.empty()) return;
   const auto [last, first] = std::minmax_element(load.positions.begin(), load.positions.end());
   const auto [least, most] = std::minmax_element(load.forces.begin(), load.forces.end());
@@ -167,7 +167,7 @@ void print_response(const Page& page, const StaticResponse& response) {
                                         1e3 * response.deflection, response.at, response.span / response.deflection));
 }
 
-void print_runs(const Page& page, const Scene& given, const FirstRun& run) {
+void print_runs(const Page& page, const scene::Scene& given, const FirstRun& run) {
   page.heading("analysis");
   std::string analysis(std::find_if(std::begin(options::analyses), std::end(options::analyses), [&](const auto& row) {
                          return row.analysis == given.analysis;
@@ -175,7 +175,7 @@ void print_runs(const Page& page, const Scene& given, const FirstRun& run) {
   page.line("analysis", analysis);
   if (given.study) {
     std::string axes;
-    for (const Study::Axis& axis : given.study->axes)
+    for (const options::Study::Axis& axis : given.study->axes)
       axes += fmt::format("{}{} of {}", axes.empty() ? "" : " times ", axis.length, axis.name);
     page.line("study", fmt::format("{} runs: {}; the values below are those of the first", run.runs, axes));
   } else if (given.sweep) {
@@ -195,7 +195,7 @@ void print_notes(const Page& page, const std::vector<std::string>& notes) {
   for (const std::string& note : notes) fmt::print("  {}\n", base::text_of_note(note));
 }
 
-void print_cost(const Page& page, const Scene& given, const FirstRun& run) {
+void print_cost(const Page& page, const scene::Scene& given, const FirstRun& run) {
   const Cost cost = cost_of(run);
   page.heading("cost, estimated by counting: most times are within a factor of 3, some are off by up to 10");
   if (cost.unknowns > 0.0) page.line("unknowns", fmt::format("{:g}", cost.unknowns));
@@ -220,7 +220,7 @@ void print_cost(const Page& page, const Scene& given, const FirstRun& run) {
   page.line("results", given.output.file + size + (exists ? "; the file exists and will be replaced" : ""));
 }
 
-void print_page(const Scene& given, const FirstRun& run, const std::vector<std::string>& unusual,
+void print_page(const scene::Scene& given, const FirstRun& run, const std::vector<std::string>& unusual,
                 const std::vector<Axle>& axles, const StaticResponse& response) {
   const OutputStyle style = output_style();
   const Page page(style);
@@ -240,7 +240,7 @@ void print_page(const Scene& given, const FirstRun& run, const std::vector<std::
 
 }  // namespace
 
-int run_check(MPI_Comm comm, const Scene& given) {
+int run_check(MPI_Comm comm, const scene::Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const FirstRun run(given);  // not collective; every rank computes the same
@@ -261,4 +261,4 @@ int run_check(MPI_Comm comm, const Scene& given) {
   return 0;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -5,10 +5,10 @@
 
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 
 /// Collective. Prints on the first rank; with -output_quiet only unusual input. Throws the errors of the run before its
 /// first step. Returns the exit status, 0.
-int run_check(MPI_Comm comm, const Scene& given);
+int run_check(MPI_Comm comm, const scene::Scene& given);
 
-}  // namespace traverse::app
+}  // namespace traverse::check

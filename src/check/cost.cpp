@@ -22,7 +22,7 @@
 #include "structure/active_window.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 namespace {
 
 // Measured values; benchmarks/check_estimates.py compares the estimates with measurements.
@@ -41,20 +41,22 @@ constexpr double bytes_per_peak = 200.0;  // bytes for each run of a sweep and p
 /// Accuracy below which trial runs refine the first mesh and step, whose errors are of this order.
 constexpr double refined_below = 1e-3;
 double refinement(const FirstRun& run) {
-  return run.has_trial_runs ? std::max(1.0, std::pow(refined_below / run.scene.accuracy, 1.0 / search::full_order))
-                            : 1.0;
+  return run.has_trial_runs
+             ? std::max(1.0, std::pow(refined_below / run.scene.accuracy, 1.0 / error_control::search::full_order))
+             : 1.0;
 }
 
 /// Part of a long bridge that moves: under each train, and behind it until the vibration has decayed.
 double moving_part(const FirstRun& run) {
-  const Scene& scene = run.scene;
-  if (!scene.beam || stage_work(scene).cut) return 1.0;
+  const scene::Scene& scene = run.scene;
+  if (!scene.beam || run::stage_work(scene).cut) return 1.0;
   const auto ratios = run.shared->damping_ratios();
   const double decay = ratios.empty() ? 0.0 : (ratios.front().beam + ratios.front().dampers) * ratios.front().omega;
   const double quiet = -std::log(structure::ActiveWindow::quiet);
-  const double trail = greatest_speed(scene) * (decay > 0.0 ? std::min(quiet / decay, run.end_time()) : run.end_time());
+  const double trail =
+      scene::greatest_speed(scene) * (decay > 0.0 ? std::min(quiet / decay, run.end_time()) : run.end_time());
   const double span = scene.beam->length() / static_cast<double>(scene.beam->spans.size());
-  std::vector<double> loads = wheels_at_start(scene);
+  std::vector<double> loads = scene::wheels_at_start(scene);
   loads.insert(loads.end(), scene.load.positions.begin(), scene.load.positions.end());
   std::sort(loads.begin(), loads.end());
   const double alone = trail + spans_of_load * span;
@@ -70,33 +72,33 @@ struct StepSeconds {
 };
 
 StepSeconds step_seconds(const FirstRun& run) {
-  const Scene& scene = run.scene;
+  const scene::Scene& scene = run.scene;
   if (scene.exact_in_time())
-    return {run.simulation->passage().instants() * modal_sample_seconds(static_cast<double>(run.shared->modal->modes()),
-                                                                        run.bridge()->local_unknowns(),
-                                                                        run.shared->modal->dampers_couple())};
+    return {run.simulation->passage().instants() *
+            run::modal_sample_seconds(static_cast<double>(run.shared->modal->modes()), run.bridge()->local_unknowns(),
+                                      run.shared->modal->dampers_couple())};
   const options::Entry* type = scene.find_option("ts_type");
   const std::string method = type == nullptr ? scene.model.method : type->value;
-  const bool by_petsc = type != nullptr && structure::find_method(method) == nullptr;
+  const bool by_petsc = type != nullptr && base::find_method(method) == nullptr;
   const double factor = by_petsc ? petsc_factor : 1.0, moving = moving_part(run);
-  Scene alone = scene;
+  scene::Scene alone = scene;
   alone.train.vehicles.clear();
-  const double factorisation = factor * steps_per_factorisation * step_seconds(alone, method, 0, moving);
+  const double factorisation = factor * run::steps_per_factorisation * run::step_seconds(alone, method, 0, moving);
   if (!scene.beam || !scene.beam->track || !scene.beam->track->slides())
-    return {factor * step_seconds(scene, method, 0, moving), factorisation};
-  return {factor * step_seconds(scene, method, 0, sliding_solves * moving) + sliding_factors * factorisation,
+    return {factor * run::step_seconds(scene, method, 0, moving), factorisation};
+  return {factor * run::step_seconds(scene, method, 0, sliding_solves * moving) + sliding_factors * factorisation,
           factorisation};
 }
 
 /// Of trial runs with the first step.
 integrate::StepCount trial_steps(const FirstRun& run) {
   return run.simulation->passage().count_steps(run.trial_window, run.first_step,
-                                               trial_steps_per_sample * run.first_step);
+                                               error_control::trial_steps_per_sample * run.first_step);
 }
 
 void count_single(const FirstRun& run, Cost& cost) {
-  const Plan& plan = run.simulation->plan();
-  const Outputs outputs = outputs_of({run.scene, run.simulation->system().fleet(), run.bridge()});
+  const run::Plan& plan = run.simulation->plan();
+  const run::Outputs outputs = run::outputs_of({run.scene, run.simulation->system().fleet(), run.bridge()});
   const double samples = plan.end_time / (plan.interval * static_cast<double>(plan.stored)) + 1.0;
   const integrate::StepCount count =
       run.scene.exact_in_time() ? integrate::StepCount{plan.end_time / plan.interval}
@@ -107,21 +109,22 @@ void count_single(const FirstRun& run, Cost& cost) {
 }
 
 void count_runs(const FirstRun& run, Cost& cost) {
-  Scene scene = run.whole;
+  scene::Scene scene = run.whole;
   scene.beam = run.scene.beam;
   if (!scene.exact_in_time()) scene.model.step = run.simulation->plan().time_step;
   // the usual choice of trial runs
-  if (scene.model.vehicles == VehicleModel::automatic) scene.model.vehicles = VehicleModel::linear;
+  if (scene.model.vehicles == scene::VehicleModel::automatic) scene.model.vehicles = scene::VehicleModel::linear;
   std::vector<std::string> ignored;
-  const CaseRunner runner(scene, ignored);
+  const ensemble::CaseRunner runner(scene, ignored);
   const double sweep_runs = static_cast<double>(runner.speeds().size() * runner.trains());
   cost.seconds = refinement(run) * runner.cost_of_all() * static_cast<double>(run.runs) / sweep_runs;
   if (!scene.exact_in_time()) cost.steps = runner.duration(0, runner.speeds().front()) / *scene.model.step;
   cost.stored =
       bytes_per_peak * static_cast<double>(run.runs * std::max<std::size_t>(1, run.scene.output.probes.size()));
   if (!scene.modes_open) return;
-  const double factor = is_controlled(scene, acceleration) ? modes_unfiltered : modes_low_passed;
-  if (const std::optional<QuickerModes> modes = quicker_modes(scene); modes && modes->seconds < cost.seconds)
+  const double factor = error_control::is_controlled(scene, run::acceleration) ? modes_unfiltered : modes_low_passed;
+  if (const std::optional<error_control::QuickerModes> modes = error_control::quicker_modes(scene);
+      modes && modes->seconds < cost.seconds)
     cost.faster_way =
         fmt::format("by modes, if these are accurate enough, about {}",
                     results::duration_text(factor * modes->seconds * static_cast<double>(run.runs) / sweep_runs));
@@ -133,8 +136,8 @@ Cost cost_of(const FirstRun& run) {
   Cost cost;
   if (const beam::Beam* beam = run.bridge()) cost.unknowns = static_cast<double>(beam->columns()) * beam->block();
   if (run.simulation) cost.unknowns += run.simulation->system().freedom();
-  cost.memory = program_bytes + memory_of(run.scene);
-  if (run.scene.analysis != Analysis::transient) return cost;
+  cost.memory = program_bytes + scene::memory_of(run.scene);
+  if (run.scene.analysis != options::Analysis::transient) return cost;
   run.whole.sweep ? count_runs(run, cost) : count_single(run, cost);
   if (!run.has_trial_runs || run.scene.exact_in_time()) return cost;
   const integrate::StepCount trial = trial_steps(run);
@@ -149,4 +152,4 @@ std::string bytes_text(double bytes) {
   return fmt::format("{:.3g} GB", 1e-9 * bytes);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -6,7 +6,7 @@
 
 #include "first_run.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 
 struct Cost {
   double unknowns = 0.0;       // unknowns of the structure and the vehicles
@@ -23,4 +23,4 @@ Cost cost_of(const FirstRun& run);
 /// "12 MB".
 std::string bytes_text(double bytes);
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace traverse::app {
+namespace traverse::check {
 namespace {
 
 constexpr int max_drawing_rows = 18;   // rows of a mechanism
@@ -32,7 +32,7 @@ struct Extent {
 };
 
 /// The extent of a vehicle's bodies along x.
-Extent extent_of(const Scene& scene, std::size_t i) {
+Extent extent_of(const scene::Scene& scene, std::size_t i) {
   Extent extent;
   const double origin = scene.train.positions[i];
   for (const multibody::Body& one : scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])].mechanism.bodies)
@@ -42,7 +42,7 @@ Extent extent_of(const Scene& scene, std::size_t i) {
 
 class SideView {
  public:
-  SideView(const Scene& scene, const OutputStyle& style)
+  SideView(const scene::Scene& scene, const OutputStyle& style)
       : scene_(scene), beam_(*scene.beam), canvas_(style.width - 2, rows, style.utf8) {
     extent_.include(beam_.start);
     extent_.include(beam_.end());
@@ -91,7 +91,7 @@ class SideView {
       }
     }
     for (const double x : scene_.load.positions) canvas_.put(column(x), wheels, force);
-    for (const double x : wheels_at_start(scene_)) canvas_.put(column(x), wheels, wheel);
+    for (const double x : scene::wheels_at_start(scene_)) canvas_.put(column(x), wheels, wheel);
   }
   void draw_beam() {
     if (beam_.track) {
@@ -141,7 +141,7 @@ class SideView {
     return column(beam_.start + *std::min_element(beam_.spans.begin(), beam_.spans.end())) > column(beam_.start) + 1;
   }
 
-  const Scene& scene_;
+  const scene::Scene& scene_;
   const beam::BeamModel& beam_;
   Canvas canvas_;
   Extent extent_;
@@ -150,8 +150,9 @@ class SideView {
 /// Bodies with their joints and springs in their plane.
 class Plane {
  public:
-  Plane(const Scene& scene, const OutputStyle& style) : scene_(scene), columns_(style.width - 2), utf8_(style.utf8) {
-    each([&](const Vehicle& vehicle, double origin) {
+  Plane(const scene::Scene& scene, const OutputStyle& style)
+      : scene_(scene), columns_(style.width - 2), utf8_(style.utf8) {
+    each([&](const train::Vehicle& vehicle, double origin) {
       const auto include = [&](const Eigen::Vector2d& point) {
         x_.include(origin + point.x());
         y_.include(point.y());
@@ -175,7 +176,7 @@ class Plane {
     const int wide = static_cast<int>(std::lround(x_.size() / column_width_)) + 1;
     const int tall = static_cast<int>(std::lround(y_.size() / column_width_ / height_of_row)) + 1;
     Canvas canvas(std::min(wide, columns_), std::min(tall, max_drawing_rows), utf8_);
-    each([&](const Vehicle& vehicle, double origin) { draw(vehicle, origin, canvas); });
+    each([&](const train::Vehicle& vehicle, double origin) { draw(vehicle, origin, canvas); });
     std::vector<std::string> lines = canvas.lines();
     for (std::string& line : lines) line.insert(0, "  ");
     lines.push_back("  " + canvas.legend());
@@ -203,7 +204,7 @@ class Plane {
       canvas.put(column, row, symbol);
     }
   }
-  void draw(const Vehicle& vehicle, double origin, Canvas& canvas) const {
+  void draw(const train::Vehicle& vehicle, double origin, Canvas& canvas) const {
     const multibody::MechanismModel& m = vehicle.mechanism;
     const auto put = [&](const Eigen::Vector2d& point, const Symbol& symbol) {
       const auto [column, row] = place(origin, point);
@@ -227,10 +228,11 @@ class Plane {
     for (const multibody::Spring& one : m.springs) line(origin, one.from, one.to, spring_symbol, canvas);
     for (const multibody::Joint& one : m.joints) put(one.type->needs.ends ? one.from : one.point, joint);
     for (const multibody::Body& one : m.bodies) put(one.position.head<2>(), body);
-    for (const Wheel& one : vehicle.wheels) put(m.bodies[static_cast<std::size_t>(one.body)].position.head<2>(), wheel);
+    for (const train::Wheel& one : vehicle.wheels)
+      put(m.bodies[static_cast<std::size_t>(one.body)].position.head<2>(), wheel);
   }
 
-  const Scene& scene_;
+  const scene::Scene& scene_;
   int columns_;
   bool utf8_;
   Extent x_, y_;
@@ -239,8 +241,8 @@ class Plane {
 
 }  // namespace
 
-std::vector<std::string> drawing_of(const Scene& scene, const OutputStyle& style) {
+std::vector<std::string> drawing_of(const scene::Scene& scene, const OutputStyle& style) {
   return scene.beam ? SideView(scene, style).draw() : Plane(scene, style).draw();
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -7,9 +7,9 @@
 #include "canvas.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 
 /// Lines of at most style.width columns; the last two are the legend and the scale.
-std::vector<std::string> drawing_of(const Scene& scene, const OutputStyle& style);
+std::vector<std::string> drawing_of(const scene::Scene& scene, const OutputStyle& style);
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -19,20 +19,20 @@
 #include "study/study_scenes.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 namespace {
 
 constexpr std::size_t frequency_count = 3;
 
 /// Checks all input of a study.
-Scene checked_scene(const Scene& given) {
+scene::Scene checked_scene(const scene::Scene& given) {
   if (!given.study) return given;
-  const StudyScenes scenes(given);
+  const study::StudyScenes scenes(given);
   for (const std::size_t base : scenes.extreme_bases()) (void)scenes.base(base);
   return scenes.base(0);
 }
 
-std::size_t runs_of(const Scene& given) {
+std::size_t runs_of(const scene::Scene& given) {
   if (given.study) return given.study->runs();
   if (!given.sweep) return 1;
   return std::max<std::size_t>(1, given.sweep->speeds.size()) * std::max<std::size_t>(1, given.sweep->loads.size());
@@ -40,21 +40,22 @@ std::size_t runs_of(const Scene& given) {
 
 }  // namespace
 
-FirstRun::FirstRun(const Scene& given) : whole(checked_scene(given)), scene(first_run(whole)), runs(runs_of(given)) {
-  if (takes_modes_for_damping(scene)) {
-    whole = with(whole, modes_for_damping(PETSC_COMM_SELF, scene, notes).model);
+FirstRun::FirstRun(const scene::Scene& given)
+    : whole(checked_scene(given)), scene(first_run(whole)), runs(runs_of(given)) {
+  if (error_control::takes_modes_for_damping(scene)) {
+    whole = error_control::with(whole, error_control::modes_for_damping(PETSC_COMM_SELF, scene, notes).model);
     scene = first_run(whole);
   }
-  has_trial_runs = chooses(scene) && adaptive_step_option(scene) == nullptr;
-  if (has_trial_runs) set_first_mesh(scene);
-  shared = std::make_unique<SharedBeam>(PETSC_COMM_SELF, scene, notes);
-  const bool has_motion = scene.analysis != Analysis::modes;
+  has_trial_runs = error_control::chooses(scene) && error_control::adaptive_step_option(scene) == nullptr;
+  if (has_trial_runs) error_control::set_first_mesh(scene);
+  shared = std::make_unique<run::SharedBeam>(PETSC_COMM_SELF, scene, notes);
+  const bool has_motion = scene.analysis != options::Analysis::modes;
   if (shared->beam)
     shared->damp(scene, has_trial_runs || scene.model.modes > 0 || (has_motion && !scene.model.step), notes);
   if (has_motion) shared->prepare(scene, notes);
   if (has_motion) choose_mesh_and_step();
   if (has_motion) {
-    simulation = std::make_unique<Simulation>(scene, *shared, Wants(), notes);
+    simulation = std::make_unique<run::Simulation>(scene, *shared, run::Wants(), notes);
   }
   for (const std::string& note : options::notes_on_unused(*scene.given)) notes.push_back(note);
   notes.insert(notes.end(), whole.notes.begin(), whole.notes.end());
@@ -62,9 +63,9 @@ FirstRun::FirstRun(const Scene& given) : whole(checked_scene(given)), scene(firs
 }
 
 void FirstRun::choose_mesh_and_step() {
-  if (scene.analysis != Analysis::transient) return;
-  if (chooses_multibody_step(scene) && adaptive_step_option(scene) == nullptr) {
-    scene.model.step = first_multibody_step(scene);
+  if (scene.analysis != options::Analysis::transient) return;
+  if (error_control::chooses_multibody_step(scene) && error_control::adaptive_step_option(scene) == nullptr) {
+    scene.model.step = error_control::first_multibody_step(scene);
     choice.push_back(fmt::format(
         "initial steps of {:.3g} s; runs of the whole scene halve them until the errors of positions and forces "
         "are within accuracy {:g}",
@@ -73,16 +74,18 @@ void FirstRun::choose_mesh_and_step() {
   }
   if (!has_trial_runs) {
     if (scene.model.step) choice.push_back(fmt::format("steps of {:g} s, as given", *scene.model.step));
-    if (const options::Entry* option = adaptive_step_option(scene); option != nullptr && chooses(scene))
+    if (const options::Entry* option = error_control::adaptive_step_option(scene);
+        option != nullptr && error_control::chooses(scene))
       choice.push_back(fmt::format("no trial runs for accuracy {:g}: {}", scene.accuracy, option->given()));
     return;
   }
   std::vector<std::string> ignored;
-  const double end = Passage(scene, *shared, ignored).plan().end_time;
-  trial_window = initial_window(scene, end);
-  const FirstSteps steps = first_steps(scene, shared->omega ? shared->omega->first : 0.0, trial_window);
+  const double end = run::Passage(scene, *shared, ignored).plan().end_time;
+  trial_window = error_control::initial_window(scene, end);
+  const error_control::FirstSteps steps =
+      error_control::first_steps(scene, shared->omega ? shared->omega->first : 0.0, trial_window);
   const std::string mesh = scene.by_given_modes() ? "given modes"
-                                                  : fmt::format("{} elements a {}", mesh_of(scene),
+                                                  : fmt::format("{} elements a {}", error_control::mesh_of(scene),
                                                                 scene.beam->track ? "sleeper bay" : "span");
   choice.push_back(fmt::format("{}; {}",
                                scene.by_given_modes() ? mesh
@@ -116,4 +119,4 @@ void FirstRun::find_frequencies() {
   for (const double one : omega) frequencies.push_back(one / (2.0 * std::numbers::pi));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -8,24 +8,24 @@
 #include "run/simulation.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 
 struct FirstRun {
   /// Not collective. Throws the errors of the run before its first step.
-  explicit FirstRun(const Scene& given);
+  explicit FirstRun(const scene::Scene& given);
   FirstRun(const FirstRun&) = delete;
   FirstRun& operator=(const FirstRun&) = delete;
 
-  Scene whole;                      // the scene of the user; for a study its first scene, with all speeds in its sweep
-  Scene scene;                      // its first run
+  scene::Scene whole;               // the scene of the user; for a study its first scene, with all speeds in its sweep
+  scene::Scene scene;               // its first run
   std::vector<std::string> notes;   // notes on the model
   std::vector<std::string> choice;  // choice of mesh and step
   bool has_trial_runs = false;      // trial runs choose mesh and step, starting from mesh and step of `scene`
   double first_step = 0.0, longest_step = 0.0, trial_window = 0.0;  // s; trial_window: duration of a trial run
-  std::unique_ptr<SharedBeam> shared;
-  std::unique_ptr<Simulation> simulation;  // at its start; null for an analysis of modes
-  std::vector<double> frequencies;         // Hz, the first distinct ones of the bridge
-  std::size_t runs = 1;                    // number of runs of a sweep or a study
+  std::unique_ptr<run::SharedBeam> shared;
+  std::unique_ptr<run::Simulation> simulation;  // at its start; null for an analysis of modes
+  std::vector<double> frequencies;              // Hz, the first distinct ones of the bridge
+  std::size_t runs = 1;                         // number of runs of a sweep or a study
 
   const beam::Beam* bridge() const { return shared->bridge(); }
   /// s; 0 without motion.
@@ -36,4 +36,4 @@ struct FirstRun {
   void find_frequencies();
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -12,32 +12,33 @@
 #include "run/passage.hpp"
 #include "study/study_scenes.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 namespace {
 
 /// The scene with the first mesh of trial runs. A layered track and given modes keep what they have.
-Scene with_coarse_mesh(Scene scene) {
+scene::Scene with_coarse_mesh(scene::Scene scene) {
   if (!scene.beam || scene.beam->track || scene.by_given_modes()) return scene;
   scene.mesh_open = true;
   scene.model.modes = 0;
-  set_first_mesh(scene);
+  error_control::set_first_mesh(scene);
   return scene;
 }
 
 }  // namespace
 
-Scene first_scene(const Scene& given) { return given.study ? StudyScenes(given).base(0) : given; }
+scene::Scene first_scene(const scene::Scene& given) { return given.study ? study::StudyScenes(given).base(0) : given; }
 
-Scene first_run(const Scene& whole) {
+scene::Scene first_run(const scene::Scene& whole) {
   if (!whole.sweep) return whole;
   const std::vector<double>& speeds = whole.sweep->speeds;
-  return at_speed(whole, speeds.empty() ? moving_speed(whole) : speeds.front());
+  return error_control::at_speed(whole, speeds.empty() ? scene::moving_speed(whole) : speeds.front());
 }
 
-SceneAtRest::SceneAtRest(const Scene& given) : whole(first_scene(given)), scene(with_coarse_mesh(first_run(whole))) {
+SceneAtRest::SceneAtRest(const scene::Scene& given)
+    : whole(first_scene(given)), scene(with_coarse_mesh(first_run(whole))) {
   std::vector<std::string> ignored;
-  shared = std::make_unique<SharedBeam>(PETSC_COMM_SELF, scene, ignored);
-  if (scene.analysis == Analysis::modes) return;
+  shared = std::make_unique<run::SharedBeam>(PETSC_COMM_SELF, scene, ignored);
+  if (scene.analysis == options::Analysis::modes) return;
   if (shared->beam) shared->beam->set_rayleigh({});  // has no effect at rest
   shared->prepare(scene, ignored);
   put_to_rest();
@@ -45,13 +46,13 @@ SceneAtRest::SceneAtRest(const Scene& given) : whole(first_scene(given)), scene(
 
 void SceneAtRest::put_to_rest() {
   const results::Stage stage("search for the static equilibrium");
-  const bool stays = scene.analysis != Analysis::transient;
-  const coupling::SystemInput input = system_input(scene, stays);
-  system = std::make_unique<coupling::System>(PETSC_COMM_SELF, carrier(scene, *shared, input), input);
+  const bool stays = scene.analysis != options::Analysis::transient;
+  const coupling::SystemInput input = run::system_input(scene, stays);
+  system = std::make_unique<coupling::System>(PETSC_COMM_SELF, run::carrier(scene, *shared, input), input);
   std::vector<Eigen::VectorXd> placed;
   for (const train::MovingVehicle& vehicle : system->fleet().vehicles) placed.push_back(vehicle.state.q);
   std::vector<double> state(static_cast<std::size_t>(system->local_size()));
-  const bool settles = stays || scene.start == Start::equilibrium;
+  const bool settles = stays || scene.start == scene::Start::equilibrium;
   system->start(settles, state.data(), stays);
   for (std::size_t k = 0; settles && k < placed.size(); ++k) {
     const train::MovingVehicle& vehicle = system->fleet().vehicles[k];
@@ -76,4 +77,4 @@ double SceneAtRest::first_frequency() const {
   return omega.empty() ? 0.0 : omega.front() / (2.0 * std::numbers::pi);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::check

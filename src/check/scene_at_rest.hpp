@@ -8,23 +8,23 @@
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 
 /// The first scene of a study, with all its speeds as a sweep; another scene as it is. Throws InputError.
-Scene first_scene(const Scene& given);
+scene::Scene first_scene(const scene::Scene& given);
 /// The first run of such a scene.
-Scene first_run(const Scene& whole);
+scene::Scene first_run(const scene::Scene& whole);
 
 struct SceneAtRest {
   /// Not collective. Uses the first mesh of trial runs, which is fine enough for statics and the first frequency, and
   /// reads no option of PETSc. Throws the errors of the run before its first step.
-  explicit SceneAtRest(const Scene& given);
+  explicit SceneAtRest(const scene::Scene& given);
   SceneAtRest(const SceneAtRest&) = delete;
   SceneAtRest& operator=(const SceneAtRest&) = delete;
 
-  Scene whole;                               // first_scene
-  Scene scene;                               // its first run
-  std::unique_ptr<SharedBeam> shared;        // of `scene`
+  scene::Scene whole;                        // first_scene
+  scene::Scene scene;                        // its first run
+  std::unique_ptr<run::SharedBeam> shared;   // of `scene`
   std::unique_ptr<coupling::System> system;  // at rest, with its static loads; null for an analysis of modes
 
   /// The body that is farthest from its position in the input, unless all of them are where they were put.
@@ -44,4 +44,4 @@ struct SceneAtRest {
   void put_to_rest();
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::check

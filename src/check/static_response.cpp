@@ -12,7 +12,7 @@
 #include "results/stage.hpp"
 #include "run/norm_run.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 namespace {
 
 constexpr double max_forces = 1000.0;
@@ -23,10 +23,10 @@ constexpr int points_per_piece = 4;    // for the integral of the bridge's own w
 std::vector<norm::LoadModel> passing_trains(const SceneAtRest& rest) {
   std::vector<norm::LoadModel> trains;
   if (rest.whole.sweep && !rest.whole.sweep->loads.empty()) {
-    for (const MovingLoad& load : rest.whole.sweep->loads)
+    for (const train::MovingLoad& load : rest.whole.sweep->loads)
       trains.push_back(norm::train_of("train", load.forces, load.positions));
   } else if (!rest.weights().empty()) {
-    trains.push_back(static_train("train", rest.weights()));
+    trains.push_back(run::static_train("train", rest.weights()));
   }
   return trains;
 }
@@ -145,4 +145,4 @@ StaticResponse static_response(const SceneAtRest& rest, bool with_reactions) {
   return response;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -6,7 +6,7 @@
 
 #include "scene_at_rest.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 
 /// A wheel or a moving force.
 struct Axle {
@@ -41,4 +41,4 @@ struct StaticResponse {
 /// with_reactions: also the forces of supports and springs.
 StaticResponse static_response(const SceneAtRest& rest, bool with_reactions);
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -14,7 +14,7 @@
 #include "norm/usual_ranges.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -62,11 +62,11 @@ void check_mass(const beam::BeamModel& beam, Lines& lines) {
 }
 
 /// The greatest damping ratio of the first mode, as far as the scene gives it. n0: its frequency, Hz.
-double damping_ratio(const Scene& scene, double n0) {
+double damping_ratio(const scene::Scene& scene, double n0) {
   const auto greatest = [](const std::vector<double>& ratios) {
     return ratios.empty() ? 0.0 : *std::max_element(ratios.begin(), ratios.end());
   };
-  const Damping& damping = scene.damping;
+  const scene::Damping& damping = scene.damping;
   double ratio = greatest(scene.damping_of_modes);
   if (scene.by_given_modes()) ratio = std::max(ratio, greatest(scene.beam->given->ratio));
   if (damping.ratios) ratio = std::max({ratio, damping.ratios->first, damping.ratios->second});
@@ -103,7 +103,7 @@ void check_surface_steps(const SceneAtRest& rest, const StaticResponse& response
           1e3 * step.height, step.x));
 }
 
-void check_axles(const Scene& scene, const std::vector<Axle>& axles, Lines& lines) {
+void check_axles(const scene::Scene& scene, const std::vector<Axle>& axles, Lines& lines) {
   if (axles.empty() || !(scene.gravity > 0.0)) return;
   const auto by_force = [](const Axle& a, const Axle& b) { return a.force < b.force; };
   const auto [least, most] = std::minmax_element(axles.begin(), axles.end(), by_force);
@@ -126,24 +126,24 @@ void check_axles(const Scene& scene, const std::vector<Axle>& axles, Lines& line
 }
 
 /// The readers of scenes check the speeds of all but studies.
-void check_speed_of_study(const Scene& given, const Scene& whole, Lines& lines) {
+void check_speed_of_study(const scene::Scene& given, const scene::Scene& whole, Lines& lines) {
   if (given.study && whole.sweep && !whole.sweep->speeds.empty())
     say(norm::unusual_speed("study_vary", whole.sweep->speeds.back()), lines);
 }
 
 void check_position(const SceneAtRest& rest, const std::vector<Axle>& axles, Lines& lines) {
-  const Scene& scene = rest.scene;
+  const scene::Scene& scene = rest.scene;
   if (!scene.beam || axles.empty()) return;
   const auto by_place = [](const Axle& a, const Axle& b) { return a.x < b.x; };
   const auto [last, first] = std::minmax_element(axles.begin(), axles.end(), by_place);
-  const bool moves = scene.analysis == Analysis::transient;
-  const bool at_rest = !moves || greatest_speed(scene) == 0.0;
+  const bool moves = scene.analysis == options::Analysis::transient;
+  const bool at_rest = !moves || scene::greatest_speed(scene) == 0.0;
   const double start = scene.beam->start - (scene.beam->track ? scene.beam->track->approach : 0.0);
-  if (at_rest && scene.analysis != Analysis::static_envelope && first->x < start)
+  if (at_rest && scene.analysis != options::Analysis::static_envelope && first->x < start)
     lines.push_back(fmt::format("the train does not reach the bridge: it stands {:g} m before it", start - first->x));
   const double leaves = rest.system->leaving_time();
   if (moves && !at_rest && std::isfinite(leaves) && scene.end_time && *scene.end_time < leaves * min_time_share &&
-      first->x + greatest_speed(scene) * *scene.end_time > start)
+      first->x + scene::greatest_speed(scene) * *scene.end_time > start)
     lines.push_back(
         fmt::format("the run ends at {:.4g} s, before the last {} has left the bridge at {:.4g} s (ts_max_time)",
                     *scene.end_time, last->type < 0 ? "force" : "wheel", leaves));
@@ -202,7 +202,7 @@ void check_places(const SceneAtRest::Displaced& displaced, Lines& lines) {
 
 }  // namespace
 
-std::vector<std::string> unusual_in(const Scene& given, const SceneAtRest& rest, const std::vector<Axle>& axles,
+std::vector<std::string> unusual_in(const scene::Scene& given, const SceneAtRest& rest, const std::vector<Axle>& axles,
                                     const StaticResponse& response) {
   Lines lines;
   if (rest.scene.beam) {
@@ -219,7 +219,7 @@ std::vector<std::string> unusual_in(const Scene& given, const SceneAtRest& rest,
   return lines;
 }
 
-std::vector<std::string> unusual_in(const Scene& given) {
+std::vector<std::string> unusual_in(const scene::Scene& given) {
   try {
     const SceneAtRest rest(given);
     const std::vector<Axle> axles = axles_of(rest);
@@ -229,4 +229,4 @@ std::vector<std::string> unusual_in(const Scene& given) {
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -8,14 +8,14 @@
 #include "scene_at_rest.hpp"
 #include "static_response.hpp"
 
-namespace traverse::app {
+namespace traverse::check {
 
 /// One line for each finding for the first run of a scene.
-std::vector<std::string> unusual_in(const Scene& given, const SceneAtRest& rest, const std::vector<Axle>& axles,
+std::vector<std::string> unusual_in(const scene::Scene& given, const SceneAtRest& rest, const std::vector<Axle>& axles,
                                     const StaticResponse& response);
 
 /// Not collective; the same on every rank. No findings if the first run has no state of rest, of which the run itself
 /// gives the reason.
-std::vector<std::string> unusual_in(const Scene& given);
+std::vector<std::string> unusual_in(const scene::Scene& given);
 
-}  // namespace traverse::app
+}  // namespace traverse::check

@@ -25,9 +25,9 @@ constexpr double constant_distance = 0.5;  // m: weights whose distances change 
 // element adds a deflection between its nodes.
 struct QuasiStaticResponse::InfluenceLine {
   double station = 0.0;
-  std::vector<double> nodal;             // deflection and rotation at both ends of every element, on every rank
-  std::optional<beam::Recovery> inside;  // recovery inside the station's element; none if wheels run on a rail
-  double weight_deflection = 0.0;        // m: deflection under the beam's own weight
+  std::vector<double> nodal;                 // deflection and rotation at both ends of every element, on every rank
+  std::optional<recovery::Recovery> inside;  // recovery inside the station's element; none if wheels run on a rail
+  double weight_deflection = 0.0;            // m: deflection under the beam's own weight
 
   double at(const beam::Mesh& mesh, double x) const {
     if (x < mesh.start() || x > mesh.end()) return 0.0;
@@ -99,8 +99,8 @@ QuasiStaticResponse::InfluenceLine QuasiStaticResponse::influence_line(double st
 // settlements.
 double QuasiStaticResponse::permanent_deflection(double station) {
   const std::vector<double> permanent = structure_->displacements_without_traffic(), zeros(permanent.size(), 0.0);
-  beam::Recovery recovery(structure_->beam(), {station}, gravity_);
-  std::vector<beam::Response> responses;
+  recovery::Recovery recovery(structure_->beam(), {station}, gravity_);
+  std::vector<recovery::Response> responses;
   recovery.evaluate(permanent.data(), zeros.data(), zeros.data(), {}, responses);
   return responses.front().relative_deflection;
 }

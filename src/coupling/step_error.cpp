@@ -29,7 +29,7 @@ void System::measure_errors() {
 
 double System::step_error(const double* y) {
   const Motion& m = *motion_;
-  const structure::StepRule& rule = m.method.step;
+  const base::StepRule& rule = m.method.step;
   const auto [first, past] = fleet_.own_coordinates();
   for (int i = first; i < past; ++i) {
     x_[i] = 0.0;

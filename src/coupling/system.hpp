@@ -39,6 +39,7 @@
 #include "coupling/contact_newton.hpp"
 #include "coupling/kink_events.hpp"
 #include "coupling/quasi_static_response.hpp"
+#include "engine/linear_train.hpp"
 #include "recovery/recovery.hpp"
 #include "structure/structure.hpp"
 #include "train/fleet.hpp"
@@ -46,9 +47,7 @@
 #include "train/vehicle_share.hpp"
 #include "train/wheel_paths.hpp"
 
-namespace traverse::engine {
-class LinearTrain;
-}
+namespace traverse::coupling {}
 
 namespace traverse::coupling {
 
@@ -79,10 +78,10 @@ struct Energy {
 /// An accepted instant, complete on every rank except for the nodal values.
 struct Observation {
   structure::NodalMotion beam;
-  std::vector<beam::ElementLoad> loads;  // loads of wheels and forces, on their line
+  std::vector<recovery::ElementLoad> loads;  // loads of wheels and forces, on their line
   /// All concentrated loads on the bridge: `loads` if they run on the bridge, and the nonlinear foundation. Inside an
   /// element a bed is represented by forces at its integration points.
-  std::vector<beam::ElementLoad> bridge_loads;
+  std::vector<recovery::ElementLoad> bridge_loads;
   Energy energy;
 };
 
@@ -151,7 +150,7 @@ class System {
     if (structure_) structure_->limit_to_active_window(tolerance, probes);
   }
   /// Collective. The method of all following steps, for steps of 1 s.
-  void begin_motion(const structure::Method& method);
+  void begin_motion(const base::Method& method);
   /// Whether reject_step may follow a step.
   void store_steps(bool store) { store_steps_ = store; }
   /// Collective. Call before the first step from a state, and after a change of the state from outside, with the length
@@ -252,12 +251,12 @@ class System {
   };
   /// The vehicles' part of a second-order integration.
   struct Motion {
-    structure::Method unit, method;  // for steps of 1 s, for steps of `length`
+    base::Method unit, method;  // for steps of 1 s, for steps of `length`
     double length = 0.0;
-    std::array<std::vector<double>, structure::most_accelerations> pdd;  // p'' at the stages
-    std::vector<double> p, pd;                                           // at the start of the step
-    std::array<Powers, structure::most_accelerations> powers;            // at the stages
-    double dissipated = 0.0, worked = 0.0;                               // J, this rank's share
+    std::array<std::vector<double>, base::most_accelerations> pdd;  // p'' at the stages
+    std::vector<double> p, pd;                                      // at the start of the step
+    std::array<Powers, base::most_accelerations> powers;            // at the stages
+    double dissipated = 0.0, worked = 0.0;                          // J, this rank's share
     struct {
       double dissipated = 0.0, worked = 0.0;
       std::vector<double> p;  // y without the structure's part
@@ -335,7 +334,7 @@ class System {
   QuasiStaticResponse weights_;
   ContactNewton newton_;
 
-  std::vector<beam::ElementLoad> loads_;                // loads of the moving forces on the beam
+  std::vector<recovery::ElementLoad> loads_;            // loads of the moving forces on the beam
   std::vector<BrakingWheel> braking_;                   // wheels of trains whose speed is prescribed and changes
   std::vector<double> braking_force_;                   // N along x on the line, during the step
   std::map<double, double> applied_;                    // N by station, m: the forces of apply_to_beam

@@ -63,7 +63,8 @@ void System::load_line(std::size_t i, double t) {
     const beam::Element& element = mesh.element(e);
     const double left = std::max(from, element.x), right = std::min(to, element.x + element.length);
     if (!(right > left)) continue;
-    beam::ElementLoad load{e, (0.5 * (left + right) - element.x) / element.length, 0.0, per_length * (right - left)};
+    recovery::ElementLoad load{e, (0.5 * (left + right) - element.x) / element.length, 0.0,
+                               per_length * (right - left)};
     load.extent = (right - left) / element.length;
     loads_.push_back(load);
   }

@@ -14,7 +14,7 @@ constexpr double same_length = 1e-10;   // relative difference of lengths of ste
 
 }  // namespace
 
-void System::begin_motion(const structure::Method& method) {
+void System::begin_motion(const base::Method& method) {
   motion_ = std::make_unique<Motion>();
   Motion& m = *motion_;
   m.unit = method;
@@ -126,7 +126,7 @@ bool System::solve_stages(double t, const double* v, const double* w) {
 
 bool System::stage_of_motion(double t, std::size_t stage, const double* v, const double* w) {
   Motion& m = *motion_;
-  const structure::StageRule& rule = m.method.stages[stage];
+  const base::StageRule& rule = m.method.stages[stage];
   const double shift = rule.rate / rule.displacement, shift2 = 1.0 / rule.displacement;
   stage_ = stage;
   const auto [first, past] = fleet_.own_coordinates();
@@ -185,7 +185,7 @@ bool System::stage_by_passes(const StageTime& at) {
 
 void System::finish_step(double* y) {
   Motion& m = *motion_;
-  const structure::StepRule& rule = m.method.step;
+  const base::StepRule& rule = m.method.step;
   const auto [first, past] = fleet_.own_coordinates();
   flags_ = by_passes_ || !fleet_.badly_conditioned() ? 0U : train::VehicleShare::badly_conditioned;
   for (int i = first; !by_passes_ && i < past; ++i) {

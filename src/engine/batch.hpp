@@ -43,11 +43,11 @@ class BatchStructure {
   void read_matrices(const std::vector<double>& rest);
   void read_modes(const std::vector<double>& rest);
   void find_columns();
-  void add_probe(const beam::Recovery& recovery, std::size_t station);
-  void find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element, ProbeForms& p,
+  void add_probe(const recovery::Recovery& recovery, std::size_t station);
+  void find_inner_responses(const recovery::Recovery& recovery, std::size_t station, int element, ProbeForms& p,
                             std::vector<double>& inside) const;
   const double* keep(const std::vector<double>& numbers) { return numbers_.emplace_back(numbers).data(); }
-  std::vector<double> form_of_unknowns(const beam::StationForms& forms, const std::vector<double>& form) const;
+  std::vector<double> form_of_unknowns(const recovery::StationForms& forms, const std::vector<double>& form) const;
 
   const beam::Beam& beam_;
   const structure::ModalBridge* modal_;
@@ -90,7 +90,7 @@ enum class Response { deflection, acceleration, moment };
 
 struct BatchPlan {
   std::vector<Response> stored;  // at the start and at the end of the series that store
-  structure::Method method;      // coefficients for a step of 1 s, scaled to each run's step
+  base::Method method;           // coefficients for a step of 1 s, scaled to each run's step
   std::vector<EqualSteps> equal_steps;
   double last_change = 1e-7;  // of a force in the last pass of a stage, over the vehicle's weight
   double level_until = 0.0;   // m: up to here track and ground are level and rigid; vehicles are at rest

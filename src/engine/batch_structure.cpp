@@ -82,7 +82,7 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const structure::ModalBri
   else
     read_matrices(rest);
   find_columns();
-  const beam::Recovery recovery(beam, probes, gravity);
+  const recovery::Recovery recovery(beam, probes, gravity);
   for (std::size_t i = 0; i < probes.size(); ++i) add_probe(recovery, i);
 }
 
@@ -145,7 +145,7 @@ void BatchStructure::find_columns() {
 }
 
 /// Converts a form of the station's nodal unknowns to one of the structure's unknowns.
-std::vector<double> BatchStructure::form_of_unknowns(const beam::StationForms& forms,
+std::vector<double> BatchStructure::form_of_unknowns(const recovery::StationForms& forms,
                                                      const std::vector<double>& form) const {
   if (modal_ == nullptr) return form;
   std::vector<double> of_modes(modal_->modes(), 0.0);
@@ -154,8 +154,8 @@ std::vector<double> BatchStructure::form_of_unknowns(const beam::StationForms& f
   return of_modes;
 }
 
-void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t station) {
-  const beam::StationForms forms = recovery.forms(station);
+void BatchStructure::add_probe(const recovery::Recovery& recovery, std::size_t station) {
+  const recovery::StationForms forms = recovery.forms(station);
   ProbeForms& p = probes_.emplace_back();
   const auto kept = [&](const std::vector<double>& form) { return keep(form_of_unknowns(forms, form)); };
   for (std::size_t d = 0; d < 3; ++d) {
@@ -181,7 +181,7 @@ void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t stati
 }
 
 /// Fits the polynomials of both sides to as many loads as they have coefficients.
-void BatchStructure::find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element,
+void BatchStructure::find_inner_responses(const recovery::Recovery& recovery, std::size_t station, int element,
                                           ProbeForms& p, std::vector<double>& inside) const {
   p.x = recovery.stations()[station];
   std::tie(p.from, p.to) = recovery.element_of(station);
@@ -196,11 +196,11 @@ void BatchStructure::find_inner_responses(const beam::Recovery& recovery, std::s
       const double at = from + (to - from) * (i + 0.5) / n;
       for (int k = 0; k < n; ++k) powers(i, k) = std::pow(at, k);
       for (int kind = 0; kind < 2; ++kind) {
-        beam::ElementLoad load;
+        recovery::ElementLoad load;
         load.element = element;
         load.xi = at;
         (kind == 0 ? load.fy : load.moment) = 1.0;
-        const beam::Response r = recovery.inside_response(station, load);
+        const recovery::Response r = recovery.inside_response(station, load);
         values(i, 2 * kind) = r.deflection;
         values(i, 2 * kind + 1) = r.moment;
       }

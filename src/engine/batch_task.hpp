@@ -17,7 +17,7 @@ struct HeightTable {
   const double* values = nullptr;      // [station][height, slope*distance], m: numbers if shared, else rows
 };
 
-/// The response of a station: linear combinations of `count` unknowns of the structure (beam::StationForms), whose
+/// The response of a station: linear combinations of `count` unknowns of the structure (recovery::StationForms), whose
 /// coefficients are entries (beam_task.hpp).
 struct ProbeForms {
   int count = 0;

@@ -38,11 +38,11 @@ void LinearTrain::write(const double* rows, double* coordinates) const {
   for (std::size_t i = 0; i < coordinate_.size(); ++i) coordinates[i] = rows[coordinate_[i]];
 }
 
-void LinearTrain::set_method(const structure::Method& method, double h) {
+void LinearTrain::set_method(const base::Method& method, double h) {
   method_ = method;
   length_ = h;
   arrays_.set_rules(method, std::vector<double>(arrays_.lanes, 1.0));
-  const structure::StageRule& last = method.stages.back();
+  const base::StageRule& last = method.stages.back();
   ends_with_stage_ = std::abs(last.time - h) <= 1e-9 * h;
   TRAVERSE_LANES_CALL(set_train_step(task_));
   placed_ = false;  // the compliance of the structure has changed

@@ -25,7 +25,7 @@ class LinearTrain {
   LinearTrain(const train::Fleet& fleet, const beam::Mesh* mesh, int per_node, double surface_height);
 
   /// Sets the method, scaled to steps of h seconds.
-  void set_method(const structure::Method& method, double h);
+  void set_method(const base::Method& method, double h);
   /// Starts from p, p' and p'' of the fleet and the corresponding contact forces.
   void restart(const train::Fleet& fleet, const double* p, const double* pd, const double* pdd);
   void begin_step();
@@ -90,7 +90,7 @@ class LinearTrain {
   const beam::Mesh* mesh_;
   std::vector<double> borders_;  // m, ascending: between two of them a wheel has the same patches, without tables
   bool always_places_ = false;   // wheels may leave the end of the surface
-  structure::Method method_;
+  base::Method method_;
   double length_ = 0.0, length_before_ = 0.0;   // lengths of this step and of the previous step, s
   double last_time_ = 0.0, time_before_ = 0.0;  // times of the last two stages, s
   std::size_t stage_ = 0;

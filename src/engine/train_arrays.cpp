@@ -39,8 +39,8 @@ Eigen::MatrixXd without_rounding(const Eigen::MatrixXd& A) {
 
 void fill(double (&row)[most_lanes], double value) { std::fill_n(row, most_lanes, value); }
 
-void fill_rule(StageRows& to, std::size_t lane, double h, double w_in_v, const structure::Weights& a_in_v,
-               const structure::Weights& a_in_w) {
+void fill_rule(StageRows& to, std::size_t lane, double h, double w_in_v, const base::Weights& a_in_v,
+               const base::Weights& a_in_w) {
   to.w_in_v[lane] = h * w_in_v;
   for (int j = 0; j < most_kept; ++j) {
     to.a_in_v[j][lane] = h * h * a_in_v[static_cast<std::size_t>(j)];
@@ -92,12 +92,12 @@ TrainArrays::TrainArrays(std::span<const std::vector<const train::MovingVehicle*
   make_rows(vehicles);
 }
 
-void TrainArrays::set_rules(const structure::Method& method, std::span<const double> h) {
+void TrainArrays::set_rules(const base::Method& method, std::span<const double> h) {
   task.stages = static_cast<int>(method.stages.size());
   task.known = method.step.known;
   for (std::size_t lane = 0; lane < h.size(); ++lane) {
     for (std::size_t s = 0; s < method.stages.size(); ++s) {
-      const structure::StageRule& rule = method.stages[s];
+      const base::StageRule& rule = method.stages[s];
       StageRows& to = task.stage[s];
       fill_rule(to, lane, h[lane], rule.w_in_v, rule.a_in_v, rule.a_in_w);
       to.rate[lane] = h[lane] * rule.rate;
@@ -108,7 +108,7 @@ void TrainArrays::set_rules(const structure::Method& method, std::span<const dou
   for (std::size_t j = 0; j < most_kept; ++j) task.a_next[j] = method.step.a_next[j];
 }
 
-void TrainArrays::set_guesses(const structure::Method& method, double before) {
+void TrainArrays::set_guesses(const base::Method& method, double before) {
   for (std::size_t s = 0; s < method.stages.size(); ++s) {
     Instants known;
     for (std::size_t j = 0; j < s; ++j) known.add(method.stages[j].time, static_cast<int>(j));

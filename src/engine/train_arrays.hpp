@@ -30,11 +30,11 @@ class TrainArrays {
   static constexpr double no_surface = -1e3;  // m: height of the surface if there is none
 
   /// Sets the method, scaled to steps of h[lane] seconds.
-  void set_rules(const structure::Method& method, std::span<const double> h);
+  void set_rules(const base::Method& method, std::span<const double> h);
   /// Sets the weights for the initial guess of the contact forces of each stage, from the forces of the previous
   /// stages, at the start of the step, and at the start of the previous step, which began `before` earlier in the
   /// method's unit of time (0: there was none).
-  void set_guesses(const structure::Method& method, double before);
+  void set_guesses(const base::Method& method, double before);
 
   /// Sets the contact of the wheel with that index to its initial state.
   void start_contact(std::size_t at, const train::WheelContact& c);

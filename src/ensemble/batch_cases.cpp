@@ -8,7 +8,7 @@
 #include "ensemble/single_cases.hpp"
 #include "run/signals.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 
 class BatchEngine : public Engine {
@@ -45,10 +45,10 @@ std::vector<CaseResult> BatchEngine::run(std::size_t train, std::span<const Memb
   std::vector<CaseResult> results;
   for (const engine::BatchResult& batched :
        CaseBatch::ready(std::span<const CaseBatch::Member>(batch), batch.front().lanes->steps()).run()) {
-    if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
+    if (run::caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const Member& member = members[results.size()];
     auto& own = static_cast<BatchEngine&>(*member.engine);
-    const NumericalModel& model = own.cases_.scene().model;
+    const scene::NumericalModel& model = own.cases_.scene().model;
     if (batched.failure != engine::none || own.lanes_->residual(batched) > model.residual_limit) {
       ++own.separate_runs_;
       const Member alone{&own.single_, member.run};
@@ -67,7 +67,7 @@ std::vector<CaseResult> BatchEngine::run(std::size_t train, std::span<const Memb
 }  // namespace
 
 std::unique_ptr<Engine> batch_engine_for(CaseSet& cases, std::string& why) {
-  const Scene& scene = cases.of(0, {cases.speeds().front(), {}});
+  const scene::Scene& scene = cases.of(0, {cases.speeds().front(), {}});
   if (scene.sweep->lanes == 0)
     why = "sweep_lanes is 0";
   else if (scene.has_run_limits())
@@ -80,4 +80,4 @@ std::unique_ptr<Engine> batch_engine_for(CaseSet& cases, std::string& why) {
   return lanes ? std::make_unique<BatchEngine>(cases, std::move(lanes)) : nullptr;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -11,7 +11,7 @@
 #include "run/passage.hpp"
 #include "train/linearisation_residual.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 
 constexpr double same_position = 1e-9;      // m: events at a smaller distance are one event
@@ -27,17 +27,17 @@ std::unique_ptr<structure::Structure> with_unloaded(std::unique_ptr<structure::S
 
 }  // namespace
 
-std::string CaseBatch::obstacle(const Scene& scene, const SharedBeam& shared) {
+std::string CaseBatch::obstacle(const scene::Scene& scene, const run::SharedBeam& shared) {
   if (scene.beam->gradient != 0.0) return "the track is inclined";
   if (scene.supports_move()) return "the supports move";
   if (scene.vehicles.empty()) return "the scene has no vehicles";
   if (!(scene.train.speed > 0.0)) return "the train stands";
   if (!scene.load.forces.empty()) return "forces move in addition to the vehicles";
-  if (scene.model.vehicles != VehicleModel::linear) return "vehicles are mechanisms, not linear";
-  if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
+  if (scene.model.vehicles != scene::VehicleModel::linear) return "vehicles are mechanisms, not linear";
+  if (scene.train.drive != train::Drive::constant) return "the train's speed is not prescribed";
   if (!scene.train.courses.empty()) return "several trains run, or one whose speed changes or is below 0";
-  if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
-  for (const Vehicle& vehicle : scene.vehicles)
+  if (scene.start != scene::Start::equilibrium) return "runs do not start in equilibrium";
+  for (const train::Vehicle& vehicle : scene.vehicles)
     for (const multibody::Body& body : vehicle.mechanism.bodies)
       if (!body.velocity.isZero(0.0)) return "bodies of vehicles have velocities at the start";
   if (!integrate::own_method(scene.model.method)) return "ts_type is one of PETSc's own";
@@ -47,18 +47,18 @@ std::string CaseBatch::obstacle(const Scene& scene, const SharedBeam& shared) {
   return engine::BatchStructure::obstacle(*shared.beam, shared.modal ? &*shared.modal : nullptr);
 }
 
-CaseBatch::CaseBatch(const Scene& scene, const SharedBeam& shared)
+CaseBatch::CaseBatch(const scene::Scene& scene, const run::SharedBeam& shared)
     : scene_(scene),
       shared_(shared),
-      input_(system_input(scene, false)),
-      system_(PETSC_COMM_SELF, with_unloaded(carrier(scene, shared, input_), unloaded_), input_),
+      input_(run::system_input(scene, false)),
+      system_(PETSC_COMM_SELF, with_unloaded(run::carrier(scene, shared, input_), unloaded_), input_),
       state_(static_cast<std::size_t>(system_.local_size())) {
   system_.start(true, state_.data());
   system_.linearise_vehicles(state_.data());
   fleet_ = system_.fleet();
 }
 
-std::unique_ptr<CaseBatch> CaseBatch::make(const Scene& scene, const SharedBeam& shared, double distance,
+std::unique_ptr<CaseBatch> CaseBatch::make(const scene::Scene& scene, const run::SharedBeam& shared, double distance,
                                            std::string& why) {
   why = obstacle(scene, shared);
   if (!why.empty()) return nullptr;
@@ -130,8 +130,8 @@ CaseBatch::Track CaseBatch::track(const std::optional<std::uint64_t>& seed, doub
   return tracks_.emplace_back(seed, std::move(table)).second;
 }
 
-structure::Method method_of(const Scene& scene) {
-  const structure::MethodRow* row = structure::find_method(scene.model.method);
+base::Method method_of(const scene::Scene& scene) {
+  const base::MethodRow* row = base::find_method(scene.model.method);
   return row != nullptr ? row->make(row->parameter.value) : *integrate::own_method();
 }
 
@@ -241,4 +241,4 @@ std::vector<double> CaseBatch::static_deflection() {
   return deflection;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

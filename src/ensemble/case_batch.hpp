@@ -16,7 +16,7 @@
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 /// Parameters of one run.
 struct LaneRun {
@@ -26,22 +26,22 @@ struct LaneRun {
 };
 
 /// The method of a sweep's runs, with its coefficients for a step of 1 s.
-structure::Method method_of(const Scene& scene);
+base::Method method_of(const scene::Scene& scene);
 
 class CaseBatch {
  public:
   /// The reason why a scene's runs cannot be batched, in words, as far as it is known without its vehicles at rest;
   /// empty: none.
-  static std::string obstacle(const Scene& scene, const SharedBeam& shared);
+  static std::string obstacle(const scene::Scene& scene, const run::SharedBeam& shared);
   /// The train of a scene at its start, with the tracks of all runs up to this distance (m), so that no track depends
   /// on the order of runs. Null if the runs cannot be batched; `why` is the reason in words. Throws the errors of a
   /// single run. Scene and beam must outlive the object.
-  static std::unique_ptr<CaseBatch> make(const Scene& scene, const SharedBeam& shared, double distance,
+  static std::unique_ptr<CaseBatch> make(const scene::Scene& scene, const run::SharedBeam& shared, double distance,
                                          std::string& why);
   struct Steps {
-    structure::Method method;  // coefficients for a step of 1 s
-    double longest = 0.0;      // s
-    bool trial = false;  // all runs have the same distance, whose end is sampled exactly; a batch may have one run
+    base::Method method;   // coefficients for a step of 1 s
+    double longest = 0.0;  // s
+    bool trial = false;    // all runs have the same distance, whose end is sampled exactly; a batch may have one run
     /// Responses that are stored at positions at the distance `spacing`, at which time steps end too.
     std::vector<engine::Response> stored = {};
     double last_change = engine::BatchPlan().last_change;  // BatchPlan
@@ -81,7 +81,7 @@ class CaseBatch {
   std::vector<double> static_deflection();
 
  private:
-  CaseBatch(const Scene& scene, const SharedBeam& shared);
+  CaseBatch(const scene::Scene& scene, const run::SharedBeam& shared);
   /// Collects what the batches of a train without obstacles need.
   void set_up();
   /// Prepares the tracks up to this distance. Returns the reason why batched runs are not possible there; empty: they
@@ -93,8 +93,8 @@ class CaseBatch {
   using Track = std::shared_ptr<const track::HeightTable>;
   Track track(const std::optional<std::uint64_t>& seed, double distance);
 
-  const Scene& scene_;
-  const SharedBeam& shared_;
+  const scene::Scene& scene_;
+  const run::SharedBeam& shared_;
   coupling::SystemInput input_;
   std::vector<double> unloaded_;  // m, rad: displacements of the bridge without vehicles
   coupling::System system_;
@@ -110,4 +110,4 @@ class CaseBatch {
   std::vector<double> kinks_;  // m: stations at which the surface has a kink
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -11,21 +11,21 @@
 #include "engine/speed_class.hpp"
 #include "run/passage.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam,
-                       bool checks)
+CaseRunner::CaseRunner(const scene::Scene& scene, std::vector<std::string>& notes,
+                       std::shared_ptr<run::SharedBeam> beam, bool checks)
     : cases_(scene, notes, std::move(beam)) {
   std::vector<std::string> ignored;
   for (std::size_t train = 0; checks && train < trains(); ++train)
     for (const double speed : std::set{speeds().front(), speeds().back()})
-      const Passage check_of_input(cases_.of(train, {speed, {}}), *cases_.beam(),
-                                   train == 0 && speed == speeds().front() ? notes : ignored);
+      const run::Passage check_of_input(cases_.of(train, {speed, {}}), *cases_.beam(),
+                                        train == 0 && speed == speeds().front() ? notes : ignored);
   while (!(engine_ = engines[row_].serve(cases_, why_not_[row_]))) ++row_;
 }
 
@@ -87,4 +87,4 @@ void CaseRunner::hide_unknown(CaseResult& result) const {
   result.evaluated.resize(cases_.scene().limits.size());
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -11,7 +11,7 @@
 #include "ensemble/engines.hpp"
 #include "run/shared_beam.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 /// The indices of runs in batches: neighbours in the order of step group, seed and speed, up to `most` of them.
 std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& runs, std::size_t most);
@@ -21,8 +21,8 @@ class CaseRunner {
   /// Assembles structure and damping on this rank. The description of the model is appended to `notes`. beam: beam of a
   /// scene that differs in its vehicles and moving forces only; null: a new beam is assembled. checks: the runs of each
   /// train at the slowest and the fastest speed are checked, as they are by default.
-  CaseRunner(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam = nullptr,
-             bool checks = true);
+  CaseRunner(const scene::Scene& scene, std::vector<std::string>& notes,
+             std::shared_ptr<run::SharedBeam> beam = nullptr, bool checks = true);
 
   const std::vector<double>& speeds() const { return cases_.speeds(); }
   std::size_t trains() const { return cases_.trains(); }
@@ -55,7 +55,7 @@ class CaseRunner {
   static std::vector<CaseResult> greatest(std::size_t train, std::span<const Member> members);
   /// Makes the runs compatible with the runs of another runner on the same bridge; false if that is not possible.
   bool merge(const CaseRunner& other) { return engine_->merge(*other.engine_); }
-  const std::shared_ptr<SharedBeam>& beam() const { return cases_.beam(); }
+  const std::shared_ptr<run::SharedBeam>& beam() const { return cases_.beam(); }
   bool axial() const { return cases_.scene().beam->axial; }
   long separate_runs() const { return engine_->separate_runs(); }  // runs computed outside their batch
 
@@ -70,4 +70,4 @@ class CaseRunner {
   std::unique_ptr<Engine> engine_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

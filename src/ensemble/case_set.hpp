@@ -12,7 +12,7 @@
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 /// Results of a run.
 struct CaseResult : base::PassagePeaks {
@@ -35,18 +35,18 @@ class CaseSet {
  public:
   /// Assembles structure and damping on this rank, unless `beam` is that of a scene that differs in its vehicles and
   /// moving forces only. The description of the model is appended to `notes`.
-  CaseSet(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam);
+  CaseSet(const scene::Scene& scene, std::vector<std::string>& notes, std::shared_ptr<run::SharedBeam> beam);
 
   /// The scene as it is now.
-  const Scene& scene() const { return scene_; }
+  const scene::Scene& scene() const { return scene_; }
   /// The scene with the parameters of one run.
-  const Scene& of(std::size_t train, const CaseRun& run);
+  const scene::Scene& of(std::size_t train, const CaseRun& run);
   const std::vector<double>& speeds() const { return speeds_; }
   std::size_t trains() const { return loads_.size(); }
   /// Simulated time of a run, s.
   double duration(std::size_t train, double speed) const;
-  SharedBeam& shared() const { return *beam_; }
-  const std::shared_ptr<SharedBeam>& beam() const { return beam_; }
+  run::SharedBeam& shared() const { return *beam_; }
+  const std::shared_ptr<run::SharedBeam>& beam() const { return beam_; }
   double cutoff_frequency() const { return cutoff_frequency_; }  // Hz, of accelerations with a limit; 0: not filtered
   // Computing times for one second of motion, s, of a run by modes and of one in a batch.
   double seconds_by_modes() const;
@@ -54,12 +54,12 @@ class CaseSet {
   bool dampers_couple_modes() const { return beam_->modal->dampers_couple(); }
 
  private:
-  Scene scene_;
+  scene::Scene scene_;
   std::vector<double> speeds_;
-  std::vector<MovingLoad> loads_;
+  std::vector<train::MovingLoad> loads_;
   double last_wheel_ = 0.0;  // m: x at t = 0; 0 if all wheels are on the bridge
-  std::shared_ptr<SharedBeam> beam_;
+  std::shared_ptr<run::SharedBeam> beam_;
   double cutoff_frequency_ = 0.0;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -10,7 +10,7 @@
 
 #include "ensemble/case_set.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 class Engine {
  public:
@@ -52,4 +52,4 @@ inline constexpr std::array engines = {EngineRow{"modes, exact in time", modal_e
                                        EngineRow{"batches by elements or modes", batch_engine_for},
                                        EngineRow{"one by one", single_engine_for}};
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

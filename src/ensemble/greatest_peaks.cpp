@@ -9,7 +9,7 @@
 
 #include "engine/speed_class.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
@@ -177,4 +177,4 @@ std::vector<std::vector<base::ProbePeaks>> greatest_peaks(
   return GreatestPeaks(trains, runs, samples, width, proceed).find();
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -8,7 +8,7 @@
 #include "base/passage_peaks.hpp"
 #include "modal_engine/moving_force_batch.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 /// A run of one of several trains.
 struct ForceRun {
@@ -24,4 +24,4 @@ std::vector<std::vector<base::ProbePeaks>> greatest_peaks(
     const std::vector<const modal_engine::MovingForcePassages*>& trains, std::span<const ForceRun> runs, double samples,
     std::size_t width, const std::function<bool()>& proceed);
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

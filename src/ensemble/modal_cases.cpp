@@ -12,12 +12,12 @@
 #include "modal_engine/moving_force_batch.hpp"
 #include "run/signals.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 
 constexpr double seconds_per_sample = 1e-7;  // s, for the check of limits at one sample
 
-bool no_signal() { return caught_signal() == 0; }
+bool no_signal() { return run::caught_signal() == 0; }
 
 class ModalEngine : public Engine {
  public:
@@ -39,7 +39,7 @@ class ModalEngine : public Engine {
   std::vector<CaseResult> greatest(std::size_t train, std::span<const Member> members) override;
 
  private:
-  const Scene& scene() const { return cases_.scene(); }
+  const scene::Scene& scene() const { return cases_.scene(); }
   const modal_engine::MovingForcePassages& passages_of(std::size_t train);
 
   CaseSet& cases_;
@@ -52,7 +52,8 @@ const modal_engine::MovingForcePassages& ModalEngine::passages_of(std::size_t tr
   auto passage = passages_.find(train);
   if (passage == passages_.end()) {
     const train::MovingLoad& load = cases_.of(train, {cases_.speeds().front(), {}}).load;
-    passage = passages_.try_emplace(train, *cases_.shared().modal, load, scene().start == Start::equilibrium).first;
+    passage =
+        passages_.try_emplace(train, *cases_.shared().modal, load, scene().start == scene::Start::equilibrium).first;
     static_deflection_[train] = passage->second.static_peaks();
   }
   return passage->second;
@@ -71,8 +72,8 @@ std::vector<CaseResult> ModalEngine::run(std::size_t train, std::span<const Memb
   if (cases_.dampers_couple_modes())
     for (std::size_t i = 0; i < speeds.size(); ++i)
       peaks.push_back(integrate::modal_peaks(*cases_.shared().modal, passages.history(), speeds[i],
-                                             scene().start == Start::equilibrium, ends[i], scene().sweep->instants,
-                                             no_signal));
+                                             scene().start == scene::Start::equilibrium, ends[i],
+                                             scene().sweep->instants, no_signal));
   else
     peaks = passages.peaks(speeds, ends, scene().sweep->instants, no_signal);
   for (std::size_t i = 0; i < peaks.size(); ++i) {
@@ -119,4 +120,4 @@ std::unique_ptr<Engine> modal_engine_for(CaseSet& cases, std::string& why) {
   return why.empty() ? std::make_unique<ModalEngine>(cases) : nullptr;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -9,9 +9,9 @@
 #include "run/deck_acceleration.hpp"
 #include "run/low_pass.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
-MovingForceLimits::MovingForceLimits(const Scene& scene, SharedBeam& shared, double cutoff_frequency)
+MovingForceLimits::MovingForceLimits(const scene::Scene& scene, run::SharedBeam& shared, double cutoff_frequency)
     : scene_(scene),
       shared_(shared),
       cutoff_frequency_(cutoff_frequency),
@@ -19,19 +19,20 @@ MovingForceLimits::MovingForceLimits(const Scene& scene, SharedBeam& shared, dou
       count_(by_modes_ ? shared.modal->modes() : shared.modal->probes().count),
       rotates_(std::any_of(scene.limits.begin(), scene.limits.end(),
                            [](const options::VerdictLimit& limit) { return limit.quantity.ends_with("_rotation"); })),
-      slopes_(shared.modal->slopes(DeckRotations(*shared.beam).unknowns(), scene.self_weight ? scene.gravity : 0.0)) {}
+      slopes_(
+          shared.modal->slopes(run::DeckRotations(*shared.beam).unknowns(), scene.self_weight ? scene.gravity : 0.0)) {}
 
 std::vector<results::EvaluatedQuantity> MovingForceLimits::evaluate(std::size_t train, double end_time,
                                                                     std::span<const base::ProbePeaks> peaks,
                                                                     std::span<const double> static_deflection) {
   std::vector<std::string> ignored;
-  const Plan plan = plan_exact_in_time(scene_, end_time, shared_.first_period(), ignored);
-  LimitCheck check(scene_, no_fleet_, &*shared_.beam);
+  const run::Plan plan = run::plan_exact_in_time(scene_, end_time, shared_.first_period(), ignored);
+  run::LimitCheck check(scene_, no_fleet_, &*shared_.beam);
   sample_run(train, plan, check);
 
   results::Summary summary;
   summary.probes = !peaks.empty();
-  std::vector<Extreme> deflections;
+  std::vector<base::Extreme> deflections;
   for (std::size_t p = 0; p < peaks.size(); ++p) {
     const auto record_largest = [&](const base::Extreme& peak, results::Extreme& largest) {
       if (peak.value <= largest.value) return false;
@@ -43,7 +44,7 @@ std::vector<results::EvaluatedQuantity> MovingForceLimits::evaluate(std::size_t 
     if (record_largest(peaks[p].deflection, summary.deflection))
       summary.amplification = static_deflection[p] > 0.0 ? peaks[p].deflection.value / static_deflection[p] : 0.0;
   }
-  if (cutoff_frequency_ > 0.0 && filter_obstacle(cutoff_frequency_, plan, peaks.size()).empty())
+  if (cutoff_frequency_ > 0.0 && run::filter_obstacle(cutoff_frequency_, plan, peaks.size()).empty())
     summary.low_passed = filtered(plan.interval);
   std::vector<results::EvaluatedQuantity> evaluated;
   for (const results::Verdict& verdict : check.verdicts(summary, deflections)) evaluated.push_back(verdict.found);
@@ -51,10 +52,10 @@ std::vector<results::EvaluatedQuantity> MovingForceLimits::evaluate(std::size_t 
 }
 
 /// Samples the run at the same instants as a single run.
-void MovingForceLimits::sample_run(std::size_t train, const Plan& plan, LimitCheck& check) {
+void MovingForceLimits::sample_run(std::size_t train, const run::Plan& plan, run::LimitCheck& check) {
   const integrate::ForceHistory& history = histories_.try_emplace(train, slopes_.influence, scene_.load).first->second;
   const structure::ModalBridge& bridge = *shared_.modal;
-  integrate::ModalMotion motion(bridge, history, scene_.load.speed, scene_.start == Start::equilibrium);
+  integrate::ModalMotion motion(bridge, history, scene_.load.speed, scene_.start == scene::Start::equilibrium);
   motion.prepare(plan.interval);
   const std::size_t modes = bridge.modes();
   std::vector<double> slopes(slopes_.count);
@@ -98,7 +99,7 @@ void MovingForceLimits::at_probes(const double* of_modes, double* row) const {
 
 /// The largest extreme of the probes' accelerations. Only instants at which the greatest shapes of the modes permit it
 /// are evaluated, each with its neighbours: an extreme is interpolated from five samples.
-Extreme MovingForceLimits::largest_at_probes(double interval) {
+base::Extreme MovingForceLimits::largest_at_probes(double interval) {
   const std::size_t probes = shared_.modal->probes().count, instants = series_.size() / count_;
   const std::vector<double>& shapes = shared_.modal->probes().deflection;
   std::vector<double> greatest_shape(count_, 0.0);
@@ -116,19 +117,19 @@ Extreme MovingForceLimits::largest_at_probes(double interval) {
   at_probes(&series_[largest * count_], rows_.data());
   double reached = 0.0;
   for (std::size_t p = 0; p < probes; ++p) reached = std::max(reached, std::abs(rows_[p]));
-  Extreme peak;
+  base::Extreme peak;
   for (std::size_t k = 0; k < instants;) {
-    if (bounds_[k] < share_of_largest_sample * reached) {
+    if (bounds_[k] < run::share_of_largest_sample * reached) {
       ++k;
       continue;
     }
     const std::size_t first = k - std::min<std::size_t>(k, 2);
     std::size_t past = k;  // the end of the stretch: three instants without the bound
     for (std::size_t quiet = 0; past < instants && quiet < 3; ++past)
-      quiet = bounds_[past] < share_of_largest_sample * reached ? quiet + 1 : 0;
+      quiet = bounds_[past] < run::share_of_largest_sample * reached ? quiet + 1 : 0;
     for (std::size_t j = first; j < past; ++j) at_probes(&series_[j * count_], &rows_[(j - first) * probes]);
-    const Extreme one =
-        largest_peak(std::span<const double>(rows_).first((past - first) * probes), probes, interval, first);
+    const base::Extreme one =
+        run::largest_peak(std::span<const double>(rows_).first((past - first) * probes), probes, interval, first);
     if (std::abs(one.value) > std::abs(peak.value)) peak = one;
     k = past;
   }
@@ -136,11 +137,12 @@ Extreme MovingForceLimits::largest_at_probes(double interval) {
 }
 
 results::LowPassed MovingForceLimits::filtered(double interval) {
-  const LowPass filter(cutoff_frequency_, interval);
+  const run::LowPass filter(cutoff_frequency_, interval);
   filter.apply(series_, count_);
   if (!by_modes_)
-    return low_passed_peak(largest_peak(series_, count_, interval), scene_.output.probes, cutoff_frequency_, interval);
-  return low_passed_peak(largest_at_probes(interval), scene_.output.probes, cutoff_frequency_, interval);
+    return run::low_passed_peak(run::largest_peak(series_, count_, interval), scene_.output.probes, cutoff_frequency_,
+                                interval);
+  return run::low_passed_peak(largest_at_probes(interval), scene_.output.probes, cutoff_frequency_, interval);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

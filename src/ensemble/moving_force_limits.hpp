@@ -16,13 +16,13 @@
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 class MovingForceLimits {
  public:
   /// The scene's dampers must not couple modes. cutoff_frequency: Hz, of accelerations; 0: they are not filtered. Scene
   /// and beam must outlive this object.
-  MovingForceLimits(const Scene& scene, SharedBeam& shared, double cutoff_frequency);
+  MovingForceLimits(const scene::Scene& scene, run::SharedBeam& shared, double cutoff_frequency);
 
   /// The quantity of each limit of the scene with its present speed and force train number `train`. peaks,
   /// static_deflection (m): at each probe.
@@ -31,14 +31,14 @@ class MovingForceLimits {
                                                    std::span<const double> static_deflection);
 
  private:
-  void sample_run(std::size_t train, const Plan& plan, LimitCheck& check);
+  void sample_run(std::size_t train, const run::Plan& plan, run::LimitCheck& check);
   results::LowPassed filtered(double interval);
-  Extreme largest_at_probes(double interval);
+  base::Extreme largest_at_probes(double interval);
   /// Converts the modes' accelerations to the accelerations of the probes.
   void at_probes(const double* of_modes, double* row) const;
 
-  const Scene& scene_;
-  const SharedBeam& shared_;
+  const scene::Scene& scene_;
+  const run::SharedBeam& shared_;
   double cutoff_frequency_;
   bool by_modes_;      // the modes' accelerations are filtered, because there are fewer modes than probes
   std::size_t count_;  // number of filtered series
@@ -50,4 +50,4 @@ class MovingForceLimits {
   std::vector<double> bounds_;         // of the accelerations of all probes at every instant
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -11,7 +11,7 @@
 #include "run/process.hpp"
 #include "run/signals.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 
 /// Progress of all ranks by the simulated time of the runs; the longest pieces are distributed first.
@@ -65,9 +65,9 @@ RunFailure run_cases_in_parallel(MPI_Comm comm, const SharedWork& work, bool qui
     } catch (const Error& error) {
       fail(error);
     } catch (const std::exception& failed) {
-      fail(as_error(failed));
+      fail(run::as_error(failed));
     }
-    if (caught_signal() != 0) queue.stop();
+    if (run::caught_signal() != 0) queue.stop();
     progress.show(queue.taken(), 0.0);
     results::Stage::advance(static_cast<double>(queue.taken()) / static_cast<double>(work.pieces.size()));
   }
@@ -86,4 +86,4 @@ RunFailure first_of(MPI_Comm comm, RunFailure mine) {
   return {earliest[0], mine.status, base::broadcast(comm, std::move(mine.message), earliest[1])};
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 /// Runs that one rank computes together.
 struct RunPiece {
@@ -41,4 +41,4 @@ RunFailure run_cases_in_parallel(MPI_Comm comm, const SharedWork& work, bool qui
 /// Collective. The failure of the earliest piece, the same on every rank.
 RunFailure first_of(MPI_Comm comm, RunFailure mine);
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

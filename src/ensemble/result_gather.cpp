@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 constexpr int tag_row = 1, tag_end = 2;
 }
@@ -65,4 +65,4 @@ void ResultGather::finish() {
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 class ResultGather {
  public:
@@ -37,4 +37,4 @@ class ResultGather {
   std::deque<Sent> sent_;  // a deque, because the addresses must remain valid
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

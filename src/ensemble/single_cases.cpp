@@ -6,7 +6,7 @@
 #include "run/simulation.hpp"
 #include "run/step_cost.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 
 // The cost of a single run by the batch kernel, relative to a run in a full batch.
@@ -19,10 +19,10 @@ SingleEngine::SingleEngine(CaseSet& cases)
       by_batch_kernel_(!cases.scene().exact_in_time() && CaseBatch::obstacle(cases.scene(), cases.shared()).empty()) {}
 
 double SingleEngine::cost() const {
-  const Scene& scene = cases_.scene();
+  const scene::Scene& scene = cases_.scene();
   if (scene.exact_in_time()) return cases_.seconds_by_modes();
   if (by_batch_kernel_) return single_run_factor * cases_.seconds_in_batches();
-  return step_seconds(scene, scene.model.method) / scene.model.step.value_or(1.0);
+  return run::step_seconds(scene, scene.model.method) / scene.model.step.value_or(1.0);
 }
 
 std::vector<CaseResult> SingleEngine::run(std::size_t train, std::span<const Member> members,
@@ -35,34 +35,34 @@ std::vector<CaseResult> SingleEngine::run(std::size_t train, std::span<const Mem
   return results;
 }
 
-CaseResult SingleEngine::run(const Scene& scene, std::size_t train, const CaseRun& run,
+CaseResult SingleEngine::run(const scene::Scene& scene, std::size_t train, const CaseRun& run,
                              const std::function<void(double)>& reached) const {
   std::vector<std::string> ignored;
   // Stored factorisations of other runs have shifts that are equal except for rounding: results would depend on the
   // earlier runs of this rank.
   cases_.shared().statics->delete_step_factors();
   const double covered_until = run.speed > 0.0 ? scene.model.trial_distance / run.speed : scene.model.trial_distance;
-  Simulation simulation(scene, cases_.shared(),
-                        {.limits = scene.has_run_limits(),
-                         .wheel_filter = true,
-                         .deck_cutoff = cases_.cutoff_frequency(),
-                         .trials_until = covered_until},
-                        ignored);
-  ObserverBy until_signal({}, [&](double t, long) {
+  run::Simulation simulation(scene, cases_.shared(),
+                             {.limits = scene.has_run_limits(),
+                              .wheel_filter = true,
+                              .deck_cutoff = cases_.cutoff_frequency(),
+                              .trials_until = covered_until},
+                             ignored);
+  run::ObserverBy until_signal({}, [&](double t, long) {
     if (reached) reached(t);
-    return caught_signal() == 0;
+    return run::caught_signal() == 0;
   });
   simulation.run({&until_signal});
   CaseResult result;
   result.peaks.resize(scene.output.probes.size());
-  if (caught_signal() != 0) return result;
+  if (run::caught_signal() != 0) return result;
   if (simulation.system().linearisation_residual() > scene.model.residual_limit) {
-    Scene with_mechanisms = scene;
-    with_mechanisms.model.vehicles = VehicleModel::full;
+    scene::Scene with_mechanisms = scene;
+    with_mechanisms.model.vehicles = scene::VehicleModel::full;
     return this->run(with_mechanisms, train, run, reached);
   }
   simulation.evaluation().check_balance();
-  const Result found = simulation.result();
+  const run::Result found = simulation.result();
   static_cast<base::PassagePeaks&>(result) = found.passage_peaks();
   for (const results::Verdict& verdict : found.verdicts) result.evaluated.push_back(verdict.found);
   result.outside_trials = found.has_uncovered_event(scene.model.trials_lost_contact ? covered_until : 0.0);
@@ -71,7 +71,7 @@ CaseResult SingleEngine::run(const Scene& scene, std::size_t train, const CaseRu
   if (statics.empty() || !simulation.system().weights().pass_together(simulation.evaluation().paths()))
     statics = simulation.static_deflections();
   result.static_deflection = statics;
-  result.ended = caught_signal() == 0;
+  result.ended = run::caught_signal() == 0;
   return result;
 }
 
@@ -79,4 +79,4 @@ std::unique_ptr<Engine> single_engine_for(CaseSet& cases, std::string& /*why*/) 
   return std::make_unique<SingleEngine>(cases);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -4,10 +4,9 @@
 #include <map>
 
 #include "ensemble/engines.hpp"
+#include "run/simulation.hpp"
 
-namespace traverse::app {
-
-class Simulation;
+namespace traverse::ensemble {
 
 class SingleEngine : public Engine {
  public:
@@ -19,7 +18,7 @@ class SingleEngine : public Engine {
   double cost() const override;
 
  private:
-  CaseResult run(const Scene& scene, std::size_t train, const CaseRun& run,
+  CaseResult run(const scene::Scene& scene, std::size_t train, const CaseRun& run,
                  const std::function<void(double)>& reached) const;
 
   CaseSet& cases_;
@@ -27,4 +26,4 @@ class SingleEngine : public Engine {
   mutable std::map<std::size_t, std::vector<double>> static_deflection_;  // m, for each train
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <limits>
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 constexpr long stop_value = std::numeric_limits<long>::max() / 2;
 }
@@ -59,4 +59,4 @@ std::size_t WorkQueue::taken() const {
   return std::min(rounds * static_cast<std::size_t>(computers_), pieces_);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace traverse::app {
+namespace traverse::ensemble {
 
 /// Ranks of one computer use a common counter in shared memory, without communication or waiting; the computers get the
 /// pieces in turn.
@@ -33,4 +33,4 @@ class WorkQueue {
   long* taken_ = nullptr;  // in the window: rounds taken on this computer
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

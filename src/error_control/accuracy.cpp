@@ -20,12 +20,20 @@
 #include "run/passage.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using run::acceleration;
+using run::low_passed;
+using run::quantities;
+using run::shear_force;
+using run::wheel_force;
+using scene::Scene;
+
 namespace {
 
 constexpr std::size_t min_continuous_spans = 200;  // from this number of continuous spans the active window is used
 
-void limit_to_active_window(const Scene& scene, NumericalModel& model) {
+void limit_to_active_window(const Scene& scene, scene::NumericalModel& model) {
   const beam::BeamModel& beam = *scene.beam;
   if (model.window_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= min_continuous_spans)
     model.window_tolerance = search::share_of_active_window * scene.accuracy;
@@ -42,12 +50,12 @@ void describe(const Scene& scene, const ModelSearch& search, const Choice& choic
   std::string expected;
   for (std::size_t q = 0; q < quantities; ++q)
     if (result.estimates[q].present && result.estimates[q].accepted)
-      expected +=
-          fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity_names[q], result.estimates[q].expected);
+      expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", run::quantity_names[q],
+                              result.estimates[q].expected);
   if (!expected.empty()) notes.push_back("estimated errors of the peaks: " + expected);
   for (std::size_t q = 0; q < quantities; ++q)
     if (result.estimates[q].present && !result.estimates[q].accepted)
-      notes.push_back(not_estimated(static_cast<Quantity>(q), result.estimates[q]));
+      notes.push_back(not_estimated(static_cast<run::Quantity>(q), result.estimates[q]));
 }
 
 }  // namespace
@@ -55,7 +63,7 @@ void describe(const Scene& scene, const ModelSearch& search, const Choice& choic
 bool chooses(const Scene& scene) {
   const bool open = scene.mesh_open || !scene.model.step;
   const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
-  return open && moves && scene.beam && scene.analysis == Analysis::transient &&
+  return open && moves && scene.beam && scene.analysis == options::Analysis::transient &&
          (scene.model.modes == 0 || (scene.by_given_modes() && !scene.exact_in_time()));
 }
 
@@ -66,15 +74,15 @@ void set_first_mesh(Scene& scene) {
 }
 
 void set_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
-  if (!filters_deck(scene) || scene.output.low_pass) return;
+  if (!run::filters_deck(scene) || scene.output.low_pass) return;
   Scene known = scene;
   set_first_mesh(known);
   std::vector<std::string> ignored;
-  SharedBeam shared(comm, known, ignored);
+  run::SharedBeam shared(comm, known, ignored);
   shared.damp(known, false, ignored);
   if (known.model.modes > 0) shared.prepare(known, ignored);
-  const bool affordable = scene.limits_deck_acceleration() || frequencies_are_cheap(*shared.beam);
-  scene.output.low_pass = cutoff_frequency(known, shared, affordable, notes);
+  const bool affordable = scene.limits_deck_acceleration() || run::frequencies_are_cheap(*shared.beam);
+  scene.output.low_pass = run::cutoff_frequency(known, shared, affordable, notes);
 }
 
 const options::Entry* adaptive_step_option(const Scene& scene) {
@@ -86,16 +94,16 @@ const options::Entry* adaptive_step_option(const Scene& scene) {
 namespace {
 
 /// Whether no limit applies to the unfiltered acceleration, which needs far more modes and shorter steps.
-bool limits_filtered_only(const Scene& scene) { return scene.limits_deck_acceleration() && filters_deck(scene); }
+bool limits_filtered_only(const Scene& scene) { return scene.limits_deck_acceleration() && run::filters_deck(scene); }
 
 }  // namespace
 
 bool is_controlled(const Scene& scene, std::size_t quantity) {
-  if (quantity == low_passed && !filters_deck(scene)) return false;
+  if (quantity == low_passed && !run::filters_deck(scene)) return false;
   const std::vector<std::string>& given = scene.accuracy_of;
-  if (!given.empty()) return std::find(given.begin(), given.end(), stored_names[quantity]) != given.end();
+  if (!given.empty()) return std::find(given.begin(), given.end(), run::stored_names[quantity]) != given.end();
   if (quantity == acceleration) return !limits_filtered_only(scene);
-  return !by_elements_only(quantity) || (quantity != shear_force && pushes_along(scene));
+  return !run::by_elements_only(quantity) || (quantity != shear_force && pushes_along(scene));
 }
 
 bool is_optional(const Scene& scene, std::size_t quantity) {
@@ -113,12 +121,12 @@ bool controls_forces_only(const Scene& scene) {
 }
 
 bool damps_high_modes(const Scene& scene) {
-  const Damping& damping = scene.damping;
+  const scene::Damping& damping = scene.damping;
   return (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
 }
 
 bool damps_all_modes(const Scene& scene) {
-  const Damping& damping = scene.damping;
+  const scene::Damping& damping = scene.damping;
   if (scene.by_given_modes()) {
     const std::vector<double>& ratio = scene.beam->given->ratio;
     return std::all_of(ratio.begin(), ratio.end(), [](double one) { return one > 0.0; });
@@ -146,25 +154,25 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   std::vector<std::string> ignored;
   Scene known = scene;
   set_first_mesh(known);
-  SharedBeam shared(comm, known, ignored);
+  run::SharedBeam shared(comm, known, ignored);
   shared.set_up(known, true, ignored);
   known.damping.ratios.reset();
   known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
   set_low_pass(comm, known, ignored);
-  const double end = Passage(known, shared, ignored).plan().end_time;
+  const double end = run::Passage(known, shared, ignored).plan().end_time;
   std::optional<ModelSearch> search(std::in_place, comm, known, shared, end);
   try {
     search->run();
   } catch (const ResidualTooLarge& linear) {
     notes.push_back(
         fmt::format("vehicles are not linearised: the residual would be {:.1g} of their weights", linear.residual));
-    known.model.vehicles = VehicleModel::full;
+    known.model.vehicles = scene::VehicleModel::full;
     search.emplace(comm, known, shared, end);
     search->run();
   }
   Choice choice = search->choice();
-  if (choice.model.vehicles == VehicleModel::automatic) {
-    choice.model.vehicles = VehicleModel::linear;
+  if (choice.model.vehicles == scene::VehicleModel::automatic) {
+    choice.model.vehicles = scene::VehicleModel::linear;
     choice.model.residual_limit = search->residual_limit();
   }
   limit_to_active_window(scene, choice.model);
@@ -183,4 +191,4 @@ Scene refined(const Scene& scene) {
   return fine;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

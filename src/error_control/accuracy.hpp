@@ -13,44 +13,44 @@
 #include "traverse/options/entry.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 /// Whether mesh and step are chosen for this quantity: accuracy_of contains it, or accuracy_of is not given; then shear
 /// is excluded, and axial quantities are included only if trains push the beam along x. Low-passed accelerations are
 /// included only in scenes that filter them.
-bool is_controlled(const Scene& scene, std::size_t quantity);
+bool is_controlled(const scene::Scene& scene, std::size_t quantity);
 /// Whether the quantity gets an error estimate if its error is small enough, without influence on mesh and step.
-bool is_optional(const Scene& scene, std::size_t quantity);
+bool is_optional(const scene::Scene& scene, std::size_t quantity);
 /// Whether wheel forces are controlled without the accelerations, which reveal too long steps for both.
-bool controls_forces_only(const Scene& scene);
+bool controls_forces_only(const scene::Scene& scene);
 
 /// The reason why a quantity is not controlled.
-std::string why_not_controlled(const Scene& scene, std::size_t quantity);
+std::string why_not_controlled(const scene::Scene& scene, std::size_t quantity);
 inline constexpr const char* no_sum =
     "without damping that grows with the frequency the sum of the accelerations of all modes does not converge";
 /// Whether the scene has damping that grows with the frequency.
-bool damps_high_modes(const Scene& scene);
+bool damps_high_modes(const scene::Scene& scene);
 /// Whether every mode of the bridge is damped, however it is described.
-bool damps_all_modes(const Scene& scene);
+bool damps_all_modes(const scene::Scene& scene);
 
 /// Whether mesh or step is open, and a moving train or force allows trial runs.
-bool chooses(const Scene& scene);
+bool chooses(const scene::Scene& scene);
 /// Sets the mesh of the first trial run if the mesh is open.
-void set_first_mesh(Scene& scene);
+void set_first_mesh(scene::Scene& scene);
 
 /// Collective. Sets the cut-off frequency of filtered deck accelerations if the scene leaves it open. It is computed
 /// once, with the mesh of the first trial run, because it differs a little between meshes and all compared runs need
 /// the same one.
-void set_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
+void set_low_pass(MPI_Comm comm, scene::Scene& scene, std::vector<std::string>& notes);
 
 /// The option by which the integrator controls its steps itself or treats contacts separately; null: none.
-const options::Entry* adaptive_step_option(const Scene& scene);
+const options::Entry* adaptive_step_option(const scene::Scene& scene);
 
 /// Collective. Chooses mesh, step and tolerances that the scene does not prescribe, and returns the model. Appends the
 /// choice to `notes`. Throws the InputError that the scene's own run would throw.
-Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
+Choice choose(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes);
 
 /// The scene with twice the elements in every span (or sleeper bay) and half the step.
-Scene refined(const Scene& scene);
+scene::Scene refined(const scene::Scene& scene);
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -16,7 +16,7 @@
 #include "error_control/trial_window.hpp"
 #include "run/deck_acceleration.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 using Errors = PeakErrors;
 
@@ -27,24 +27,25 @@ constexpr double step_factor = 0.7;  // reduces an error of fourth order to a qu
 
 }  // namespace
 
-std::string text_of(const Scene& scene, const Errors& errors) {
+std::string text_of(const scene::Scene& scene, const Errors& errors) {
   std::string words;
-  for (std::size_t q = 0; q < quantities; ++q)
+  for (std::size_t q = 0; q < run::quantities; ++q)
     if (is_controlled(scene, q))
-      words += fmt::format("{}{} {:.1g}", words.empty() ? "" : ", ", quantity_names[q], errors[q]);
+      words += fmt::format("{}{} {:.1g}", words.empty() ? "" : ", ", run::quantity_names[q], errors[q]);
   return words;
 }
 
-BatchChoice::BatchChoice(const Scene& scene, const TrialSpeeds& speeds) : scene_(scene), fastest_(scene) {
+BatchChoice::BatchChoice(const scene::Scene& scene, const TrialSpeeds& speeds) : scene_(scene), fastest_(scene) {
   fastest_.train.speed = scene.sweep->speeds.back();
-  for (const double x : wheels_at_start(fastest_))
+  for (const double x : scene::wheels_at_start(fastest_))
     passage_length_ = std::max(passage_length_, scene.beam->length() - x);
   passage_length_ += scene.tail.value_or(0.0) * fastest_.train.speed;
   if (scene.end_time) passage_length_ = *scene.end_time * fastest_.train.speed;
   distance_ = initial_window(fastest_, passage_length_ / fastest_.train.speed) * fastest_.train.speed;
-  if (is_controlled(scene, low_passed))
-    distance_ = std::min(passage_length_, distance_ + unsettled_end(*scene.output.low_pass) * fastest_.train.speed);
-  const Scene part = restrict_to_window(fastest_, distance_ / fastest_.train.speed);
+  if (is_controlled(scene, run::low_passed))
+    distance_ =
+        std::min(passage_length_, distance_ + run::unsettled_end(*scene.output.low_pass) * fastest_.train.speed);
+  const scene::Scene part = restrict_to_window(fastest_, distance_ / fastest_.train.speed);
   first_parts_.emplace(part, speeds.first_parts, distance_);
   if (!speeds.mixed.empty()) mixed_.emplace(part, speeds.mixed, distance_);
   whole_passages_.emplace(scene, speeds.whole_passages, passage_length_, &*first_parts_);
@@ -56,36 +57,36 @@ Choice BatchChoice::choose() {
   if (any_contact_loss(first_parts_->run(model_))) throw NotChosen{"wheels lose contact"};
   const double residual = first_parts_->residual(model_);
   double residual_limit = default_residual_limit(scene_);
-  if (scene_.model.vehicles == VehicleModel::automatic && may_exceed(residual, scene_))
+  if (scene_.model.vehicles == scene::VehicleModel::automatic && may_exceed(residual, scene_))
     residual_limit = measured_residual_limit(PETSC_COMM_SELF, trial_scene());
-  if (scene_.model.vehicles == VehicleModel::automatic && residual > residual_limit)
+  if (scene_.model.vehicles == scene::VehicleModel::automatic && residual > residual_limit)
     throw NotChosen{fmt::format("the residual of linearised vehicles is {:.1g} of their weights", residual)};
   Errors errors = check_wholes(search);
-  for (std::size_t q = 0; q < quantities; ++q)
+  for (std::size_t q = 0; q < run::quantities; ++q)
     if (is_controlled(scene_, q)) errors[q] += std::min(residual, default_residual_limit(scene_));
   Choice choice{model_, {}, {}};
   choice.accuracy.measured = true;
-  for (std::size_t q = 0; q < quantities; ++q) {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
     const bool accepted = is_controlled(scene_, q);
-    const bool present = !by_elements_only(q) || q == shear_force;
+    const bool present = !run::by_elements_only(q) || q == run::shear_force;
     choice.accuracy.estimates[q] = {present, accepted, errors[q], accepted ? "" : why_not_controlled(scene_, q)};
   }
-  if (scene_.model.vehicles == VehicleModel::automatic) choice.model.residual_limit = residual_limit;
+  if (scene_.model.vehicles == scene::VehicleModel::automatic) choice.model.residual_limit = residual_limit;
   choice.model.step_probes = true;
   choice.model.local_compliance = true;
   return choice;
 }
 
 /// The first part of a passage with the chosen model, as a single run.
-Scene BatchChoice::trial_scene() const {
-  Scene scene = restrict_to_window(fastest_, distance_ / fastest_.train.speed);
+scene::Scene BatchChoice::trial_scene() const {
+  scene::Scene scene = restrict_to_window(fastest_, distance_ / fastest_.train.speed);
   scene.sweep.reset();
   scene.model.step = model_.step;
   set_mesh(scene, model_.elements);
   return scene;
 }
 
-void BatchChoice::accept(const std::optional<NumericalModel>& model) {
+void BatchChoice::accept(const std::optional<scene::NumericalModel>& model) {
   if (!model) throw NotChosen{"the peaks do not converge to the accuracy", true};
   model_ = *model;
 }
@@ -93,12 +94,12 @@ void BatchChoice::accept(const std::optional<NumericalModel>& model) {
 PeakErrors BatchChoice::check_wholes(BatchSearch& search) {
   Errors errors{};
   for (int i = 0; i <= max_refinements; ++i) {
-    NumericalModel other = search.on_finer_mesh(model_);
-    other.method = structure::methods().front().name;
+    scene::NumericalModel other = search.on_finer_mesh(model_);
+    other.method = base::methods().front().name;
     *other.step *= 0.5;
     whole_passages_->run_at_once(std::array{other, model_});
     errors = difference(scene_, whole_passages_->run(model_), whole_passages_->run(other));
-    for (std::size_t q = 0; q < quantities; ++q)
+    for (std::size_t q = 0; q < run::quantities; ++q)
       errors[q] = std::max(errors[q], search.error_of_mesh(q) + search.error_of_steps(q));
     if (greatest(errors) <= search::share_of_whole * scene_.accuracy) {
       if (any_contact_loss(whole_passages_->run(model_))) throw NotChosen{"wheels lose contact"};
@@ -109,8 +110,8 @@ PeakErrors BatchChoice::check_wholes(BatchSearch& search) {
   throw NotChosen{fmt::format("the errors over whole passages are {}", text_of(scene_, errors)), true};
 }
 
-void BatchChoice::refine(const NumericalModel& other) {
-  NumericalModel same_mesh = other;
+void BatchChoice::refine(const scene::NumericalModel& other) {
+  scene::NumericalModel same_mesh = other;
   same_mesh.elements = model_.elements;
   const Errors by_mesh = difference(scene_, whole_passages_->run(same_mesh), whole_passages_->run(other));
   if (greatest(by_mesh) <= search::share_of_wholes_mesh * scene_.accuracy)
@@ -119,4 +120,4 @@ void BatchChoice::refine(const NumericalModel& other) {
     model_.elements = other.elements;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -11,7 +11,7 @@
 #include "error_control/batch_search.hpp"
 #include "error_control/batch_trial_runs.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 /// Speeds of the trial passages in groups, m/s.
 struct TrialSpeeds {
@@ -21,7 +21,7 @@ struct TrialSpeeds {
 class BatchChoice {
  public:
   /// The scene must have a sweep and must outlive this object.
-  BatchChoice(const Scene& scene, const TrialSpeeds& speeds);
+  BatchChoice(const scene::Scene& scene, const TrialSpeeds& speeds);
 
   /// The reason why nothing was chosen. not_converged: a search with a smaller accuracy may succeed.
   struct NotChosen {
@@ -32,22 +32,22 @@ class BatchChoice {
   Choice choose();
 
  private:
-  void accept(const std::optional<NumericalModel>& model);
-  Scene trial_scene() const;
+  void accept(const std::optional<scene::NumericalModel>& model);
+  scene::Scene trial_scene() const;
   /// Compares whole passages, because errors accumulate while the train crosses, with a finer mesh and half the step by
   /// esdirk4. genalpha damps the vibration of wheels completely in time, and two of its steps may agree on that.
   PeakErrors check_wholes(BatchSearch& search);
   /// Refines the mesh if it causes the difference to `other`, otherwise the step.
-  void refine(const NumericalModel& other);
+  void refine(const scene::NumericalModel& other);
 
-  const Scene& scene_;
-  Scene fastest_;
+  const scene::Scene& scene_;
+  scene::Scene fastest_;
   double passage_length_ = 0.0, distance_ = 0.0;  // length of a whole passage, and of its first part, m
   std::optional<BatchTrialRuns> first_parts_, mixed_, whole_passages_;
-  NumericalModel model_;  // the choice
+  scene::NumericalModel model_;  // the choice
 };
 
 /// The errors of the controlled quantities with their names.
-std::string text_of(const Scene& scene, const PeakErrors& errors);
+std::string text_of(const scene::Scene& scene, const PeakErrors& errors);
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -15,16 +15,16 @@
 #include "results/stage.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr std::size_t min_runs = 4, trial_lanes = 4;
 // Share of the accuracy in the first and the second search.
 constexpr std::array shares = {1.0, 0.5};
 
-bool open(const Scene& scene) {
+bool open(const scene::Scene& scene) {
   return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.model.step && scene.model.modes == 0 &&
-         scene.mesh_open && scene.model.vehicles != VehicleModel::full && scene.beam &&
+         scene.mesh_open && scene.model.vehicles != scene::VehicleModel::full && scene.beam &&
          scene.find_option("ts_type") == nullptr;
 }
 
@@ -47,10 +47,10 @@ std::vector<std::vector<double>> speeds_around(const std::vector<double>& speeds
   return groups;
 }
 
-std::string text_of(const Scene& scene, const std::array<ErrorEstimate, quantities>& estimates) {
+std::string text_of(const scene::Scene& scene, const std::array<ErrorEstimate, run::quantities>& estimates) {
   PeakErrors errors{};
-  for (std::size_t q = 0; q < quantities; ++q) errors[q] = estimates[q].expected;
-  return text_of(scene, errors);
+  for (std::size_t q = 0; q < run::quantities; ++q) errors[q] = estimates[q].expected;
+  return error_control::text_of(scene, errors);
 }
 
 TrialSpeeds trial_speeds(const std::vector<double>& speeds) {
@@ -63,7 +63,7 @@ TrialSpeeds trial_speeds(const std::vector<double>& speeds) {
 
 }  // namespace
 
-std::optional<Choice> choose_batch_model(const Scene& given, std::vector<std::string>& notes) {
+std::optional<Choice> choose_batch_model(const scene::Scene& given, std::vector<std::string>& notes) {
   const std::vector<double>& speeds = given.sweep->speeds;
   if (!open(given) || given.sweep->lanes == 0 || std::max(given.sweep->runs, speeds.size()) < min_runs)
     return std::nullopt;
@@ -72,7 +72,7 @@ std::optional<Choice> choose_batch_model(const Scene& given, std::vector<std::st
   const auto reject = [&](const std::string& why) {
     notes.push_back("batched trial runs found no common mesh and step: " + why);
   };
-  Scene scene = given;
+  scene::Scene scene = given;
   for (const double share : shares) {
     scene.accuracy = share * given.accuracy;
     if (share < 1.0) notes.push_back(fmt::format("second search, with an accuracy of {:g}:", scene.accuracy));
@@ -97,4 +97,4 @@ std::optional<Choice> choose_batch_model(const Scene& given, std::vector<std::st
   return std::nullopt;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

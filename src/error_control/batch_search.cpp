@@ -12,7 +12,10 @@
 #include "error_control/search_constants.hpp"
 #include "error_control/trial_runs.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using scene::NumericalModel;
+
 namespace {
 
 constexpr double min_refinement = 1.25, max_refinement = 2.0;  // limits of the ratio of elements of successive meshes
@@ -40,23 +43,23 @@ NumericalModel with_step(const NumericalModel& model, double factor, const char*
 
 /// Whether even the shortest step of a method cannot reach the accuracy if the error is `error_ratio` times the allowed
 /// one at this step.
-bool unreachable(double error_ratio, const structure::MethodRow& method, double factor) {
+bool unreachable(double error_ratio, const base::MethodRow& method, double factor) {
   return error_ratio > std::pow(factor / search::batch_steps.back(), method.order);
 }
 
 /// The row of a model's method, and its number of stage solves in one second of motion.
-const structure::MethodRow& row_of(const NumericalModel& model) { return *structure::find_method(model.method); }
+const base::MethodRow& row_of(const NumericalModel& model) { return *base::find_method(model.method); }
 double solves(const NumericalModel& model) { return row_of(model).solves() / *model.step; }
 
 }  // namespace
 
 NumericalModel BatchSearch::first(double duration) {
-  const Scene& scene = trials_.scene();
+  const scene::Scene& scene = trials_.scene();
   NumericalModel model = scene.model;
   model.elements = scene.mesh_open ? aligned_mesh(scene, first_mesh(scene)) : mesh_of(scene);
   model.modes = 0;
-  model.method = structure::methods().front().name;
-  model.vehicles = VehicleModel::linear;
+  model.method = base::methods().front().name;
+  model.vehicles = scene::VehicleModel::linear;
   model.step = 1.0;  // placeholder, until the first frequency is known
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
   longest_ = steps.longest;
@@ -84,8 +87,8 @@ bool BatchSearch::predict_step(NumericalModel& model) {
     const bool accurate = error_ratio(steps_) <= 1.0;
     if (!accurate && error_ratio(halved_) > search::surely_within) continue;
     cheaper_methods_.clear();
-    for (const structure::MethodRow& method : structure::methods().subspan(1)) {
-      if (method.solves() >= structure::methods().front().solves()) continue;
+    for (const base::MethodRow& method : base::methods().subspan(1)) {
+      if (method.solves() >= base::methods().front().solves()) continue;
       const NumericalModel other =
           with_step(model, accurate ? search::batch_steps.front() : 0.5 * search::batch_steps.front(), method.name);
       // With one solve in each step wheel forces have errors where the step length changes.
@@ -112,9 +115,9 @@ void BatchSearch::measure_steps(const NumericalModel& model) {
   trials_.run_at_once(std::array{with_step(model, 0.5), model, with_step(model, 2.0)});
   const PeakErrors before = change(trials_, with_step(model, 2.0), model);
   const PeakErrors now = change(trials_, model, with_step(model, 0.5));
-  for (std::size_t q = 0; q < quantities; ++q) {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
     // Without damping a moment is a sum of 1/n^2 over all modes, of which a step resolves those below a frequency.
-    const bool resolved = q != moment || damps_high_modes(trials_.scene());
+    const bool resolved = q != run::moment || damps_high_modes(trials_.scene());
     halved_[q] = remaining_error(now[q], before[q], resolved ? search::full_order : 1.0);
     steps_[q] = now[q] + halved_[q];
   }
@@ -122,11 +125,11 @@ void BatchSearch::measure_steps(const NumericalModel& model) {
 
 /// Refines the mesh until the change by twice the elements is within the accuracy.
 bool BatchSearch::refine_mesh(NumericalModel& model) {
-  const Scene& scene = trials_.scene();
+  const scene::Scene& scene = trials_.scene();
   if (!scene.mesh_open) return true;
   for (int i = 0; i < search::max_halvings && model.elements <= search::max_in_a_span; ++i) {
     mesh_ = change(mixed_, model, on_finer_mesh(model), search::finer_mesh);
-    if (!damps_high_modes(scene)) mesh_[moment] *= search::undamped_sum / search::finer_mesh;
+    if (!damps_high_modes(scene)) mesh_[run::moment] *= search::undamped_sum / search::finer_mesh;
     const double ratio = greatest(mesh_) / (search::share * accuracy_);
     if (ratio <= 1.0) return true;
     const double finer = std::clamp(std::pow(ratio, 1.0 / search::mesh_order), min_refinement, max_refinement);
@@ -140,7 +143,7 @@ NumericalModel BatchSearch::find_cheaper(const NumericalModel& model) {
   NumericalModel best = model;
   const double ratio_of_model = error_ratio(steps_);
   std::vector<const char*> methods = cheaper_methods_;
-  methods.push_back(structure::methods().front().name);
+  methods.push_back(base::methods().front().name);
   for (const char* method : methods) {
     double ratio_of_longer = 0.0;
     for (const double factor : search::batch_steps) {
@@ -164,8 +167,8 @@ NumericalModel BatchSearch::find_cheaper(const NumericalModel& model) {
 PeakErrors BatchSearch::errors_of(const NumericalModel& candidate, const NumericalModel& model) {
   PeakErrors errors = change(trials_, candidate, with_step(model, 0.5));
   const double ratio = row_of(candidate).solves() > 1.0 ? 1.0 : search::one_solve;
-  if (ratio > 1.0) errors[wheel_force] *= search::one_solve_force;
-  for (std::size_t q = 0; q < quantities; ++q) errors[q] = ratio * errors[q] + halved_[q];
+  if (ratio > 1.0) errors[run::wheel_force] *= search::one_solve_force;
+  for (std::size_t q = 0; q < run::quantities; ++q) errors[q] = ratio * errors[q] + halved_[q];
   return errors;
 }
 
@@ -174,4 +177,4 @@ double BatchSearch::error_ratio(const PeakErrors& errors) const {
   return greatest(errors) / (search::share * accuracy_);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

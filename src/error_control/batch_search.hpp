@@ -6,7 +6,7 @@
 
 #include "error_control/batch_trial_runs.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 class BatchSearch {
  public:
@@ -16,21 +16,21 @@ class BatchSearch {
       : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
   /// The initial model for passages of `duration`, s.
-  NumericalModel first(double duration);
+  scene::NumericalModel first(double duration);
   /// The cheapest model within the accuracy; empty: none.
-  std::optional<NumericalModel> run(NumericalModel model);
+  std::optional<scene::NumericalModel> run(scene::NumericalModel model);
   double error_of_mesh(std::size_t q) const { return mesh_[q]; }
   double error_of_steps(std::size_t q) const { return steps_[q]; }
   /// The mesh of comparison, with twice the elements.
-  NumericalModel on_finer_mesh(NumericalModel model) const;
+  scene::NumericalModel on_finer_mesh(scene::NumericalModel model) const;
 
  private:
-  bool predict_step(NumericalModel& model);
-  bool halve_step(NumericalModel& model);
-  void measure_steps(const NumericalModel& model);
-  bool refine_mesh(NumericalModel& model);
-  NumericalModel find_cheaper(const NumericalModel& model);
-  PeakErrors errors_of(const NumericalModel& candidate, const NumericalModel& model);
+  bool predict_step(scene::NumericalModel& model);
+  bool halve_step(scene::NumericalModel& model);
+  void measure_steps(const scene::NumericalModel& model);
+  bool refine_mesh(scene::NumericalModel& model);
+  scene::NumericalModel find_cheaper(const scene::NumericalModel& model);
+  PeakErrors errors_of(const scene::NumericalModel& candidate, const scene::NumericalModel& model);
   double error_ratio(const PeakErrors& errors) const;
 
   BatchTrialRuns &trials_, &mixed_;
@@ -41,4 +41,4 @@ class BatchSearch {
   PeakErrors halved_{};  // the error of half the step
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -11,20 +11,22 @@
 #include "error_control/trial_runs.hpp"
 #include "run/deck_acceleration.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 using engine::BatchResult;
+using ensemble::CaseBatch;
+using scene::NumericalModel;
 
 namespace {
 
 /// Filters the stored accelerations and sets the peaks before the unsettled end.
 void filter_stored(BatchResult& result, std::size_t probes, double frequency, double interval) {
   if (result.failure != engine::none) return;
-  const std::size_t settled = filter(result.samples, probes, frequency, interval);
-  ResponseExtremes peaks(probes, 0);
+  const std::size_t settled = run::filter(result.samples, probes, frequency, interval);
+  run::ResponseExtremes peaks(probes, 0);
   peaks.add_low_passed(std::span<const double>(result.samples).first(settled * probes), interval);
   for (std::size_t p = 0; p < probes; ++p) {
-    const Extreme& peak = peaks.largest_of_each(low_passed)[p];
+    const base::Extreme& peak = peaks.largest_of_each(run::low_passed)[p];
     result.peaks[p].low_passed = {std::abs(peak.value), peak.time};
   }
   result.samples = {};
@@ -32,12 +34,13 @@ void filter_stored(BatchResult& result, std::size_t probes, double frequency, do
 
 }  // namespace
 
-PeakErrors difference(const Scene& scene, const std::vector<BatchResult>& rough, const std::vector<BatchResult>& fine) {
+PeakErrors difference(const scene::Scene& scene, const std::vector<BatchResult>& rough,
+                      const std::vector<BatchResult>& fine) {
   PeakErrors worst{};
   for (std::size_t run = 0; run < rough.size(); ++run) {
     const bool failed = rough[run].failure != engine::none || fine[run].failure != engine::none;
     const PeakErrors errors = failed ? PeakErrors{} : difference(scene, rough[run], fine[run]);
-    for (std::size_t q = 0; q < quantities; ++q)
+    for (std::size_t q = 0; q < run::quantities; ++q)
       if (is_controlled(scene, q))
         worst[q] = std::max(worst[q], failed ? 1.0 : errors[q]);  // the step is probably too long
   }
@@ -48,12 +51,12 @@ bool any_contact_loss(const std::vector<BatchResult>& runs) {
   return std::any_of(runs.begin(), runs.end(), [](const BatchResult& run) { return run.contact_losses > 0.0; });
 }
 
-BatchTrialRuns::BatchTrialRuns(Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
+BatchTrialRuns::BatchTrialRuns(scene::Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
                                const BatchTrialRuns* previous)
     : scene_(std::move(scene)),
       previous_(previous != nullptr && previous->scene_.beam->spans == scene_.beam->spans ? previous : nullptr) {
   for (const std::vector<double>& group : speeds) {
-    std::vector<LaneRun>& runs = groups_.emplace_back();
+    std::vector<ensemble::LaneRun>& runs = groups_.emplace_back();
     for (const std::uint64_t seed : scene_.sweep->seeds)
       if (group.size() == 1 && runs.size() + 1 < engine::widest)
         runs.push_back({group.front(), distance / group.front(), seed});
@@ -74,7 +77,8 @@ void BatchTrialRuns::run_at_once(std::span<const NumericalModel> models) {
     new_models.push_back(model);
     check_memory(model);
     std::vector<CaseBatch::Ready>& groups = ready.emplace_back();
-    for (const std::vector<LaneRun>& runs : groups_) groups.push_back(setup(model).lanes->ready(runs, steps_of(model)));
+    for (const std::vector<ensemble::LaneRun>& runs : groups_)
+      groups.push_back(setup(model).lanes->ready(runs, steps_of(model)));
   }
   const auto results_of = [&](std::size_t i) { return run_all(ready[i], steps_of(new_models[i])); };
   std::vector<std::future<std::vector<BatchResult>>> others;
@@ -91,18 +95,18 @@ void BatchTrialRuns::run_at_once(std::span<const NumericalModel> models) {
 void BatchTrialRuns::check_memory(const NumericalModel& model) const {
   const CaseBatch::Steps steps = steps_of(model);
   double numbers = 0.0;
-  for (const std::vector<LaneRun>& runs : groups_) {
+  for (const std::vector<ensemble::LaneRun>& runs : groups_) {
     const double places = runs.front().speed * runs.front().end / CaseBatch::spacing(steps, runs.front().speed);
     numbers += places * static_cast<double>(runs.size() * scene_.output.probes.size());
   }
-  if (!steps.stored.empty() && numbers > DeckAcceleration::max_stored)
+  if (!steps.stored.empty() && numbers > run::DeckAcceleration::max_stored)
     throw Refused{"storing the accelerations of all probes needs too much memory"};
 }
 
 CaseBatch::Steps BatchTrialRuns::steps_of(const NumericalModel& model) const {
-  const structure::MethodRow& method = *structure::find_method(model.method);
+  const base::MethodRow& method = *base::find_method(model.method);
   CaseBatch::Steps steps{method.make(method.parameter.value), *model.step, true};
-  if (is_controlled(scene_, low_passed)) steps.stored = {engine::Response::acceleration};
+  if (is_controlled(scene_, run::low_passed)) steps.stored = {engine::Response::acceleration};
   return steps;
 }
 
@@ -112,7 +116,7 @@ std::vector<BatchResult> BatchTrialRuns::run_all(const std::vector<CaseBatch::Re
                                                  const CaseBatch::Steps& steps) const {
   std::vector<BatchResult> results;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::vector<LaneRun>& runs = groups_[g];
+    const std::vector<ensemble::LaneRun>& runs = groups_[g];
     const double spacing = CaseBatch::spacing(steps, runs.front().speed);
     std::vector<BatchResult> group_results = groups[g].run();
     for (std::size_t i = 0; i < group_results.size() && !steps.stored.empty(); ++i)
@@ -149,4 +153,4 @@ BatchTrialRuns::Setup& BatchTrialRuns::setup(const NumericalModel& model) {
   return *slot;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -16,10 +16,10 @@
 #include "error_control/peak_errors.hpp"
 #include "run/response_extremes.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 /// The largest differences of all runs; 1 if one of them has failed.
-PeakErrors difference(const Scene& scene, const std::vector<engine::BatchResult>& rough,
+PeakErrors difference(const scene::Scene& scene, const std::vector<engine::BatchResult>& rough,
                       const std::vector<engine::BatchResult>& fine);
 bool any_contact_loss(const std::vector<engine::BatchResult>& runs);
 
@@ -30,21 +30,21 @@ class BatchTrialRuns {
   /// every passage, m. A group of one speed also runs over the tracks of the scene's sweep, as many as there are lanes,
   /// with its own track last.
   /// previous: trial runs whose damping is used here too if the bridge is the same; they must outlive this object.
-  BatchTrialRuns(Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
+  BatchTrialRuns(scene::Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
                  const BatchTrialRuns* previous = nullptr);
 
   /// The results of a model's runs, which are stored. Throws Refused if the runs cannot be computed in batches.
-  const std::vector<engine::BatchResult>& run(const NumericalModel& model);
+  const std::vector<engine::BatchResult>& run(const scene::NumericalModel& model);
   /// Computes the models that are not stored yet, each in its own thread.
-  void run_at_once(std::span<const NumericalModel> models);
+  void run_at_once(std::span<const scene::NumericalModel> models);
   /// The first frequency of the bridge, rad/s, with the mesh of this model or an earlier one.
-  double first_omega(const NumericalModel& model) {
+  double first_omega(const scene::NumericalModel& model) {
     setup(model);
     return first_omega_;
   }
   /// The largest CaseBatch::residual of a model's stored runs.
-  double residual(const NumericalModel& model) const;
-  const Scene& scene() const { return scene_; }
+  double residual(const scene::NumericalModel& model) const;
+  const scene::Scene& scene() const { return scene_; }
 
   struct Refused {
     std::string why;
@@ -52,33 +52,33 @@ class BatchTrialRuns {
 
  private:
   struct Setup {
-    Scene scene;
-    std::optional<SharedBeam> shared;
-    std::unique_ptr<CaseBatch> lanes;
+    scene::Scene scene;
+    std::optional<run::SharedBeam> shared;
+    std::unique_ptr<ensemble::CaseBatch> lanes;
   };
   struct StoredRuns {
-    NumericalModel model;
+    scene::NumericalModel model;
     std::vector<engine::BatchResult> results;
     double residual = 0.0;
   };
-  const StoredRuns* find(const NumericalModel& model) const;
-  void check_memory(const NumericalModel& model) const;
-  CaseBatch::Steps steps_of(const NumericalModel& model) const;
-  std::vector<engine::BatchResult> run_all(const std::vector<CaseBatch::Ready>& groups,
-                                           const CaseBatch::Steps& steps) const;
-  Setup& setup(const NumericalModel& model);
+  const StoredRuns* find(const scene::NumericalModel& model) const;
+  void check_memory(const scene::NumericalModel& model) const;
+  ensemble::CaseBatch::Steps steps_of(const scene::NumericalModel& model) const;
+  std::vector<engine::BatchResult> run_all(const std::vector<ensemble::CaseBatch::Ready>& groups,
+                                           const ensemble::CaseBatch::Steps& steps) const;
+  Setup& setup(const scene::NumericalModel& model);
   /// The damping of the first mesh, used for all meshes.
   std::optional<beam::Rayleigh> damping() const {
     return !damping_ && previous_ != nullptr ? previous_->damping_ : damping_;
   }
 
-  Scene scene_;
+  scene::Scene scene_;
   const BatchTrialRuns* previous_;
-  std::vector<std::vector<LaneRun>> groups_;
+  std::vector<std::vector<ensemble::LaneRun>> groups_;
   std::map<int, std::unique_ptr<Setup>> setups_;  // the key is the number of elements
   std::deque<StoredRuns> stored_;                 // a deque, because references to entries must remain valid
   std::optional<beam::Rayleigh> damping_;
   double first_omega_ = 0.0;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -27,7 +27,7 @@
 #include "run/scene_digest.hpp"
 #include "scene/limits.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr const char* folder_name = ".traverse_choices";
@@ -50,7 +50,7 @@ std::string build() {
 bool within(double value, double least, double most) { return value >= least && value <= most; }
 
 bool is_integrator(const std::string& name) {
-  return name.empty() || structure::find_method(name) != nullptr || integrate::find_petsc_type(name) != nullptr;
+  return name.empty() || base::find_method(name) != nullptr || integrate::find_petsc_type(name) != nullptr;
 }
 
 /// Whether a file is a cache file, or an empty one that an interrupted write left.
@@ -62,20 +62,20 @@ bool is_cache_file(const std::string& path) {
 
 }  // namespace
 
-bool is_possible(const Choice& choice, const Scene& scene) {
+bool is_possible(const Choice& choice, const scene::Scene& scene) {
   constexpr double largest = std::numeric_limits<double>::max(), endless = std::numeric_limits<double>::infinity();
-  const NumericalModel& model = choice.model;
+  const scene::NumericalModel& model = choice.model;
   const double most = !scene.beam         ? 0.0
                       : scene.beam->track ? max_in_a_bay
-                                          : most_elements / static_cast<double>(scene.beam->spans.size());
-  return within(model.elements, scene.beam ? 1.0 : 0.0, most) && within(model.modes, 0, most_elements) &&
+                                          : scene::most_elements / static_cast<double>(scene.beam->spans.size());
+  return within(model.elements, scene.beam ? 1.0 : 0.0, most) && within(model.modes, 0, scene::most_elements) &&
          (!model.step || within(*model.step, options::least_quantity, scene.end_time.value_or(largest))) &&
-         is_integrator(model.method) && model.vehicles <= VehicleModel::automatic &&
+         is_integrator(model.method) && model.vehicles <= scene::VehicleModel::automatic &&
          within(model.residual_limit, 0.0, endless) && within(model.trial_distance, 0.0, endless) &&
          within(model.window_tolerance, -1.0, largest) && within(choice.low_pass.value_or(0.0), 0.0, largest);
 }
 
-bool ChoiceCache::read(const Scene& scene, std::vector<std::string>& notes, Choice& choice) const {
+bool ChoiceCache::read(const scene::Scene& scene, std::vector<std::string>& notes, Choice& choice) const {
   if (content_.empty()) return false;
   Choice found;
   std::vector<std::string> stored_notes;
@@ -101,14 +101,14 @@ void ChoiceCache::write(std::vector<std::string>& notes, Choice& choice) {
   write_file(bytes.written());
 }
 
-ChoiceCache::ChoiceCache(MPI_Comm comm, const Scene& scene) {
+ChoiceCache::ChoiceCache(MPI_Comm comm, const scene::Scene& scene) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   writes_ = rank == 0;
-  if (scene.output.file.empty() || !scene.accuracy_cache || has_own_contact_law(scene)) return;
+  if (scene.output.file.empty() || !scene.accuracy_cache || scene::has_own_contact_law(scene)) return;
   const std::string own_build = build();
   if (own_build.empty()) return;  // all ranks have the same own_build
-  const std::string key = digest_of(scene, free_options, options::inputs_read(), own_build);
+  const std::string key = run::digest_of(scene, free_options, options::inputs_read(), own_build);
   const std::filesystem::path folder = std::filesystem::path(scene.output.file).parent_path() / folder_name;
   std::error_code ignored;
   if (!std::filesystem::is_symlink(folder, ignored)) path_ = (folder / key).string();
@@ -148,4 +148,4 @@ void ChoiceCache::write_file(const std::string& bytes) const {
   if (!renamed) (void)unlink(temporary.c_str());
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

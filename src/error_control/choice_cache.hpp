@@ -10,19 +10,19 @@
 #include "error_control/model_choice.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 /// Whether a choice is within the ranges that the search itself respects.
-bool is_possible(const Choice& choice, const Scene& scene);
+bool is_possible(const Choice& choice, const scene::Scene& scene);
 
 class ChoiceCache {
  public:
   /// Collective. The cache entry of this scene for this build of the program. Scenes without a results file, or with
   /// `accuracy_cache` false, have none.
-  ChoiceCache(MPI_Comm comm, const Scene& scene);
+  ChoiceCache(MPI_Comm comm, const scene::Scene& scene);
 
   /// Reads the stored choice with its notes. False if there is none, or if it is not possible for the scene.
-  bool read(const Scene& scene, std::vector<std::string>& notes, Choice& choice) const;
+  bool read(const scene::Scene& scene, std::vector<std::string>& notes, Choice& choice) const;
   /// Stores the choice with its notes. Failures to write are ignored.
   void write(std::vector<std::string>& notes, Choice& choice);
 
@@ -39,4 +39,4 @@ class ChoiceCache {
   std::string content_;  // stored content; empty: none
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

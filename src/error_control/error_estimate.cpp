@@ -7,7 +7,7 @@
 
 #include "run/extrapolation_check.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr const char* what_to_do =
@@ -35,8 +35,8 @@ bool report_row(const std::string& name, const ErrorEstimate& estimate, double w
   return !exceeded;
 }
 
-std::string not_estimated(Quantity quantity, const ErrorEstimate& estimate) {
-  return fmt::format("error not estimated: {}: {}", quantity_names[quantity], estimate.why_not);
+std::string not_estimated(run::Quantity quantity, const ErrorEstimate& estimate) {
+  return fmt::format("error not estimated: {}: {}", run::quantity_names[quantity], estimate.why_not);
 }
 
 void Accuracy::reject_all() {
@@ -46,7 +46,7 @@ void Accuracy::reject_all() {
 
 void Accuracy::merge(const Accuracy& other) {
   measured = measured && other.measured;
-  for (std::size_t q = 0; q < quantities; ++q) {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
     estimates[q].accepted &= other.estimates[q].accepted;
     estimates[q].expected = std::max(estimates[q].expected, other.estimates[q].expected);
   }
@@ -75,14 +75,14 @@ std::string Accuracy::invalidate_by_new_event(const std::string& what) {
 
 // Within a step a curve of frequency omega changes its slope by (omega h)^2, and its error is (omega h)^4.
 std::string Accuracy::invalidate_if_rougher(double times, double wanted) {
-  if (!measured || !(times > ExtrapolationCheck::smooth)) return {};
+  if (!measured || !(times > run::ExtrapolationCheck::smooth)) return {};
   std::string names;
-  for (std::size_t q = 0; q < quantities; ++q) {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
     ErrorEstimate& estimate = estimates[q];
     if (!estimate.present || !estimate.accepted) continue;
     estimate.expected *= times * times;
     estimate.accepted = estimate.expected <= wanted;
-    if (!estimate.accepted) names += fmt::format("{}{}", names.empty() ? "" : ", ", quantity_names[q]);
+    if (!estimate.accepted) names += fmt::format("{}{}", names.empty() ? "" : ", ", run::quantity_names[q]);
   }
   if (names.empty()) return {};
   return fmt::format(
@@ -92,7 +92,7 @@ std::string Accuracy::invalidate_if_rougher(double times, double wanted) {
 }
 
 std::string Accuracy::invalidate_at_end(bool unsettled) {
-  ErrorEstimate& estimate = estimates[low_passed];
+  ErrorEstimate& estimate = estimates[run::low_passed];
   if (!unsettled || !measured || !estimate.present || !estimate.accepted) return {};
   estimate.accepted = false;
   return "error estimate withdrawn: low-passed acceleration: its peak is at the end of the run, where the filter "
@@ -101,9 +101,9 @@ std::string Accuracy::invalidate_at_end(bool unsettled) {
 
 std::vector<std::pair<std::string, double>> Accuracy::expected() const {
   std::vector<std::pair<std::string, double>> list;
-  for (std::size_t q = 0; q < quantities; ++q) {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
     if (!measured || !estimates[q].present || !estimates[q].accepted) continue;
-    list.emplace_back(stored_names[q], estimates[q].expected);
+    list.emplace_back(run::stored_names[q], estimates[q].expected);
   }
   for (std::size_t q = 0; q < multibody_quantities; ++q)
     if (measured && multibody[q].present && multibody[q].accepted)
@@ -112,4 +112,4 @@ std::vector<std::pair<std::string, double>> Accuracy::expected() const {
   return list;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -10,7 +10,7 @@
 #include "base/bytes.hpp"
 #include "run/quantity.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 /// The error estimate of one quantity's peak.
 struct ErrorEstimate {
@@ -29,7 +29,7 @@ bool report_row(const std::string& name, const ErrorEstimate& estimate, double w
 void report_head(const std::string& against, const std::string& of);
 
 /// The note that a quantity has no accepted error estimate, with the reason.
-std::string not_estimated(Quantity quantity, const ErrorEstimate& estimate);
+std::string not_estimated(run::Quantity quantity, const ErrorEstimate& estimate);
 
 /// Quantities of a scene without a bridge: largest errors at any instant, relative to the largest displacement from the
 /// start or the largest force.
@@ -39,7 +39,7 @@ inline constexpr std::array<const char*, multibody_quantities> multibody_names =
 
 struct Accuracy {
   bool measured = false;  // false: mesh and step were prescribed, or the scene has no measurable quantity
-  std::array<ErrorEstimate, quantities> estimates;
+  std::array<ErrorEstimate, run::quantities> estimates;
   std::array<ErrorEstimate, multibody_quantities> multibody;  // without a bridge
   ErrorEstimate frequencies;                                  // estimate for natural frequencies
   bool lost_contact = false;                                  // wheels lost contact in trial runs
@@ -70,4 +70,4 @@ struct Accuracy {
   }
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

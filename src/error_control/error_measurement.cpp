@@ -7,7 +7,16 @@
 #include "error_control/search_constants.hpp"
 #include "run/plan.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using run::acceleration;
+using run::axial_displacement;
+using run::axial_force;
+using run::low_passed;
+using run::moment;
+using run::quantities;
+using run::wheel_force;
+
 namespace {
 
 /// Whether supports have dampers that act only in contact, so that accelerations jump.
@@ -21,7 +30,7 @@ bool has_contact_dampers(const beam::Foundation& foundation) {
 }
 
 /// A mesh between this one and half of it, with nodes at the springs if this one has them; otherwise half of it.
-int mesh_in_between(const Scene& scene, int mesh) {
+int mesh_in_between(const scene::Scene& scene, int mesh) {
   const int between = 2 * (3 * mesh / 8);
   return between > mesh / 2 && (aligned(scene, between) || !aligned(scene, mesh)) ? between : mesh / 2;
 }
@@ -36,10 +45,10 @@ double halving_factor(int mesh, int between) {
 
 // Also measures a given mesh or step if coarser ones exist for comparison.
 void ModelSearch::measure() {
-  const ResponseExtremes& fine = trials_.run(mesh_, step_);
+  const run::ResponseExtremes& fine = trials_.run(mesh_, step_);
   Errors time = time_, space = space_;
   for (std::size_t i = 0; i < quantities; ++i) {
-    const auto q = static_cast<Quantity>(i);
+    const auto q = static_cast<run::Quantity>(i);
     const bool filtered =
         q == low_passed && is_controlled(scene_, q);  // present even if a run that ends early has no settled peak
     const bool axial = q == axial_displacement || q == axial_force;  // close to rounding errors, unless controlled
@@ -56,15 +65,15 @@ void ModelSearch::measure() {
 
 // Contact forces of impacts are pulses: two steps may agree by chance.
 void ModelSearch::count_agreements() {
-  const auto agrees = [&](Quantity q) { return !has_estimate(q) || time_[q].change <= scene_.accuracy; };
+  const auto agrees = [&](run::Quantity q) { return !has_estimate(q) || time_[q].change <= scene_.accuracy; };
   if (!trials_.lost_contact() || !open_step_)
     impact_agreement_ = search::required_agreements;
   else
     impact_agreement_ = agrees(acceleration) && agrees(wheel_force) && agrees(low_passed) ? impact_agreement_ + 1 : 0;
 }
 
-ErrorModel ModelSearch::error_in_time(Quantity q) {
-  const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
+ErrorModel ModelSearch::error_in_time(run::Quantity q) {
+  const double change = run::difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
   // Without damping a moment is a sum of 1/n^2 over all modes, of which a step resolves those below a frequency: two
   // steps may agree although both neglect the same part.
   const bool sums = q == moment && undamped_;
@@ -73,15 +82,15 @@ ErrorModel ModelSearch::error_in_time(Quantity q) {
   return error_from((sums ? search::undamped_sum : 1.0) * growth_ * change, step_, time_[q], most);
 }
 
-double ModelSearch::change_by_mesh(int other, double step, Quantity q, const std::string& integrator) {
-  const ResponseExtremes& rough = trials_.run(other, step, integrator);
-  return std::pow(growth_, 0.75) * difference(rough, trials_.run(mesh_, step, integrator), q, 3.0 * step);
+double ModelSearch::change_by_mesh(int other, double step, run::Quantity q, const std::string& integrator) {
+  const run::ResponseExtremes& rough = trials_.run(other, step, integrator);
+  return std::pow(growth_, 0.75) * run::difference(rough, trials_.run(mesh_, step, integrator), q, 3.0 * step);
 }
 
 // Uses twice the step at half the cost, because the error in time needs these runs too. A step that passes more than
 // one element would hide the error of the mesh. Along a track, where more elements cost more than a trial run, the step
 // itself is tried before the mesh is refined, because long steps overestimate the error of the mesh.
-ErrorModel ModelSearch::error_in_space(Quantity q) {
+ErrorModel ModelSearch::error_in_space(run::Quantity q) {
   const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
   // Without damping the contact's vibration excites different modes of different meshes: the error is not regular.
   // At small accuracies the mesh error of an acceleration and of a wheel force depends on the positions of the nodes.
@@ -96,7 +105,7 @@ ErrorModel ModelSearch::error_in_space(Quantity q) {
   };
   const double most = q == low_passed && undamped_ ? 1.0 : max_order;
   const auto error = [&](double step) { return error_from(change(step), 1.0 / mesh_, space_[q], most); };
-  if (!open_step_ || 2.0 * step_ * greatest_speed(scene_) >= element) return error(step_);
+  if (!open_step_ || 2.0 * step_ * scene::greatest_speed(scene_) >= element) return error(step_);
   const ErrorModel long_step_error = error(2.0 * step_);
   const bool uses_own_step = scene_.beam->track && has_estimate(q) && long_step_error.value > allowed(space_, q);
   return uses_own_step ? error(step_) : long_step_error;
@@ -133,11 +142,11 @@ bool ModelSearch::is_cheap() const {
 
 /// The difference between the peaks with a time step and the peaks with the finest step. If runs are cheap, the larger
 /// difference of this step and a slightly shorter step is returned, because shorter steps end at other positions.
-double ModelSearch::change_by_step(double step, double finest, Quantity q) {
-  const ResponseExtremes& fine = trials_.run(mesh_, finest);
-  double change = step == finest ? 0.0 : difference(trials_.run(mesh_, step), fine, q, 3.0 * step);
+double ModelSearch::change_by_step(double step, double finest, run::Quantity q) {
+  const run::ResponseExtremes& fine = trials_.run(mesh_, finest);
+  double change = step == finest ? 0.0 : run::difference(trials_.run(mesh_, step), fine, q, 3.0 * step);
   if (is_cheap())
-    change = std::max(change, difference(trials_.run(mesh_, search::shifted_step * step), fine, q, 3.0 * step));
+    change = std::max(change, run::difference(trials_.run(mesh_, search::shifted_step * step), fine, q, 3.0 * step));
   return growth_ * change;
 }
 
@@ -145,7 +154,7 @@ double ModelSearch::change_by_step(double step, double finest, Quantity q) {
 void ModelSearch::measure_shifted_steps() {
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!open_step_ || !has_estimate(q)) continue;
-    const double change = change_by_step(step_, step_, static_cast<Quantity>(q));
+    const double change = change_by_step(step_, step_, static_cast<run::Quantity>(q));
     if (change <= std::max(allowed_error_, time_[q].value)) continue;
     time_[q].value = change;
     time_[q].order = search::least_order;
@@ -210,4 +219,4 @@ bool ModelSearch::is_affordable(double step, int mesh) const {
                   (scene_.accuracy_whole ? search::part_of_run_whole : search::part_of_run) * run);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -7,7 +7,7 @@
 
 #include "error_control/search_constants.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr double max_ratio = 1e3;
@@ -40,4 +40,4 @@ ErrorModel error_from(double change, double size, const ErrorModel& before, doub
   return error;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

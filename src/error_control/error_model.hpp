@@ -5,7 +5,7 @@
 
 #include "error_control/search_constants.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 /// The error of a run, relative to the peak: value * (size/size_of_run)^power.
 struct ErrorModel {
@@ -31,4 +31,4 @@ struct ErrorModel {
 /// much smaller than before that it must be accidental is corrected. max_order: the largest possible order.
 ErrorModel error_from(double change, double size, const ErrorModel& before, double max_order = search::full_order);
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -17,7 +17,7 @@
 
 #pragma GCC diagnostic error "-Wswitch"  // each switch over contact::LawKind has a case for every kind
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr int first_bay = 2;
@@ -42,8 +42,8 @@ double contact_angle_of(double accuracy) {
 
 /// Whether the vibration of wheels on their contacts is not excited or negligible. With a layered track the rail
 /// continues over the bridge's ends, and the deflection under the wheels moves with them from the start.
-bool contact_unexcited(const Scene& scene) {
-  return scene.beam->track && (scene.accuracy >= coarse_accuracy || std::isinf(shortest_wave(scene)));
+bool contact_unexcited(const scene::Scene& scene) {
+  return scene.beam->track && (scene.accuracy >= coarse_accuracy || std::isinf(scene::shortest_wave(scene)));
 }
 
 /// The fastest decay of bending on the beam's beds, 1/m, and the option that causes it. Vertical point springs count as
@@ -70,18 +70,18 @@ Decay decay_of(const beam::BeamModel& beam) {
 
 /// Calls visit(vehicle, wheel, the wheel's share of the vehicle's weight, N).
 template <class Visit>
-void for_all_wheels(const Scene& scene, Visit visit) {
+void for_all_wheels(const scene::Scene& scene, Visit visit) {
   for (const int index : scene.train.vehicles) {
-    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(index)];
+    const train::Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(index)];
     double mass = 0.0;
     for (const multibody::Body& body : vehicle.mechanism.bodies) mass += body.mass;
-    for (const Wheel& wheel : vehicle.wheels)
+    for (const train::Wheel& wheel : vehicle.wheels)
       visit(vehicle, wheel, mass * scene.gravity / static_cast<double>(vehicle.wheels.size()));
   }
 }
 
 /// The contact stiffness under the wheel's share of the weight, N/m.
-double contact_stiffness(const Wheel& wheel, double weight) {
+double contact_stiffness(const train::Wheel& wheel, double weight) {
   switch (wheel.law.kind) {
     case contact::LawKind::hertz:
       return 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2));
@@ -94,13 +94,13 @@ double contact_stiffness(const Wheel& wheel, double weight) {
   return wheel.law.elastic->stiffness(contact::static_penetration(wheel.law, weight));
 }
 
-double mass_of(const Vehicle& vehicle, const Wheel& wheel) {
+double mass_of(const train::Vehicle& vehicle, const train::Wheel& wheel) {
   return vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].mass;
 }
 
 }  // namespace
 
-int first_mesh(const Scene& scene) {
+int first_mesh(const scene::Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   if (beam.track) return first_bay;
   const int wanted = scene.accuracy >= 3e-3 ? 8 : scene.accuracy >= 3e-4 ? 16 : 32;
@@ -115,9 +115,9 @@ int first_mesh(const Scene& scene) {
   return std::max(wanted, 4 * base::whole(std::ceil(0.25 * elements_per_wave * longest * decay), max_in_a_span / 4));
 }
 
-double contact_frequency(const Scene& scene, bool with_springs) {
+double contact_frequency(const scene::Scene& scene, bool with_springs) {
   double highest = 0.0;
-  for_all_wheels(scene, [&](const Vehicle& vehicle, const Wheel& wheel, double weight) {
+  for_all_wheels(scene, [&](const train::Vehicle& vehicle, const train::Wheel& wheel, double weight) {
     double stiffness = contact_stiffness(wheel, weight);
     for (const multibody::Spring& spring : vehicle.mechanism.springs)
       if (with_springs && (spring.bodies[0] == wheel.body || spring.bodies[1] == wheel.body))
@@ -127,23 +127,23 @@ double contact_frequency(const Scene& scene, bool with_springs) {
   return std::sqrt(highest);
 }
 
-bool pushes_along(const Scene& scene) {
+bool pushes_along(const scene::Scene& scene) {
   if (!scene.beam || !scene.beam->axial) return false;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
     if (drive_of(scene.train, i) != train::Drive::constant || !law_of(scene.train, i).constant()) return true;
   return false;
 }
 
-double force_rate_after_load(const Scene& scene) {
+double force_rate_after_load(const scene::Scene& scene) {
   double largest = 0.0;
-  for_all_wheels(scene, [&](const Vehicle& vehicle, const Wheel& wheel, double weight) {
+  for_all_wheels(scene, [&](const train::Vehicle& vehicle, const train::Wheel& wheel, double weight) {
     const double stiffness = contact_stiffness(wheel, weight);
     largest = std::max(largest, stiffness * std::sqrt(stiffness / mass_of(vehicle, wheel)) / weight);
   });
   return largest;
 }
 
-FirstSteps first_steps(const Scene& scene, double omega, double duration) {
+FirstSteps first_steps(const scene::Scene& scene, double omega, double duration) {
   double step = part_of_run * duration;
   std::string why = "a part of the run";
   const auto limit_step = [&](double largest, double what, const char* text) {
@@ -154,23 +154,23 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
   const double period = omega > 0.0 ? 2.0 * std::numbers::pi / omega : 0.0, of_period = period / trial_steps_per_period;
   const bool resolves_period = !scene.train.vehicles.empty() || duration <= max_steps_by_period * of_period;
   if (omega > 0.0 && resolves_period) limit_step(of_period, period, "the first period of the beam is");
-  if (const double speed = greatest_speed(scene); speed > 0.0) {
+  if (const double speed = scene::greatest_speed(scene); speed > 0.0) {
     const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
-    const double wave = shortest_wave(scene);
+    const double wave = scene::shortest_wave(scene);
     limit_step(span / speed / steps_per_crossing, span / speed, "the shortest span is crossed in");
     limit_step(wave / speed / trial_steps_per_wave, wave / speed, "the shortest wave of track and wheels is passed in");
   }
-  if (const double frequency = scene.output.low_pass.value_or(0.0); frequency > 0.0 && filters_deck(scene))
-    limit_step(longest_spacing_for(frequency), 1.0 / frequency, "accelerations are filtered at the period of");
+  if (const double frequency = scene.output.low_pass.value_or(0.0); frequency > 0.0 && run::filters_deck(scene))
+    limit_step(run::longest_spacing_for(frequency), 1.0 / frequency, "accelerations are filtered at the period of");
   if (const double frequency = highest_load_frequency(scene.load); frequency > 0.0)
     limit_step(1.0 / frequency / trial_steps_per_period, 1.0 / frequency, "the loads vary with the period of");
   if (scene.output.interval) limit_step(*scene.output.interval, *scene.output.interval, "output_interval is");
   if (omega > 0.0 && !resolves_period && of_period < step / max_step_ratio)
     return {step / max_step_ratio, step, "forces move slowly over the beam", of_period};
   const double contact = contact_frequency(scene);
-  if (scene.beam->track && greatest_speed(scene) > 0.0 && (contact == 0.0 || contact_unexcited(scene))) {
+  if (scene.beam->track && scene::greatest_speed(scene) > 0.0 && (contact == 0.0 || contact_unexcited(scene))) {
     const double steps = steps_per_sleeper * std::pow(std::min(scene.accuracy / coarse_accuracy, 1.0), -sleeper_power);
-    const double sleeper = scene.beam->track->spacing / greatest_speed(scene) / steps;
+    const double sleeper = scene.beam->track->spacing / scene::greatest_speed(scene) / steps;
     if (sleeper >= step) return {step, step, why};
     // A halving of the longest step, because these are the steps that the search tries.
     return {step * std::exp2(-std::round(std::log2(step / sleeper))), step, "the sleepers are passed quickly"};
@@ -182,8 +182,8 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
           fmt::format("wheels vibrate on their contacts at {:.3g} Hz", contact / (2.0 * std::numbers::pi))};
 }
 
-bool resolves_contacts(const Scene& scene, double step) {
+bool resolves_contacts(const scene::Scene& scene, double step) {
   return contact_unexcited(scene) || step * contact_frequency(scene) <= 2.0 * contact_angle;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -9,7 +9,7 @@
 #include "error_control/trial_runs.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr double steps_per_sample =
@@ -18,26 +18,26 @@ constexpr double max_shift = 3.0;  // steps: largest time difference between the
 
 }  // namespace
 
-double default_residual_limit(const Scene& scene) { return search::share_of_linear * scene.accuracy; }
+double default_residual_limit(const scene::Scene& scene) { return search::share_of_linear * scene.accuracy; }
 
-bool may_exceed(double residual, const Scene& scene) {
+bool may_exceed(double residual, const scene::Scene& scene) {
   return search::max_growth * residual > default_residual_limit(scene);
 }
 
-double measured_residual_limit(MPI_Comm comm, Scene scene) {
+double measured_residual_limit(MPI_Comm comm, scene::Scene scene) {
   scene.output.interval = steps_per_sample * *scene.model.step;
   scene.model.residual_limit = std::numeric_limits<double>::infinity();
-  const auto run = [&](VehicleModel vehicles) {
+  const auto run = [&](scene::VehicleModel vehicles) {
     scene.model.vehicles = vehicles;
     return peaks_of(comm, scene);
   };
   try {
-    const RunPeaks linear = run(VehicleModel::linear), mechanisms = run(VehicleModel::full);
+    const RunPeaks linear = run(scene::VehicleModel::linear), mechanisms = run(scene::VehicleModel::full);
     double error = 0.0;
-    for (std::size_t q = 0; q < quantities; ++q)
+    for (std::size_t q = 0; q < run::quantities; ++q)
       if (is_controlled(scene, q))
-        error = std::max(
-            error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q), max_shift * *scene.model.step));
+        error = std::max(error, run::difference(linear.peaks, mechanisms.peaks, static_cast<run::Quantity>(q),
+                                                max_shift * *scene.model.step));
     const double allowed = default_residual_limit(scene);
     if (error > allowed) return allowed;
     return std::max(allowed,
@@ -47,4 +47,4 @@ double measured_residual_limit(MPI_Comm comm, Scene scene) {
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

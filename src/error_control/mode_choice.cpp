@@ -19,7 +19,11 @@
 #include "results/stage.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using ensemble::CaseResult;
+using scene::Scene;
+
 namespace {
 
 constexpr std::size_t runs_per_sample = 10, max_samples = 9, min_runs = 2 * runs_per_sample;
@@ -44,8 +48,8 @@ double difference_low_passed(const Scene& scene, const CaseResult& modes, const 
 double greatest_difference(const Scene& scene, const CaseResult& one, const CaseResult& other,
                            const Accuracy* accuracy = nullptr) {
   PeakErrors errors = difference(scene, one, other);
-  if (is_controlled(scene, low_passed)) errors[low_passed] = difference_low_passed(scene, one, other);
-  for (std::size_t q = 0; q < quantities; ++q)
+  if (is_controlled(scene, run::low_passed)) errors[run::low_passed] = difference_low_passed(scene, one, other);
+  for (std::size_t q = 0; q < run::quantities; ++q)
     if (accuracy != nullptr && !accuracy->estimates[q].accepted) errors[q] = 0.0;
   return greatest(errors);
 }
@@ -58,7 +62,7 @@ bool modes_allowed(const Scene& scene) {
 
 bool is_worth_trying(const Scene& scene, const Accuracy& accuracy) {
   if (!scene.modes_open || !accuracy.measured || !modes_allowed(scene)) return false;
-  for (const Quantity q : {deflection, moment, low_passed})
+  for (const run::Quantity q : {run::deflection, run::moment, run::low_passed})
     if (is_controlled(scene, q) && !accuracy.estimates[q].accepted) return false;
   return scene.sweep->speeds.size() * std::max<std::size_t>(1, scene.sweep->loads.size()) >= min_runs;
 }
@@ -70,7 +74,7 @@ struct Sample {
 };
 
 /// Passages from the slowest to the fastest speed, over all trains in turn.
-std::vector<Sample> samples_of(const CaseRunner& runner, std::size_t most) {
+std::vector<Sample> samples_of(const ensemble::CaseRunner& runner, std::size_t most) {
   const std::vector<double>& speeds = runner.speeds();
   const std::size_t count = std::min(most, speeds.size() * runner.trains() / runs_per_sample);
   std::vector<Sample> samples;
@@ -79,7 +83,7 @@ std::vector<Sample> samples_of(const CaseRunner& runner, std::size_t most) {
   return samples;
 }
 
-std::vector<CaseResult> run_all(CaseRunner& runner, const std::vector<Sample>& samples) {
+std::vector<CaseResult> run_all(ensemble::CaseRunner& runner, const std::vector<Sample>& samples) {
   std::vector<CaseResult> results;
   for (const Sample& s : samples) results.push_back(runner.run(s.train, {s.speed, {}}));
   return results;
@@ -90,10 +94,10 @@ class ModalSamples {
  public:
   explicit ModalSamples(Scene scene) : scene_(std::move(scene)) {}
 
-  CaseRunner& runner(int modes) {
-    std::unique_ptr<CaseRunner>& runner = runners_[modes];
+  ensemble::CaseRunner& runner(int modes) {
+    std::unique_ptr<ensemble::CaseRunner>& runner = runners_[modes];
     scene_.model.modes = modes;
-    if (!runner) runner = std::make_unique<CaseRunner>(scene_, ignored_);
+    if (!runner) runner = std::make_unique<ensemble::CaseRunner>(scene_, ignored_);
     return *runner;
   }
   const std::vector<CaseResult>& results(int modes) {
@@ -105,7 +109,7 @@ class ModalSamples {
  private:
   Scene scene_;
   std::vector<std::string> ignored_;
-  std::map<int, std::unique_ptr<CaseRunner>> runners_;
+  std::map<int, std::unique_ptr<ensemble::CaseRunner>> runners_;
   std::map<int, std::vector<CaseResult>> results_;
 };
 
@@ -131,7 +135,7 @@ ModesChoice choose_mode_count(const Scene& scene, const Accuracy& accuracy, std:
   const results::Stage stage("trial runs by modes and by elements");
   try {
     std::vector<std::string> ignored;
-    CaseRunner elements(scene, ignored);
+    ensemble::CaseRunner elements(scene, ignored);
     ModalSamples by_modes(scene);
     for (const int number : {2, 3, 4, 6, 8, 12, 16, 24, 32}) {
       if (by_modes.runner(2 * number).cost() > elements.cost()) return {};
@@ -161,16 +165,16 @@ std::optional<QuickerModes> quicker_modes(const Scene& scene) {
   if (!modes_allowed(scene) || scene.model.modes > 0) return std::nullopt;
   try {
     std::vector<std::string> ignored;
-    const SharedBeam shared(PETSC_COMM_SELF, scene, ignored);
+    const run::SharedBeam shared(PETSC_COMM_SELF, scene, ignored);
     if (shared.beam->mesh().nodes() > max_nodes) return std::nullopt;
     const QuickerModes required = required_modes(*shared.beam);
     Scene by_modes = scene;
     by_modes.model.modes = required.modes;
-    const CaseRunner runner(by_modes, ignored);
+    const ensemble::CaseRunner runner(by_modes, ignored);
     return QuickerModes{required.modes, required.frequency, runner.cost_of_all()};
   } catch (const Error&) {
     return std::nullopt;  // for example a floating bridge
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

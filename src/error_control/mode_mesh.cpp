@@ -17,7 +17,7 @@
 #include "results/stage.hpp"
 #include "run/shared_beam.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr int first_in_span = 16, first_in_bay = 4, max_in_bay = 16;
@@ -28,16 +28,16 @@ constexpr double min_order = 1.0;
 
 class Frequencies {
  public:
-  Frequencies(MPI_Comm comm, const Scene& scene) : comm_(comm), scene_(scene) {}
+  Frequencies(MPI_Comm comm, const scene::Scene& scene) : comm_(comm), scene_(scene) {}
 
   /// The frequencies of a mesh with this number of elements in a span (or sleeper bay), rad/s.
   const std::vector<double>& of(int elements) {
     const auto known = frequencies_.find(elements);
     if (known != frequencies_.end()) return known->second;
-    Scene scene = scene_;
+    scene::Scene scene = scene_;
     set_mesh(scene, elements);
     std::vector<std::string> ignored;
-    const SharedBeam shared(comm_, scene, ignored);
+    const run::SharedBeam shared(comm_, scene, ignored);
     return frequencies_[elements] = modes::natural_modes(*shared.beam, scene.mode_count, false).omega;
   }
 
@@ -59,22 +59,22 @@ class Frequencies {
 
  private:
   MPI_Comm comm_;
-  const Scene& scene_;
+  const scene::Scene& scene_;
   std::map<int, std::vector<double>> frequencies_;
 };
 
-bool too_many(const Scene& scene, int elements) {
+bool too_many(const scene::Scene& scene, int elements) {
   if (scene.beam->track) return elements > max_in_bay;
   return elements > max_in_span || elements * static_cast<double>(scene.beam->spans.size()) > max_in_all;
 }
 
 }  // namespace
 
-bool chooses_mode_mesh(const Scene& scene) {
-  return scene.analysis == Analysis::modes && scene.mesh_open && scene.beam && !scene.by_given_modes();
+bool chooses_mode_mesh(const scene::Scene& scene) {
+  return scene.analysis == options::Analysis::modes && scene.mesh_open && scene.beam && !scene.by_given_modes();
 }
 
-Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
+Choice choose_mode_mesh(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("search for the mesh of the modes");
   const auto begin = std::chrono::steady_clock::now();
   Choice choice{scene.model, {}, {}};
@@ -98,4 +98,4 @@ Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::stri
   return choice;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -9,13 +9,13 @@
 #include "error_control/accuracy.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 /// Whether the scene computes natural modes by elements whose number is open.
-bool chooses_mode_mesh(const Scene& scene);
+bool chooses_mode_mesh(const scene::Scene& scene);
 
 /// Collective. Halves elements until three meshes show that every frequency is within the scene's accuracy. Appends the
 /// mesh to `notes`, or the reason why the accuracy is not reached.
-Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
+Choice choose_mode_mesh(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes);
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -7,7 +7,10 @@
 #include "base/one_step_methods.hpp"
 #include "base/whole.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using scene::Scene;
+
 namespace {
 
 constexpr double same_node = 1e-9;
@@ -32,28 +35,28 @@ void Choice::keep(base::Bytes& bytes) {
         model.step_kinks, model.step_probes, accuracy, low_pass);
 }
 
-Scene with(Scene scene, const NumericalModel& model) {
+Scene with(Scene scene, const scene::NumericalModel& model) {
   scene.model = model;
   if (scene.beam && model.elements > 0 && (scene.mesh_open || model.elements != mesh_of(scene)))
     set_mesh(scene, model.elements);
   return scene;
 }
 
-Scene completed(Scene scene, NumericalModel chosen) {
+Scene completed(Scene scene, scene::NumericalModel chosen) {
   if (!scene.mesh_open) chosen.elements = 0;
   if (scene.model.step) chosen.step = scene.model.step;
   if (!scene.modes_open) chosen.modes = scene.model.modes;
   return with(std::move(scene), chosen);
 }
 
-NumericalModel finer(const NumericalModel& one, const NumericalModel& other) {
-  NumericalModel model = one;
+scene::NumericalModel finer(const scene::NumericalModel& one, const scene::NumericalModel& other) {
+  scene::NumericalModel model = one;
   model.modes = one.modes > 0 && other.modes > 0 ? std::max(one.modes, other.modes)
                                                  : 0;  // otherwise 0: elements, which are valid for both models
   model.elements = std::max(one.elements, other.elements);
   if (other.step && (!one.step || *other.step < *one.step)) model.step = other.step;
-  if (other.method != one.method) model.method = structure::methods().front().name;
-  if (other.vehicles == VehicleModel::full) model.vehicles = VehicleModel::full;
+  if (other.method != one.method) model.method = base::methods().front().name;
+  if (other.vehicles == scene::VehicleModel::full) model.vehicles = scene::VehicleModel::full;
   model.residual_limit = std::min(one.residual_limit, other.residual_limit);
   model.trial_distance = std::min(one.trial_distance, other.trial_distance);
   model.trials_lost_contact |= other.trials_lost_contact;
@@ -99,4 +102,4 @@ int mesh_of(const Scene& scene) {
                            : *std::max_element(scene.beam->elements.begin(), scene.beam->elements.end());
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

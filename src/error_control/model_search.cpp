@@ -18,7 +18,13 @@
 #include "run/deck_acceleration.hpp"
 #include "run/plan.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using run::acceleration;
+using run::low_passed;
+using run::quantities;
+using run::wheel_force;
+
 namespace {
 
 constexpr double max_windows = 10.0;  // initial windows: largest duration of trial runs that include later events
@@ -31,9 +37,9 @@ double two_digits(double x) {
   return std::floor(x / unit * (1.0 + 1e-9)) * unit;
 }
 
-double first_omega(const SharedBeam& shared) { return shared.omega ? shared.omega->first : 0.0; }
+double first_omega(const run::SharedBeam& shared) { return shared.omega ? shared.omega->first : 0.0; }
 
-int max_trial_elements(const Scene& scene) {
+int max_trial_elements(const scene::Scene& scene) {
   const int dense = search::max_in_all / static_cast<int>(std::min<std::size_t>(scene.beam->spans.size(), 1000));
   return std::max(scene.beam->track ? search::max_in_a_bay : std::clamp(dense, 32, search::max_in_a_span),
                   4 * mesh_of(scene));
@@ -41,7 +47,7 @@ int max_trial_elements(const Scene& scene) {
 
 }  // namespace
 
-ModelSearch::ModelSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end)
+ModelSearch::ModelSearch(MPI_Comm comm, const scene::Scene& scene, const run::SharedBeam& shared, double end)
     : comm_(comm),
       scene_(scene),
       end_(end),
@@ -84,8 +90,8 @@ double ModelSearch::trimmed_time() const {
 }
 
 /// The end of trial runs, s: the initial window, extended by the later events.
-double ModelSearch::window_end(const SharedBeam& shared) {
-  const Scene scene = trim_approach(scene_);
+double ModelSearch::window_end(const run::SharedBeam& shared) {
+  const scene::Scene scene = trim_approach(scene_);
   const double first = initial_window(scene, end_);
   const double step = scene_.model.step.value_or(first_steps(scene_, first_omega(shared), first).first);
   double until = first;
@@ -101,7 +107,7 @@ double ModelSearch::window_end(const SharedBeam& shared) {
   if (scene_.accuracy <= search::small_error && is_controlled(scene_, wheel_force))
     until =
         scene_.accuracy < search::small_error && has_undamped_vehicle(scene) ? end_ : extend_by_bounce(scene, until);
-  if (is_controlled(scene_, low_passed)) until += unsettled_end(*scene_.output.low_pass);
+  if (is_controlled(scene_, low_passed)) until += run::unsettled_end(*scene_.output.low_pass);
   const double whole = end_ - trimmed_time();
   return until < whole_run_share * whole ? until : whole;
 }
@@ -182,7 +188,7 @@ void ModelSearch::coarsen() {
     if (trials_.run(mesh_, step).failed()) return;  // errors of steps in between are unknown
     Errors longer = finest_;
     for (std::size_t q = 0; q < quantities; ++q)
-      longer[q].value += change_by_step(step, finest_step_, static_cast<Quantity>(q));
+      longer[q].value += change_by_step(step, finest_step_, static_cast<run::Quantity>(q));
     if (excess(longer, finest_, space_) > 1.0) {
       coarser_ = longer;
       return;
@@ -203,8 +209,8 @@ void ModelSearch::coarsen_mesh() {
   for (int mesh = finest_mesh / 2; mesh % 2 == 0; mesh /= 2) {
     Errors coarser = finest;
     for (std::size_t q = 0; q < quantities; ++q)
-      coarser[q].value += growth_ * difference(trials_.run(mesh, step_), trials_.run(finest_mesh, step_),
-                                               static_cast<Quantity>(q), 3.0 * step_);
+      coarser[q].value += growth_ * run::difference(trials_.run(mesh, step_), trials_.run(finest_mesh, step_),
+                                                    static_cast<run::Quantity>(q), 3.0 * step_);
     if (excess(coarser, finest, time_) > 1.0) return;
     mesh_ = mesh;
     space_ = coarser;
@@ -220,15 +226,16 @@ void ModelSearch::try_cheaper_methods() {
   const double usual = factor_of_step() * step_;
   const double run = trials_.seconds(base::whole(mesh_ / factor_of_elements()), usual) * end_ / window_;
   double spent = 0.0;
-  for (const structure::MethodRow& method : structure::methods().subspan(1))
+  for (const base::MethodRow& method : base::methods().subspan(1))
     for (const double factor : search::shorter_steps) {
       const double step = factor * usual;
       spent += trials_.seconds(mesh_, step, method.name);
       if (spent > search::trial_share_of_saving * run) return;
       Errors errors = finest_;
       for (std::size_t q = 0; q < quantities; ++q)
-        errors[q].value += growth_ * difference(trials_.run(mesh_, step, method.name), trials_.run(mesh_, finest_step_),
-                                                static_cast<Quantity>(q), 3.0 * step);
+        errors[q].value +=
+            growth_ * run::difference(trials_.run(mesh_, step, method.name), trials_.run(mesh_, finest_step_),
+                                      static_cast<run::Quantity>(q), 3.0 * step);
       double ratio = 0.0;  // relative to the share that the mesh leaves
       for (std::size_t q = 0; q < quantities; ++q)
         if (has_estimate(q))
@@ -270,7 +277,7 @@ void ModelSearch::check_predicted_mesh() {
     if (mesh > mesh_ && has_estimate(low_passed)) check_step_on(mesh);
     for (std::size_t q = 0; q < quantities; ++q) {
       if (!has_estimate(q)) continue;
-      const double change = change_by_mesh(mesh, step_, static_cast<Quantity>(q), integrator_);
+      const double change = change_by_mesh(mesh, step_, static_cast<run::Quantity>(q), integrator_);
       predicted_errors_[q] = mesh < mesh_ ? change : std::max(0.0, change - space_[q].value);
       accurate = accurate && !prediction_fails(q);
     }
@@ -280,7 +287,7 @@ void ModelSearch::check_predicted_mesh() {
     } else if (mesh == 2 * mesh_ || (2 * mesh_ <= max_elements_ && is_affordable(step_, 2 * mesh_))) {
       mesh_ *= 2;
       Errors space;
-      for (std::size_t q = 0; q < quantities; ++q) space[q] = error_in_space(static_cast<Quantity>(q));
+      for (std::size_t q = 0; q < quantities; ++q) space[q] = error_in_space(static_cast<run::Quantity>(q));
       space_ = space;
       measured_ = {step_, mesh_};
     } else {
@@ -297,11 +304,11 @@ void ModelSearch::check_predicted_mesh() {
 // tried.
 void ModelSearch::check_step_on(int mesh) {
   if (step_ == finest_step_ && integrator_.empty()) return;
-  const ResponseExtremes& fine = trials_.run(mesh, finest_step_);
+  const run::ResponseExtremes& fine = trials_.run(mesh, finest_step_);
   Errors time = time_;
   for (std::size_t q = 0; q < quantities; ++q) {
     const double change =
-        difference(trials_.run(mesh, step_, integrator_), fine, static_cast<Quantity>(q), 3.0 * step_);
+        run::difference(trials_.run(mesh, step_, integrator_), fine, static_cast<run::Quantity>(q), 3.0 * step_);
     time[q].value = std::max(time[q].value, finest_[q].value + growth_ * change);
   }
   if (excess(time, finest_, space_) > 1.0) {
@@ -363,4 +370,4 @@ Choice ModelSearch::choice() const {
   return choice;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -15,13 +15,13 @@
 #include "error_control/trial_runs.hpp"
 #include "run/shared_beam.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 class ModelSearch {
  public:
   /// The scene must have its Rayleigh damping as a and b. Scene and beam must outlive this object. end: end of the run,
   /// s.
-  ModelSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end);
+  ModelSearch(MPI_Comm comm, const scene::Scene& scene, const run::SharedBeam& shared, double end);
 
   /// Collective.
   void run();
@@ -33,9 +33,9 @@ class ModelSearch {
   double residual_limit() const { return trials_.residual_limit(); }  // limit for linear vehicles
 
  private:
-  using Errors = std::array<ErrorModel, quantities>;
+  using Errors = std::array<ErrorModel, run::quantities>;
   double trimmed_time() const;
-  double window_end(const SharedBeam& shared);
+  double window_end(const run::SharedBeam& shared);
   void refine();
   void search();
   void accept_damped_vibration();
@@ -48,9 +48,9 @@ class ModelSearch {
   void check_step_on(int mesh);
   bool prediction_fails(std::size_t q) const;
   /// The change of the peaks by another mesh, multiplied by its possible growth until the end of the run.
-  double change_by_mesh(int other, double step, Quantity q, const std::string& integrator = {});
+  double change_by_mesh(int other, double step, run::Quantity q, const std::string& integrator = {});
   bool is_cheap() const;
-  double change_by_step(double step, double finest, Quantity q);
+  double change_by_step(double step, double finest, run::Quantity q);
   void measure_shifted_steps();
   void measure();
   void count_agreements();
@@ -58,8 +58,8 @@ class ModelSearch {
     return std::max(search::coarsening_factor * allowed_error_, search::min_coarsening_limit);
   }
   double excess(const Errors& errors, const Errors& finest, const Errors& other) const;
-  ErrorModel error_in_time(Quantity q);
-  ErrorModel error_in_space(Quantity q);
+  ErrorModel error_in_time(run::Quantity q);
+  ErrorModel error_in_space(run::Quantity q);
   void reject(std::size_t q, std::string why);
   void reject_unconverged();
   void reject_inaccurate();
@@ -76,7 +76,7 @@ class ModelSearch {
   const char* unit_of_mesh() const { return scene_.beam->track ? "sleeper bay" : "span"; }
 
   MPI_Comm comm_;
-  const Scene& scene_;
+  const scene::Scene& scene_;
   double end_;               // end of the run, s
   std::string not_covered_;  // an event outside the trial runs, in words; empty: none
   double window_;            // duration of trial runs, s
@@ -90,18 +90,18 @@ class ModelSearch {
   double step_of_period_ = 0.0;  // s, resolves the beam's first period; 0: the first step does
   double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s
   double growth_ = 1.0;  // growth of errors after the trial runs, until free oscillations have decayed
-  std::array<ErrorEstimate, quantities> estimates_{};
-  std::array<bool, quantities>
+  std::array<ErrorEstimate, run::quantities> estimates_{};
+  std::array<bool, run::quantities>
       rejected_by_search_{};  // quantities that the search rejected, with the smallest error that was reached
-  std::array<int, quantities> stalled_{};  // successive halvings of the step with little change
+  std::array<int, run::quantities> stalled_{};  // successive halvings of the step with little change
   int impact_agreement_ = 0;  // successive halvings over which forces and accelerations of impacting wheels agree
   Errors time_{}, space_{};
-  std::array<double, quantities> predicted_errors_{};  // measured errors of a predicted mesh
-  double finest_step_ = 0.0;                           // s, with its errors finest_
+  std::array<double, run::quantities> predicted_errors_{};  // measured errors of a predicted mesh
+  double finest_step_ = 0.0;                                // s, with its errors finest_
   Errors finest_{};
   std::optional<std::pair<double, int>> measured_;  // step and mesh of the errors
   std::string step_reason_;                         // the reason for the shortest time steps, in words
   std::optional<Errors> coarser_;                   // errors of twice the step, if that is too long
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -6,7 +6,7 @@
 #include "error_control/model_search.hpp"
 #include "error_control/search_constants.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 void ModelSearch::reject(std::size_t q, std::string why) {
   if (!has_estimate(q)) return;
   estimates_[q].accepted = false;
@@ -14,7 +14,7 @@ void ModelSearch::reject(std::size_t q, std::string why) {
 }
 
 void ModelSearch::reject_unconverged() {
-  for (std::size_t q = 0; q < quantities; ++q) {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
     if (!has_estimate(q)) continue;
     const ErrorModel &t = time_[q], &s = space_[q];
     const bool step_too_long = open_step_ && t.allowed_ratio(allowed_error_) < 1.0,
@@ -39,9 +39,10 @@ void ModelSearch::reject_inaccurate() {
   const auto unreachable = [&](const ErrorModel& e) {
     return e.allowed_ratio(allowed_error_) < (e.known && e.order < 1.0 ? 1.0 : 1.0 / search::max_extrapolation_at_end);
   };
-  for (std::size_t q = 0; q < quantities; ++q) {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
     if (!has_estimate(q)) continue;
-    if ((q == acceleration || q == wheel_force || q == low_passed) && impact_agreement_ < search::required_agreements)
+    if ((q == run::acceleration || q == run::wheel_force || q == run::low_passed) &&
+        impact_agreement_ < search::required_agreements)
       reject(q, fmt::format(
                     "wheels impact, and the results with steps of {:.2g} s do not agree with those of the next two "
                     "longer steps",
@@ -61,7 +62,7 @@ void ModelSearch::reject_inaccurate() {
 }
 
 void ModelSearch::reject_given_model() {
-  for (std::size_t q = 0; q < quantities; ++q) {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
     if (!open_step_ && time_[q].value > scene_.accuracy)
       reject(q, fmt::format("the error with the given step of {:g} s is {:.1g}", step_, time_[q].value));
     if (!open_mesh_ && space_[q].value > scene_.accuracy)
@@ -70,4 +71,4 @@ void ModelSearch::reject_given_model() {
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -13,7 +13,7 @@
 #include "run/shared_beam.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr double above_cutoff = 1.5;  // the filter leaves 4 % of the accelerations above this multiple of its cut-off
@@ -34,9 +34,9 @@ std::size_t count_up_to(const beam::Beam& beam, double limit) {
 }
 
 /// A mesh for the frequencies of this number of modes.
-int mesh_for(MPI_Comm comm, const Scene& scene, int modes) {
-  Scene of_modes = scene;
-  of_modes.analysis = Analysis::modes;
+int mesh_for(MPI_Comm comm, const scene::Scene& scene, int modes) {
+  scene::Scene of_modes = scene;
+  of_modes.analysis = options::Analysis::modes;
   of_modes.mode_count = modes;
   std::vector<std::string> ignored;
   return choose_mode_mesh(comm, of_modes, ignored).model.elements;
@@ -44,15 +44,16 @@ int mesh_for(MPI_Comm comm, const Scene& scene, int modes) {
 
 }  // namespace
 
-bool takes_modes_for_damping(const Scene& scene) {
-  if (scene.damping_of_modes.empty() || !scene.modes_open || scene.analysis != Analysis::transient) return false;
+bool takes_modes_for_damping(const scene::Scene& scene) {
+  if (scene.damping_of_modes.empty() || !scene.modes_open || scene.analysis != options::Analysis::transient)
+    return false;
   if (!scene.beam || scene.beam->given || scene.beam->track || pushes_along(scene)) return false;
   const bool forces_alone = scene.vehicles.empty();
   if (forces_alone && (scene.load.forces.empty() || !scene.load.courses.empty())) return false;
   return !forces_alone || scene.find_option("ts_type") == nullptr;
 }
 
-Choice modes_for_damping(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
+Choice modes_for_damping(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("choice of the bridge's modes");
   Choice choice{scene.model, {}, {}};
   const auto keep_elements = [&] {
@@ -60,11 +61,11 @@ Choice modes_for_damping(MPI_Comm comm, const Scene& scene, std::vector<std::str
     return choice;
   };
   if (scene.beam->spans.size() > most_modes) return keep_elements();
-  Scene first = scene;
+  scene::Scene first = scene;
   if (first.mesh_open) set_mesh(first, mesh_for(comm, first, first_count));
   std::vector<std::string> ignored;
-  const SharedBeam shared(comm, first, ignored);
-  const double limit = above_cutoff * cutoff_of(first_frequencies(shared));
+  const run::SharedBeam shared(comm, first, ignored);
+  const double limit = above_cutoff * run::cutoff_of(run::first_frequencies(shared));
   const std::size_t modes = count_up_to(*shared.beam, limit);
   if (modes > most_modes) return keep_elements();
   choice.model.elements = first.model.elements;
@@ -79,4 +80,4 @@ Choice modes_for_damping(MPI_Comm comm, const Scene& scene, std::vector<std::str
   return choice;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

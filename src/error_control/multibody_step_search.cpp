@@ -17,7 +17,7 @@
 #include "run/step_cost.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 constexpr double instants = 400.0;  // instants of a run at which runs are compared
@@ -55,12 +55,12 @@ double size_of(const Curves& curves, std::size_t kind) {
 /// Runs of a whole scene with several steps.
 class Runs {
  public:
-  Runs(MPI_Comm comm, const Scene& scene) : scene_(scene), shared_(comm, scene, ignored_) {
+  Runs(MPI_Comm comm, const scene::Scene& scene) : scene_(scene), shared_(comm, scene, ignored_) {
     scene_.quiet = true;
     scene_.output.interval = first_multibody_step(scene);
   }
 
-  double seconds(double step) const { return *scene_.end_time / step * step_seconds(scene_); }
+  double seconds(double step) const { return *scene_.end_time / step * run::step_seconds(scene_); }
   std::size_t count() const { return curves_.size(); }
 
   /// Collective. Returns the curves of a run with this step; empty if the run failed.
@@ -70,8 +70,8 @@ class Runs {
     scene_.model.step = step;
     try {
       Curves curves;
-      Simulation simulation(scene_, shared_, {}, ignored_);
-      ObserverBy recorder([&](const integrate::Instant& now) {
+      run::Simulation simulation(scene_, shared_, {}, ignored_);
+      run::ObserverBy recorder([&](const integrate::Instant& now) {
         if (integrate::is_stored(now.purpose)) add(simulation.system().fleet(), curves);
       });
       simulation.run({&recorder});
@@ -105,8 +105,8 @@ class Runs {
 
  private:
   std::vector<std::string> ignored_;
-  Scene scene_;
-  SharedBeam shared_;
+  scene::Scene scene_;
+  run::SharedBeam shared_;
   std::map<double, std::optional<Curves>> curves_;  // the key is the step, s
   bool lost_contact_ = false;
 };
@@ -125,14 +125,14 @@ struct Search {
 
 }  // namespace
 
-bool chooses_multibody_step(const Scene& scene) {
+bool chooses_multibody_step(const scene::Scene& scene) {
   return !scene.beam && !scene.model.step && scene.end_time && !scene.vehicles.empty() && !scene.sweep &&
-         scene.analysis == Analysis::transient;
+         scene.analysis == options::Analysis::transient;
 }
 
-double first_multibody_step(const Scene& scene) { return *scene.end_time / instants; }
+double first_multibody_step(const scene::Scene& scene) { return *scene.end_time / instants; }
 
-Choice choose_multibody_step(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
+Choice choose_multibody_step(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
@@ -182,7 +182,7 @@ Choice choose_multibody_step(MPI_Comm comm, const Scene& scene, std::vector<std:
   return choice;
 }
 
-bool report_multibody(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy) {
+bool report_multibody(MPI_Comm comm, const scene::Scene& scene, const Accuracy& accuracy) {
   const results::Stage stage("the refined run of -accuracy_report");
   const options::WithoutMonitors without_monitors;
   Runs runs(comm, scene);
@@ -199,4 +199,4 @@ bool report_multibody(MPI_Comm comm, const Scene& scene, const Accuracy& accurac
   return all_within;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -6,11 +6,11 @@
 
 #include "error_control/accuracy.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
-PeakErrors difference(const Scene& scene, const base::PassagePeaks& rough, const base::PassagePeaks& fine) {
+PeakErrors difference(const scene::Scene& scene, const base::PassagePeaks& rough, const base::PassagePeaks& fine) {
   PeakErrors errors{};
-  const auto compare = [&](Quantity q, base::Extreme base::ProbePeaks::*peak) {
+  const auto compare = [&](run::Quantity q, base::Extreme base::ProbePeaks::*peak) {
     double change = 0.0, largest = 0.0;
     for (std::size_t p = 0; p < fine.peaks.size(); ++p) {
       const double value = (fine.peaks[p].*peak).value;
@@ -19,17 +19,17 @@ PeakErrors difference(const Scene& scene, const base::PassagePeaks& rough, const
     }
     if (is_controlled(scene, q) && largest > 0.0) errors[q] = change / largest;
   };
-  compare(deflection, &base::ProbePeaks::deflection);
-  compare(acceleration, &base::ProbePeaks::acceleration);
-  compare(moment, &base::ProbePeaks::moment);
-  compare(low_passed, &base::ProbePeaks::low_passed);
-  if (is_controlled(scene, wheel_force) && fine.greatest_wheel_force > 0.0)
-    errors[wheel_force] = std::max(std::abs(rough.greatest_wheel_force - fine.greatest_wheel_force),
-                                   std::abs(rough.least_wheel_force - fine.least_wheel_force)) /
-                          fine.greatest_wheel_force;
+  compare(run::deflection, &base::ProbePeaks::deflection);
+  compare(run::acceleration, &base::ProbePeaks::acceleration);
+  compare(run::moment, &base::ProbePeaks::moment);
+  compare(run::low_passed, &base::ProbePeaks::low_passed);
+  if (is_controlled(scene, run::wheel_force) && fine.greatest_wheel_force > 0.0)
+    errors[run::wheel_force] = std::max(std::abs(rough.greatest_wheel_force - fine.greatest_wheel_force),
+                                        std::abs(rough.least_wheel_force - fine.least_wheel_force)) /
+                               fine.greatest_wheel_force;
   return errors;
 }
 
 double greatest(const PeakErrors& errors) { return *std::max_element(errors.begin(), errors.end()); }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

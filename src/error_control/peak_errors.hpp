@@ -7,14 +7,14 @@
 #include "run/quantity.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 
 /// Relative error of each quantity's peaks.
-using PeakErrors = std::array<double, quantities>;
+using PeakErrors = std::array<double, run::quantities>;
 
 /// For each controlled quantity the largest difference at any probe, relative to the largest peak in `fine`; 0 for
 /// other quantities.
-PeakErrors difference(const Scene& scene, const base::PassagePeaks& rough, const base::PassagePeaks& fine);
+PeakErrors difference(const scene::Scene& scene, const base::PassagePeaks& rough, const base::PassagePeaks& fine);
 double greatest(const PeakErrors& errors);
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

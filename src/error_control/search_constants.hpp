@@ -9,7 +9,7 @@
 
 #include <array>
 
-namespace traverse::app::search {
+namespace traverse::error_control::search {
 
 // Shares of the wanted error that one cause of errors may use.
 inline constexpr double share = 0.4;  // P S: share of the step, and share of the mesh
@@ -80,4 +80,4 @@ inline constexpr double finer_mesh = 1.2;       // S: factor for the change by h
 inline constexpr double surely_within = 0.8,
                         surely_above = 1.3;  // S: error ratios that are certainly within or above the limit
 
-}  // namespace traverse::app::search
+}  // namespace traverse::error_control::search

@@ -15,7 +15,10 @@
 #include "error_control/trial_runs.hpp"
 #include "run/deck_acceleration.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using scene::Scene;
+
 namespace {
 
 void describe(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
@@ -23,7 +26,7 @@ void describe(const Scene& scene, const Accuracy& all, std::vector<std::string>&
                                                   : fmt::format("{} elements a {}", mesh_of(scene),
                                                                 scene.beam->track ? "sleeper bay" : "span");
   notes.push_back(fmt::format("all runs: {}, steps of {:g} s", mesh, *scene.model.step));
-  if (scene.model.vehicles == VehicleModel::linear && !scene.vehicles.empty())
+  if (scene.model.vehicles == scene::VehicleModel::linear && !scene.vehicles.empty())
     notes.emplace_back(
         "vehicles are linearised; a run whose residual exceeds its limit is repeated with the mechanisms");
   std::string expected;
@@ -36,7 +39,7 @@ void describe(const Scene& scene, const Accuracy& all, std::vector<std::string>&
 /// The finest model of three speeds; empty if mesh and step are not open.
 std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::string>& notes) {
   std::vector<double> speeds = given.sweep->speeds;
-  if (speeds.empty()) speeds = {moving_speed(given)};
+  if (speeds.empty()) speeds = {scene::moving_speed(given)};
   std::optional<Choice> all;
   for (const double speed : std::set{speeds.front(), speeds[speeds.size() / 2], speeds.back()}) {
     std::vector<std::string> own;
@@ -60,19 +63,19 @@ Scene trial_scene(const Scene& given, std::vector<std::string>& notes) {
   if (!chooses(at_speed(given, 1.0))) return scene;  // no trial runs at any speed
   std::vector<std::string> ignored;                  // the runs report these notes themselves
   set_low_pass(PETSC_COMM_SELF, scene, ignored);
-  if (!is_controlled(scene, low_passed)) return scene;
-  const double end = unsettled_end(*scene.output.low_pass);
+  if (!is_controlled(scene, run::low_passed)) return scene;
+  const double end = run::unsettled_end(*scene.output.low_pass);
   if (damps_all_modes(scene) && !scene.end_time && scene.tail.value_or(0.0) >= end) return scene;
   std::vector<std::string> others;
-  for (std::size_t q = 0; q < low_passed; ++q)
-    if (is_controlled(scene, q) || (q == acceleration && scene.accuracy_of.empty()))
-      others.emplace_back(stored_names[q]);
+  for (std::size_t q = 0; q < run::low_passed; ++q)
+    if (is_controlled(scene, q) || (q == run::acceleration && scene.accuracy_of.empty()))
+      others.emplace_back(run::stored_names[q]);
   const ErrorEstimate estimate{
       true, false, 0.0,
       fmt::format("in sweeps and studies it requires a bridge with damping and a scene_tail of at least {:.3g}, "
                   "so that the filter settles after the train",
                   end)};
-  const std::string note = not_estimated(low_passed, estimate);
+  const std::string note = not_estimated(run::low_passed, estimate);
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
   if (!others.empty()) scene.accuracy_of = others;
   if (others.empty()) scene.output.low_pass = 0.0;
@@ -87,7 +90,7 @@ Scene at_speed(const Scene& sweep, double speed) {
     scene.load = sweep.sweep->loads.front();
     scene.load.speed = sweep.load.speed;
   }
-  set_speed(scene, speed);
+  scene::set_speed(scene, speed);
   return scene;
 }
 
@@ -129,4 +132,4 @@ results::RunModel stored_model(const Scene& scene, const Accuracy& accuracy) {
   return model;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -12,7 +12,10 @@
 #include "run/simulation.hpp"
 #include "run/step_cost.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using scene::Scene;
+
 namespace {
 
 constexpr std::size_t margin_spans =
@@ -27,12 +30,12 @@ constexpr double solves_per_step = 5.0;  // solves of the beam's equations in a 
 constexpr double lead = 12.0;            // bays before the bridge, over which the transient of the start decays
 
 double foremost(const Scene& scene, std::size_t vehicle) {
-  const std::vector<double> wheels = wheels_at_start(scene, vehicle);
+  const std::vector<double> wheels = scene::wheels_at_start(scene, vehicle);
   return wheels.empty() ? 0.0 : *std::max_element(wheels.begin(), wheels.end());
 }
 
 void remove_late_vehicles(Scene& scene, double end) {
-  Train& train = scene.train;
+  train::Train& train = scene.train;
   if (train.drive != train::Drive::constant || !train.couplers.empty() || !train.courses.empty()) return;
   std::size_t count = 1;
   for (std::size_t i = 1; i < train.vehicles.size(); ++i)
@@ -72,7 +75,7 @@ Scene trim_approach(const Scene& scene) {
       !scene.beam->track->expansion_devices.empty() || scene.train.drive != train::Drive::constant ||
       !scene.train.courses.empty())
     return part;
-  const std::vector<double> wheels = wheels_at_start(scene);
+  const std::vector<double> wheels = scene::wheels_at_start(scene);
   const double front = *std::max_element(wheels.begin(), wheels.end());
   beam::LayeredTrack& track = *part.beam->track;
   const double bays = std::min(std::floor(-front / track.spacing - lead), std::floor(track.approach / track.spacing));
@@ -95,21 +98,21 @@ Scene restrict_to_window(const Scene& scene, double end) {
 
 RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_cost) {
   std::vector<std::string> ignored;
-  SharedBeam shared(comm, scene, ignored);
+  run::SharedBeam shared(comm, scene, ignored);
   shared.set_up(scene, false, ignored);
-  const double cutoff = filters_deck(scene) ? scene.output.low_pass.value_or(0.0) : 0.0;
-  Simulation run(scene, shared, {.deck_cutoff = cutoff, .deck_spacing = interval_ratio, .filter_on_all = true},
-                 ignored);
+  const double cutoff = run::filters_deck(scene) ? scene.output.low_pass.value_or(0.0) : 0.0;
+  run::Simulation run(scene, shared, {.deck_cutoff = cutoff, .deck_spacing = interval_ratio, .filter_on_all = true},
+                      ignored);
   shared.beam->release_matrices();
   const auto cost_in_steps = [&] {
     const double by_solves = static_cast<double>(run.system().beam_solves()) / solves_per_step;
     return std::max(static_cast<double>(run.passage().steps()), by_solves) +
-           steps_per_factorisation * static_cast<double>(run.system().factorisations());
+           run::steps_per_factorisation * static_cast<double>(run.system().factorisations());
   };
   const results::Stage stage("time steps");
   RunPeaks result;
   bool within_limit = true;
-  ObserverBy limits(
+  run::ObserverBy limits(
       [&](const integrate::Instant&) {
         within_limit = run.system().linearisation_residual() <= scene.model.residual_limit;
       },
@@ -120,7 +123,7 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_cost) {
       });
   run.run({&limits});
   result.steps = cost_in_steps();
-  Result found = run.result();
+  run::Result found = run.result();
   result.peaks = std::move(found.peaks);
   result.lost_contact = found.lost_contact;
   result.residual = found.summary.linearisation_residual;
@@ -130,7 +133,7 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double max_cost) {
 }
 
 double TrialRuns::seconds(int elements, double step, const std::string& integrator) const {
-  return *scene_.end_time / step * step_seconds(scene_, integrator, elements);
+  return *scene_.end_time / step * run::step_seconds(scene_, integrator, elements);
 }
 
 double TrialRuns::seconds() const {
@@ -139,14 +142,14 @@ double TrialRuns::seconds() const {
   return sum;
 }
 
-const ResponseExtremes& TrialRuns::run(int elements, double step, const std::string& integrator) {
+const run::ResponseExtremes& TrialRuns::run(int elements, double step, const std::string& integrator) {
   return stored_run(elements, step, integrator).peaks;
 }
 
 double TrialRuns::energy_missing(int elements, double step) { return stored_run(elements, step, {}).energy_missing; }
 
 const TrialRuns::StoredRun& TrialRuns::stored_run(int elements, double step, const std::string& integrator) {
-  NumericalModel model = scene_.model;
+  scene::NumericalModel model = scene_.model;
   model.elements = elements;
   model.step = step;
   model.method = integrator;
@@ -154,11 +157,11 @@ const TrialRuns::StoredRun& TrialRuns::stored_run(int elements, double step, con
     if (known.model == model) return known;
   Scene scene = with(scene_, model);
   scene.output.interval = trial_steps_per_sample * step;
-  if (scene.model.vehicles == VehicleModel::automatic) {
-    scene.model.vehicles = VehicleModel::linear;
+  if (scene.model.vehicles == scene::VehicleModel::automatic) {
+    scene.model.vehicles = scene::VehicleModel::linear;
     scene.model.residual_limit = residual_limit_;
   }
-  const double seconds_per_step = step_seconds(scene_, {}, elements),
+  const double seconds_per_step = run::step_seconds(scene_, {}, elements),
                max_cost = (search::max_seconds - spent_) / seconds_per_step;
   RunPeaks result;
   try {
@@ -170,25 +173,25 @@ const TrialRuns::StoredRun& TrialRuns::stored_run(int elements, double step, con
       if (result.residual <= residual_limit_) result = peaks_of(comm_, scene, max_cost);
     }
   } catch (const SolverError&) {
-    result.peaks = ResponseExtremes::of_failure();  // the step is probably too long
+    result.peaks = run::ResponseExtremes::of_failure();  // the step is probably too long
   }
   spent_ += result.steps * seconds_per_step;
   lost_contact_ = lost_contact_ || result.lost_contact;
-  if (scene_.model.vehicles == VehicleModel::automatic && result.residual > residual_limit_)
+  if (scene_.model.vehicles == scene::VehicleModel::automatic && result.residual > residual_limit_)
     throw ResidualTooLarge{result.residual};
   if (!result.complete) throw CostLimitExceeded();
   return stored_.emplace_back(StoredRun{model, std::move(result.peaks), result.energy_missing});
 }
 
 bool TrialRuns::needs_measurement(double residual) const {
-  return scene_.model.vehicles == VehicleModel::automatic && !measured_linearisation_ && residual > residual_limit_ &&
-         residual < max_excess * residual_limit_;
+  return scene_.model.vehicles == scene::VehicleModel::automatic && !measured_linearisation_ &&
+         residual > residual_limit_ && residual < max_excess * residual_limit_;
 }
 
 // The step is doubled, because the error of linear vehicles hardly depends on it.
 void TrialRuns::measure_linearisation(int elements, double step) {
   measured_linearisation_ = true;
-  NumericalModel model = scene_.model;
+  scene::NumericalModel model = scene_.model;
   model.elements = elements;
   model.step = 2.0 * step;
   const Scene scene = with(scene_, model);
@@ -196,4 +199,4 @@ void TrialRuns::measure_linearisation(int elements, double step) {
   spent_ += 2.0 * seconds(elements, *scene.model.step);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -8,7 +8,10 @@
 #include <cmath>
 #include <numbers>
 
-namespace traverse::app {
+namespace traverse::error_control {
+
+using scene::Scene;
+
 namespace {
 
 constexpr std::size_t max_bridge_spans = 3;  // spans of a bridge that is crossed completely
@@ -41,7 +44,7 @@ double passed_position(const Scene& scene) {
 
 /// x at t = 0 of the part of a vehicle that has to pass: its last wheel, in a train the middle of its wheels.
 double last_position(const Scene& scene, std::size_t vehicle) {
-  const std::vector<double> wheels = wheels_at_start(scene, vehicle);
+  const std::vector<double> wheels = scene::wheels_at_start(scene, vehicle);
   if (wheels.empty()) return 0.0;
   const auto [rear, front] = std::minmax_element(wheels.begin(), wheels.end());
   return scene.train.vehicles.size() < 3 ? *rear : 0.5 * (*front + *rear);
@@ -192,10 +195,10 @@ double initial_window(const Scene& scene, double end) {
 bool has_undamped_vehicle(const Scene& scene) {
   const auto damps = [](const auto& spring) { return spring.damping > 0.0 || spring.law.has_value(); };
   return std::ranges::any_of(scene.train.vehicles, [&](int type) {
-    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(type)];
+    const train::Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(type)];
     return std::ranges::none_of(vehicle.mechanism.springs, damps) &&
            std::ranges::none_of(vehicle.mechanism.torsion_springs, damps) &&
-           std::ranges::none_of(vehicle.wheels, [](const Wheel& wheel) { return wheel.law.damping > 0.0; });
+           std::ranges::none_of(vehicle.wheels, [](const train::Wheel& wheel) { return wheel.law.damping > 0.0; });
   });
 }
 
@@ -224,4 +227,4 @@ std::vector<LaterEvent> later_events(const Scene& scene, double covered, double 
   return list;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 constexpr double singular = 1e-4;         // relative to the largest singular value of the scaled Jacobian
@@ -210,4 +210,4 @@ std::vector<DistinctMinimum> distinct_minima(const std::vector<Minimum>& minima)
   return found;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

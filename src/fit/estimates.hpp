@@ -8,7 +8,7 @@
 #include "fit/minimise.hpp"
 #include "fit/residuals.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 
 /// The estimate of an unknown.
 struct Estimate {
@@ -37,4 +37,4 @@ struct DistinctMinimum {
 /// explain the other. Minimisations that have not converged are left out, except for the one with the least misfit.
 std::vector<DistinctMinimum> distinct_minima(const std::vector<Minimum>& minima);
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -11,7 +11,7 @@
 #include "run/signals.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 constexpr std::size_t most_stored = 32;
 }
@@ -26,7 +26,7 @@ void Evaluator::compute_in_turn(const Values& points, std::vector<Values>& resul
   const std::size_t count = points.size() / dimension_, ranks = static_cast<std::size_t>(ranks_);
   const std::size_t group = std::min(width_, (count + ranks - 1) / ranks);
   results.assign(count, Values());
-  SharedWork work;
+  ensemble::SharedWork work;
   for (std::size_t first = 0; first < count; first += group)
     work.pieces.push_back({std::min(group, count - first), 1.0});
   work.compute = [&](std::size_t piece, const std::function<void(double)>& /*reached*/) {
@@ -37,9 +37,9 @@ void Evaluator::compute_in_turn(const Values& points, std::vector<Values>& resul
     }
     std::ranges::move(compute_(own), results.begin() + static_cast<std::ptrdiff_t>(piece * group));
   };
-  RunFailure failure = run_cases_in_parallel(comm_, work, true);
-  const int signal = signal_on_any(comm_);
-  failure = first_of(comm_, std::move(failure));
+  ensemble::RunFailure failure = ensemble::run_cases_in_parallel(comm_, work, true);
+  const int signal = run::signal_on_any(comm_);
+  failure = ensemble::first_of(comm_, std::move(failure));
   if (signal != 0) throw Interrupted{signal};
   if (failure.failed()) throw Error(failure.message, failure.status);
   for (Values& result : results) {
@@ -100,4 +100,4 @@ void Evaluator::stop() {
   MPI_Bcast(&none, 1, MPI_INT, 0, comm_);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

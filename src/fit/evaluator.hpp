@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::fit {
 
 class Evaluator {
  public:
@@ -47,4 +47,4 @@ class Evaluator {
   long evaluations_ = 0;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -22,7 +22,7 @@
 #include "run/signals.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 constexpr double shift_range = 0.1;  // of a shift about its start, relative to the duration of the run
@@ -142,8 +142,8 @@ void describe(const options::Fit& fit, const ForwardModel& model, std::vector<st
 
 /// The failure of a fit whose estimates are none: its records are not what was computed, or its best minimum is none
 /// within the bounds.
-RunFailure failure_of(const options::Fit& fit, const ForwardModel& model, const Residuals& residuals,
-                      const FitCourse& course) {
+ensemble::RunFailure failure_of(const options::Fit& fit, const ForwardModel& model, const Residuals& residuals,
+                                const FitCourse& course) {
   const int status = SolverError("").status();
   const Minimum& best = course.minima[course.best];
   if (const std::vector<std::string> doubts = doubts_that_remain(fit, model, residuals, course.response, best.u);
@@ -167,7 +167,7 @@ RunFailure failure_of(const options::Fit& fit, const ForwardModel& model, const 
 
 }  // namespace
 
-int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
+int run_fit(MPI_Comm comm, const scene::Scene& scene, results::Place place) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const options::Fit& fit = *scene.fit;
@@ -179,9 +179,9 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   describe(fit, model, notes);
   const std::vector<std::string> doubts = doubts_about_records(fit, model, residuals);
   results::print_unusual(doubts);
-  print_notes(comm, scene, notes);
+  run::print_notes(comm, scene, notes);
   notes.insert(notes.end(), doubts.begin(), doubts.end());
-  const DeferredSignals deferred;
+  const run::DeferredSignals deferred;
   FitFile file(comm, std::move(place), scene, residuals, notes);
   Evaluator evaluator(comm, fit.parameters.size(), model.size(), model.width(),
                       [&](const std::vector<Evaluator::Values>& points) { return model.run(points); });
@@ -189,7 +189,7 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   const results::Stage stage("fit");
   FitCourse course;
   int signal = 0;
-  RunFailure failure;
+  ensemble::RunFailure failure;
   if (rank == 0) {
     try {
       MultiStart(evaluator, residuals, fit, file).run(course);
@@ -198,9 +198,9 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
       signal = interrupted.signal;
       course.ended = fmt::format("ended by signal {}", signal);
     } catch (const FileError& error) {
-      leave_together(comm, error);
+      run::leave_together(comm, error);
     } catch (const std::exception& error) {
-      const Error known = as_error(error);
+      const Error known = run::as_error(error);
       failure = {0, known.status(), known.what()};
       course.ended = fmt::format("failed: {}", known.what());
     }
@@ -213,14 +213,14 @@ int run_fit(MPI_Comm comm, const Scene& scene, results::Place place) {
   try {
     file.finish(course);
   } catch (const FileError& error) {
-    leave_together(comm, error);
+    run::leave_together(comm, error);
   }
   if (rank == 0) print_fit(fit, residuals, course, scene.output.file);
   if (rank == 0 && !failure.failed() && signal == 0) failure = failure_of(fit, model, residuals, course);
-  failure = first_of(comm, std::move(failure));
+  failure = ensemble::first_of(comm, std::move(failure));
   if (failure.failed()) throw Error(failure.message, failure.status);
   MPI_Bcast(&signal, 1, MPI_INT, 0, comm);
   return signal == 0 ? 0 : 128 + signal;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -10,7 +10,7 @@
 #include "run/outputs.hpp"
 #include "run/process.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 using Dataset = results::Recorder::Dataset;
@@ -122,11 +122,12 @@ std::vector<Dataset> constant(const options::Fit& fit, const Residuals& residual
 
 }  // namespace
 
-FitFile::FitFile(MPI_Comm comm, results::Place place, const Scene& scene, const Residuals& residuals,
+FitFile::FitFile(MPI_Comm comm, results::Place place, const scene::Scene& scene, const Residuals& residuals,
                  const std::vector<std::string>& notes)
     : fit_(*scene.fit),
-      recorder_(comm, std::move(place), layout_without_series(scene), attributes(comm, scene), scene.options) {
-  record_model(scene, notes, recorder_);
+      recorder_(comm, std::move(place), run::layout_without_series(scene), run::attributes(comm, scene),
+                scene.options) {
+  run::record_model(scene, notes, recorder_);
   std::vector<std::string> names, frequencies, series;
   for (const Unknown& one : residuals.unknowns()) names.push_back(one.name);
   for (const options::MeasuredFrequency& f : fit_.frequencies) frequencies.push_back(f.name);
@@ -170,4 +171,4 @@ void FitFile::finish(const FitCourse& course) {
   recorder_.finish_with(summary, {"runs", "wall_seconds"});
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

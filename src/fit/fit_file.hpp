@@ -9,7 +9,7 @@
 #include "fit/estimates.hpp"
 #include "results/recorder.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 
 /// The minimisations of a fit so far.
 struct FitCourse {
@@ -27,7 +27,7 @@ struct FitCourse {
 class FitFile {
  public:
   /// Collective. Only rank 0 writes.
-  FitFile(MPI_Comm comm, results::Place place, const Scene& scene, const Residuals& residuals,
+  FitFile(MPI_Comm comm, results::Place place, const scene::Scene& scene, const Residuals& residuals,
           const std::vector<std::string>& notes);
   void update(const Residuals& residuals, const FitCourse& course);
   void finish(const FitCourse& course);
@@ -39,4 +39,4 @@ class FitFile {
 
 void print_fit(const options::Fit& fit, const Residuals& residuals, const FitCourse& course, const std::string& file);
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -18,7 +18,7 @@
 #include "fit/spline.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 constexpr double last_change = 1e-11;  // of a force: the changes of a misfit near its minimum are small
@@ -26,15 +26,15 @@ constexpr double beyond_end = 2.0;     // spacings of the stored samples: the la
 
 /// One point: its scene and what computes it.
 struct Point {
-  Scene scene;
+  scene::Scene scene;
   std::vector<std::string> ignored;  // notes
-  SharedBeam shared;
-  std::unique_ptr<CaseBatch> batch;  // null: the run is computed alone
+  run::SharedBeam shared;
+  std::unique_ptr<ensemble::CaseBatch> batch;  // null: the run is computed alone
 
-  Point(Scene own, double distance) : scene(std::move(own)), shared(PETSC_COMM_SELF, scene, ignored) {
+  Point(scene::Scene own, double distance) : scene(std::move(own)), shared(PETSC_COMM_SELF, scene, ignored) {
     shared.set_up(scene, !scene.model.step || scene.model.modes > 0, ignored);
     std::string why;
-    batch = CaseBatch::make(scene, shared, distance, why);
+    batch = ensemble::CaseBatch::make(scene, shared, distance, why);
   }
 };
 
@@ -50,9 +50,9 @@ std::optional<engine::Response> response_of(const options::MeasuredSeries& serie
 }  // namespace
 
 /// Batches compute a whole layered track, single runs only the part of it that moves: these are faster.
-void ForwardModel::find_lanes(const Scene& scene, const SharedBeam& shared) {
+void ForwardModel::find_lanes(const scene::Scene& scene, const run::SharedBeam& shared) {
   if (given_.integer("sweep_lanes") == 0 || shared.beam->rail() != nullptr) return;
-  if (!CaseBatch::obstacle(scene, shared).empty()) return;
+  if (!ensemble::CaseBatch::obstacle(scene, shared).empty()) return;
   std::vector<engine::Response> found;
   for (const options::MeasuredSeries& series : fit_.series) {
     const std::optional<engine::Response> response = response_of(series);
@@ -66,7 +66,7 @@ void ForwardModel::find_lanes(const Scene& scene, const SharedBeam& shared) {
   }
   step_speed_ = scene.train.speed;
   for (const std::vector<double>& values : {start(), low, high})
-    fastest_ = std::max(fastest_, read_scene_of_fit(given_, fit_, values, false).train.speed);
+    fastest_ = std::max(fastest_, scene::read_scene_of_fit(given_, fit_, values, false).train.speed);
   stored_ = std::move(found);
 }
 
@@ -89,14 +89,14 @@ void ForwardModel::add_series_in_lanes(const std::vector<std::vector<double>>& p
     std::vector<engine::BatchResult> results(past - i);
     double spacing = 0.0;
     if (all[i].batch) {
-      CaseBatch::Steps steps = all[i].batch->steps();
+      ensemble::CaseBatch::Steps steps = all[i].batch->steps();
       steps.stored = stored_;
       steps.last_change = last_change;
-      spacing = CaseBatch::spacing(steps, step_speed_);
-      std::vector<CaseBatch::Member> members;
+      spacing = ensemble::CaseBatch::spacing(steps, step_speed_);
+      std::vector<ensemble::CaseBatch::Member> members;
       for (std::size_t k = i; k < past; ++k)
         members.push_back({&*all[k].batch, {all[k].scene.train.speed, end(all[k], spacing), {}, step_speed_}});
-      results = CaseBatch::ready(std::span<const CaseBatch::Member>(members), steps).run();
+      results = ensemble::CaseBatch::ready(std::span<const ensemble::CaseBatch::Member>(members), steps).run();
     }
     for (std::size_t k = i; k < past; ++k) {
       const engine::BatchResult& run = results[k - i];
@@ -112,7 +112,7 @@ void ForwardModel::add_series_in_lanes(const std::vector<std::vector<double>>& p
 }
 
 /// samples: [instant][series][probe], at equal distances.
-void ForwardModel::add_samples(const std::vector<double>& samples, const Scene& scene, double spacing,
+void ForwardModel::add_samples(const std::vector<double>& samples, const scene::Scene& scene, double spacing,
                                std::vector<double>& response) const {
   const std::vector<double>& probes = scene.output.probes;
   const std::size_t row = stored_.size() * probes.size(), count = samples.size() / row;
@@ -129,4 +129,4 @@ void ForwardModel::add_samples(const std::vector<double>& samples, const Scene& 
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -22,7 +22,10 @@
 #include "traverse/options/input.hpp"
 #include "traverse/options/table.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
+
+using scene::Scene;
+
 namespace {
 
 constexpr double samples_per_period = 8.0;  // of the fastest mode that is exact in time
@@ -103,29 +106,32 @@ void ForwardModel::choose(std::vector<std::string>& notes) {
     high.push_back(parameter.high);
   }
   const auto finest = [&](bool modes, auto choose_one) {
-    std::optional<NumericalModel> all;
+    std::optional<scene::NumericalModel> all;
     for (const std::vector<double>* values : std::array{&first, &std::as_const(low), &std::as_const(high)}) {
-      Scene scene = read_scene_of_fit(given_, fit_, *values, modes);
+      Scene scene = scene::read_scene_of_fit(given_, fit_, *values, modes);
       if (scene.accuracy_of.empty()) scene.accuracy_of = controlled_peaks(fit_);
       std::vector<std::string> own;
-      const NumericalModel one = choose_one(scene, own);
+      const scene::NumericalModel one = choose_one(scene, own);
       if (!all) notes.insert(notes.end(), own.begin(), own.end());
-      all = all ? finer(*all, one) : one;
+      all = all ? error_control::finer(*all, one) : one;
     }
     return *all;
   };
   if (!fit_.series.empty())
     model_ = finest(false, [](const Scene& scene, std::vector<std::string>& own) {
-      return app::choose(PETSC_COMM_SELF, scene, own).model;
+      return error_control::choose(PETSC_COMM_SELF, scene, own).model;
     });
   if (!fit_.frequencies.empty())
     model_of_modes_ = finest(true, [](const Scene& scene, std::vector<std::string>& own) {
-      return chooses_mode_mesh(scene) ? choose_mode_mesh(PETSC_COMM_SELF, scene, own).model : scene.model;
+      return error_control::chooses_mode_mesh(scene)
+                 ? error_control::choose_mode_mesh(PETSC_COMM_SELF, scene, own).model
+                 : scene.model;
     });
 }
 
 Scene ForwardModel::scene(const std::vector<double>& values, bool modes) const {
-  Scene scene = with(read_scene_of_fit(given_, fit_, values, modes), modes ? model_of_modes_ : model_);
+  Scene scene =
+      error_control::with(scene::read_scene_of_fit(given_, fit_, values, modes), modes ? model_of_modes_ : model_);
   scene.name = name_;
   if (modes) {
     for (const options::MeasuredFrequency& frequency : fit_.frequencies)
@@ -141,10 +147,10 @@ Scene ForwardModel::scene(const std::vector<double>& values, bool modes) const {
 void ForwardModel::set_interval() {
   const Scene first = scene(start(), false);
   std::vector<std::string> ignored;
-  SharedBeam shared(PETSC_COMM_SELF, first, ignored);
+  run::SharedBeam shared(PETSC_COMM_SELF, first, ignored);
   shared.set_up(first, !first.model.step || first.model.modes > 0, ignored);
-  Passage passage(first, shared, ignored);
-  const Outputs outputs = outputs_of({first, passage.system().fleet(), shared.bridge()});
+  run::Passage passage(first, shared, ignored);
+  const run::Outputs outputs = run::outputs_of({first, passage.system().fleet(), shared.bridge()});
   for (const options::MeasuredSeries& series : fit_.series)
     units_.push_back(channel_of(series, first, outputs.layout()).unit);
   duration_ = passage.plan().end_time;
@@ -197,7 +203,7 @@ void ForwardModel::naming(const std::vector<double>& values, const std::function
 void ForwardModel::add_frequencies(const std::vector<double>& values, std::vector<double>& response) const {
   const Scene modal = scene(values, true);
   std::vector<std::string> ignored;
-  const SharedBeam shared(PETSC_COMM_SELF, modal, ignored);
+  const run::SharedBeam shared(PETSC_COMM_SELF, modal, ignored);
   const std::vector<double> omega = modes::natural_modes(*shared.beam, modal.mode_count, false).omega;
   for (const options::MeasuredFrequency& frequency : fit_.frequencies) {
     const auto i = static_cast<std::size_t>(frequency.number - 1);
@@ -211,10 +217,10 @@ void ForwardModel::add_frequencies(const std::vector<double>& values, std::vecto
 void ForwardModel::add_series(const std::vector<double>& values, std::vector<double>& response) const {
   const Scene own = scene(values, false);
   std::vector<std::string> ignored;
-  SharedBeam shared(PETSC_COMM_SELF, own, ignored);
+  run::SharedBeam shared(PETSC_COMM_SELF, own, ignored);
   shared.set_up(own, !own.model.step || own.model.modes > 0, ignored);
-  Simulation simulation(own, shared, {.stored = true}, ignored);
-  const Outputs outputs = outputs_of({own, simulation.system().fleet(), shared.bridge()});
+  run::Simulation simulation(own, shared, {.stored = true}, ignored);
+  const run::Outputs outputs = run::outputs_of({own, simulation.system().fleet(), shared.bridge()});
   std::vector<std::size_t> channels;
   for (const options::MeasuredSeries& series : fit_.series)
     channels.push_back(channel_of(series, own, outputs.layout()).index);
@@ -222,16 +228,16 @@ void ForwardModel::add_series(const std::vector<double>& values, std::vector<dou
   response.resize(first + fit_.series.size() * instants_);
   std::size_t k = 0;
   std::vector<double> row;
-  ObserverBy recorder(
+  run::ObserverBy recorder(
       [&](const integrate::Instant& instant) {
         if (!is_stored(instant.purpose) || k == instants_) return;
         outputs.fill(simulation.evaluation().observed(), row);
         for (std::size_t s = 0; s < channels.size(); ++s) response[first + s * instants_ + k] = row[channels[s]];
         ++k;
       },
-      [](double, long) { return caught_signal() == 0; });
+      [](double, long) { return run::caught_signal() == 0; });
   simulation.run({&recorder});
   if (k < instants_) throw SolverError(fmt::format("the run ended after {} of {} samples", k, instants_));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -10,7 +10,7 @@
 #include "traverse/options/fit.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 
 /// Mesh, step, modes and the instants of the samples are the same for all values of the options, so that the computed
 /// values are smooth functions of the options.
@@ -18,7 +18,7 @@ class ForwardModel {
  public:
   /// Chooses the numerical model on this rank, the finest of those for the start and for all lowest and all highest
   /// values of the options. InputError if the scene of one of them cannot be computed. The scene must have a fit.
-  ForwardModel(const Scene& scene, std::vector<std::string>& notes);
+  ForwardModel(const scene::Scene& scene, std::vector<std::string>& notes);
 
   /// The options of the fit.
   const options::Entries& given() const { return given_.entries(); }
@@ -40,27 +40,27 @@ class ForwardModel {
   std::size_t size() const { return fit_.frequencies.size() + fit_.series.size() * instants_; }
 
   /// The scene of the run or of the modes at these values, with the chosen model.
-  Scene scene(const std::vector<double>& values, bool modes) const;
+  scene::Scene scene(const std::vector<double>& values, bool modes) const;
 
  private:
   void choose(std::vector<std::string>& notes);
   /// Adds the values to the message of an error.
   void naming(const std::vector<double>& values, const std::function<void()>& compute) const;
   void set_interval();
-  void find_lanes(const Scene& scene, const SharedBeam& shared);
+  void find_lanes(const scene::Scene& scene, const run::SharedBeam& shared);
   void add_frequencies(const std::vector<double>& values, std::vector<double>& response) const;
   void add_series(const std::vector<double>& values, std::vector<double>& response) const;
   /// The series of all points, as runs in the lanes of batches.
   void add_series_in_lanes(const std::vector<std::vector<double>>& points,
                            std::vector<std::vector<double>>& responses) const;
-  void add_samples(const std::vector<double>& samples, const Scene& scene, double spacing,
+  void add_samples(const std::vector<double>& samples, const scene::Scene& scene, double spacing,
                    std::vector<double>& response) const;
 
   const options::Options given_;
   const options::Fit fit_;
   std::string name_;
   std::vector<std::string> units_;
-  NumericalModel model_, model_of_modes_;
+  scene::NumericalModel model_, model_of_modes_;
   double duration_ = 0.0, interval_ = 0.0, end_ = 0.0;
   std::size_t instants_ = 0;
   /// The stored responses of a batch, one for each series; empty: runs are computed one by one.
@@ -68,4 +68,4 @@ class ForwardModel {
   double step_speed_ = 0.0, fastest_ = 0.0;  // m/s: of the steps of all batches; of any point
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -10,7 +10,7 @@
 
 #include "base/petsc.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 constexpr double gradient = 1e-3;  // at the end, in standard errors
@@ -154,4 +154,4 @@ Minimum minimise(Problem& problem, const Eigen::VectorXd& start) {
   return minimum;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

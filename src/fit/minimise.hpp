@@ -7,7 +7,7 @@
 #include "fit/evaluator.hpp"
 #include "fit/residuals.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 
 /// The end of a minimisation.
 struct Minimum {
@@ -51,4 +51,4 @@ bool has_converged(const Minimum& minimum);
 /// Which unknowns are at a bound towards which the misfit decreases.
 std::vector<char> at_bounds(const Minimum& minimum);
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

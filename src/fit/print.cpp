@@ -6,7 +6,7 @@
 
 #include "fit/fit_file.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 constexpr Eigen::Index most_printed = 8;  // unknowns of a printed matrix of correlations
@@ -86,4 +86,4 @@ void print_fit(const options::Fit& fit, const Residuals& residuals, const FitCou
              file.empty() ? "none" : file);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -4,7 +4,7 @@
 
 #include "fit/minimise.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 // J. J. More, S. M. Wild, Estimating computational noise, SIAM J. Sci. Comput. 33 (2011): the mean square of k-th
@@ -78,4 +78,4 @@ Eigen::MatrixXd Problem::jacobian(const Eigen::VectorXd& u) const {
   return jacobian;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -10,7 +10,7 @@
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 constexpr double doubtful_ratio = 5.0;  // of the amplitudes, from which on further runs show what the bounds explain
@@ -198,4 +198,4 @@ std::vector<std::string> doubts_that_remain(const options::Fit& fit, const Forwa
   return doubts;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -8,7 +8,7 @@
 #include "fit/forward_model.hpp"
 #include "fit/residuals.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 
 /// What is probably wrong with the sign, the clock or the offset of a record, one sentence each. InputError for a
 /// record that no values within the bounds can explain, because its unit or its clock is another. The clocks must be
@@ -20,4 +20,4 @@ std::vector<std::string> doubts_that_remain(const options::Fit& fit, const Forwa
                                             const Residuals& residuals, const std::vector<double>& response,
                                             const Eigen::VectorXd& u);
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

@@ -12,7 +12,7 @@
 #include "fit/spline.hpp"
 #include "run/low_pass.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 constexpr double first_sd = 0.005;                               // relative to the variation of a series
@@ -34,7 +34,7 @@ double variation(const std::vector<double>& values) {
 }
 
 void filter(const options::MeasuredSeries& series, std::vector<double>& values) {
-  if (series.low_pass) LowPass(*series.low_pass, interval_of(series.time)).apply(values);
+  if (series.low_pass) run::LowPass(*series.low_pass, interval_of(series.time)).apply(values);
 }
 
 }  // namespace
@@ -215,4 +215,4 @@ Eigen::VectorXd Residuals::estimate_sd(const Eigen::VectorXd& residuals) {
   return factors;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

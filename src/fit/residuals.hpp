@@ -10,7 +10,7 @@
 #include "fit/forward_model.hpp"
 #include "traverse/options/fit.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 
 /// A quantity that the fit estimates: an option, the difference of two clocks, or the offset of a series.
 struct Unknown {
@@ -97,4 +97,4 @@ class Residuals {
   std::size_t size_ = 0;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

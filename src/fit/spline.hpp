@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::fit {
 
 class Spline {
  public:
@@ -39,4 +39,4 @@ class Spline {
   std::vector<double> bend_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::fit

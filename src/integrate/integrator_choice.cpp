@@ -36,20 +36,20 @@ bool is_given(const char* name) {
 /// "esdirk4, genalpha, ... (implicit), rk (explicit, small scenes)".
 std::string allowed_types() {
   std::vector<std::string> implicit, others;
-  for (const structure::MethodRow& row : structure::methods()) implicit.emplace_back(row.name);
+  for (const base::MethodRow& row : base::methods()) implicit.emplace_back(row.name);
   for (const PetscType& type : petsc_types()) (type.implicit ? implicit : others).emplace_back(type.name);
   return fmt::format("{} (implicit), {} (explicit, small scenes)", fmt::join(implicit, ", "), fmt::join(others, ", "));
 }
 
 std::string types_that_estimate_errors() {
   std::vector<std::string> names;
-  for (const structure::MethodRow& row : structure::methods())
+  for (const base::MethodRow& row : base::methods())
     if (row.estimates_errors()) names.emplace_back(row.name);
   return fmt::format("{}", fmt::join(names, " and "));
 }
 
 void check_adapt(const std::string& adapt, const std::string& type) {
-  const structure::MethodRow* own = structure::find_method(type);
+  const base::MethodRow* own = base::find_method(type);
   if (adapt == step_level_adapt && (own == nullptr || !own->estimates_errors()))
     throw InputError(fmt::format("ts_adapt_type = ladder: estimates the errors of {} alone; ts_type is {}",
                                  types_that_estimate_errors(), type));
@@ -64,7 +64,7 @@ void check_adapt(const std::string& adapt, const std::string& type) {
     throw InputError("ts_rtol = " + std::to_string(tolerance) + ": allowed: above 0");
 }
 
-void check_parameter(const structure::MethodParameter& parameter) {
+void check_parameter(const base::MethodParameter& parameter) {
   if (parameter.option == nullptr) return;
   PetscReal value = parameter.value;
   check(PetscOptionsGetReal(nullptr, nullptr, parameter.option, &value, nullptr));
@@ -79,9 +79,9 @@ std::string chosen_type(const std::string& by_accuracy) {
   const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
   const bool for_arkimex = (adapt != TSADAPTNONE && adapt != step_level_adapt) || is_given("-ts_arkimex_type") ||
                            is_given("-ts_arkimex_fully_implicit");
-  const std::string otherwise = by_accuracy.empty() ? structure::methods().front().name : by_accuracy;
+  const std::string otherwise = by_accuracy.empty() ? base::methods().front().name : by_accuracy;
   std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : otherwise.c_str());
-  if (structure::find_method(type) == nullptr && find_petsc_type(type) == nullptr)
+  if (base::find_method(type) == nullptr && find_petsc_type(type) == nullptr)
     throw InputError("ts_type = " + type + ": does not integrate this system rightly; allowed: " + allowed_types());
   check_adapt(adapt, type);
   PetscInt order = 2;
@@ -89,7 +89,7 @@ std::string chosen_type(const std::string& by_accuracy) {
   if (order < 1 || order > 2)
     throw InputError("ts_bdf_order = " + std::to_string(order) +
                      ": orders above 2 are unstable for lightly damped bridges; allowed: 1, 2");
-  for (const structure::MethodRow& row : structure::methods()) check_parameter(row.parameter);
+  for (const base::MethodRow& row : base::methods()) check_parameter(row.parameter);
   return type;
 }
 
@@ -98,8 +98,8 @@ bool type_is_given() {
   return std::any_of(options.begin(), options.end(), is_given) || option("-ts_adapt_type", TSADAPTNONE) != TSADAPTNONE;
 }
 
-std::optional<structure::Method> own_method(const std::string& by_accuracy) {
-  const structure::MethodRow* row = structure::find_method(chosen_type(by_accuracy));
+std::optional<base::Method> own_method(const std::string& by_accuracy) {
+  const base::MethodRow* row = base::find_method(chosen_type(by_accuracy));
   if (row == nullptr) return std::nullopt;
   PetscReal value = row->parameter.value;
   if (row->parameter.option != nullptr)

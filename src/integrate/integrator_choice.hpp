@@ -17,6 +17,6 @@ std::string chosen_type(const std::string& by_accuracy = {});
 bool type_is_given();
 
 /// The method of the chosen type, for steps of 1 s; none for a type of PETSc.
-std::optional<structure::Method> own_method(const std::string& by_accuracy = {});
+std::optional<base::Method> own_method(const std::string& by_accuracy = {});
 
 }  // namespace traverse::integrate

@@ -39,10 +39,10 @@ const PetscType* find_petsc_type(std::string_view name) {
 
 std::string integrators_help() {
   std::string text = fmt::format("\nTime integrators, -ts_type NAME (default: {}); those after {} are PETSc's\n",
-                                 structure::methods().front().name, structure::methods().back().name);
-  for (const structure::MethodRow& row : structure::methods()) {
+                                 base::methods().front().name, base::methods().back().name);
+  for (const base::MethodRow& row : base::methods()) {
     text += line(row.name, true, row.order, row.words);
-    const structure::MethodParameter& p = row.parameter;
+    const base::MethodParameter& p = row.parameter;
     if (p.option != nullptr) text += fmt::format("{:12}{} ({}): {}\n", "", p.option, p.value, p.words);
   }
   for (const PetscType& type : types) text += line(type.name, type.implicit, type.order, type.words);

@@ -1,4 +1,4 @@
-// The values of -ts_type: the program's own methods (structure::methods) and the types of PETSc that integrate this
+// The values of -ts_type: the program's own methods (base::methods) and the types of PETSc that integrate this
 // system correctly.
 #pragma once
 

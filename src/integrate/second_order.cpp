@@ -19,7 +19,7 @@ using base::guard;
 constexpr double shortening = 0.25;  // factor of the length of a step that could not be solved
 
 struct Data {
-  const structure::MethodRow* row = nullptr;
+  const base::MethodRow* row = nullptr;
   coupling::System* system = nullptr;
   double parameter = 0.0;  // parameter of the method
   bool started = false;
@@ -96,7 +96,7 @@ PetscErrorCode step_second_order(TS ts) {
 
 PetscErrorCode read_options(TS ts, base::OptionItems PetscOptionsObject) {
   Data& data = data_of(ts);
-  const structure::MethodParameter& parameter = data.row->parameter;
+  const base::MethodParameter& parameter = data.row->parameter;
   PetscOptionsHeadBegin(PetscOptionsObject, data.row->name);
   if (parameter.option != nullptr)
     PetscCall(PetscOptionsReal(parameter.option, parameter.words, "", data.parameter, &data.parameter, nullptr));
@@ -131,7 +131,7 @@ PetscErrorCode create_second_order(TS ts) {
   return guard([&] {
     TSType type = nullptr;
     check(TSGetType(ts, &type));
-    const structure::MethodRow* row = structure::find_method(type);
+    const base::MethodRow* row = base::find_method(type);
     ts->ops->setup = set_up;
     ts->ops->step = step_second_order;
     ts->ops->setfromoptions = read_options;
@@ -164,7 +164,7 @@ PetscErrorCode create_step_size_control(TSAdapt adapt) {
 
 void register_second_order() {
   check(TSAdaptRegister(step_level_adapt, create_step_size_control));
-  for (const structure::MethodRow& row : structure::methods()) check(TSRegister(row.name, create_second_order));
+  for (const base::MethodRow& row : base::methods()) check(TSRegister(row.name, create_second_order));
 }
 
 void set_system(TS ts, coupling::System& system) { data_of(ts).system = &system; }

@@ -87,7 +87,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
 void Stepper::set_up_type() {
   TSType name = nullptr;
   check(TSGetType(ts_, &name));
-  if (const structure::MethodRow* own = structure::find_method(name)) {
+  if (const base::MethodRow* own = base::find_method(name)) {
     second_order_ = true;
     high_order_ = own->order > 2;
     set_system(ts_, system_);

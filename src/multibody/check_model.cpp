@@ -102,7 +102,7 @@ void check_driver(const Part& part, const Driver& driver) {
   part.finite("rate", driver.value.rate(0.0));
 }
 
-void check_law(const Part& part, const ForceLaw& law, double stiffness, double damping) {
+void check_law(const Part& part, const base::ForceLaw& law, double stiffness, double damping) {
   if (stiffness != 0.0 || damping != 0.0) part.fail("give a law or stiffness and damping, not both");
   part.not_negative("gap", law.gap);
   const std::string damper_error = law.damper.opposing();

@@ -49,7 +49,7 @@ struct Line {
   }
   /// Sets tension and tangents by the law of the spring.
   void apply_law(const SpringGeometry& s) {
-    const Tension t = tension(*s.law, length - s.reference_length, u.dot(rate) - s.reference_rate);
+    const base::Tension t = base::tension(*s.law, length - s.reference_length, u.dot(rate) - s.reference_rate);
     stiffness = t.by_elongation;
     damping = t.by_rate;
     dissipation = t.dissipation;
@@ -66,12 +66,12 @@ double twist_of(const TorsionGeometry& s, const Frame& first, const Frame& secon
   return second.angle - first.angle - s.free_angle;
 }
 
-Tension torsion_law(const TorsionGeometry& s, const Frame& first, const Frame& second) {
-  return tension(*s.law, twist_of(s, first, second), second.omega - first.omega);
+base::Tension torsion_law(const TorsionGeometry& s, const Frame& first, const Frame& second) {
+  return base::tension(*s.law, twist_of(s, first, second), second.omega - first.omega);
 }
 
-std::shared_ptr<const ForceLaw> shared(const std::optional<ForceLaw>& law) {
-  return law ? std::make_shared<const ForceLaw>(*law) : nullptr;
+std::shared_ptr<const base::ForceLaw> shared(const std::optional<base::ForceLaw>& law) {
+  return law ? std::make_shared<const base::ForceLaw>(*law) : nullptr;
 }
 
 }  // namespace
@@ -150,7 +150,7 @@ void spring_derivatives(const SpringGeometry& spring, const Frame& first, const 
 
 double spring_strain_energy(const SpringGeometry& spring, const Frame& first, const Frame& second) {
   const Line line(spring, first, second);
-  if (spring.law != nullptr) return stored_energy(*spring.law, line.length - spring.reference_length);
+  if (spring.law != nullptr) return base::stored_energy(*spring.law, line.length - spring.reference_length);
   if (spring.stiffness == 0.0) return spring.preload * (line.length - spring.reference_length);
   return 0.5 * line.elastic * line.elastic / spring.stiffness;
 }
@@ -167,13 +167,13 @@ double torsion_moment(const TorsionGeometry& s, const Frame& first, const Frame&
 
 TorsionTangent torsion_tangent(const TorsionGeometry& s, const Frame& first, const Frame& second) {
   if (s.law == nullptr) return {s.stiffness, s.damping};
-  const Tension t = torsion_law(s, first, second);
+  const base::Tension t = torsion_law(s, first, second);
   return {t.by_elongation, t.by_rate};
 }
 
 double torsion_strain_energy(const TorsionGeometry& s, const Frame& first, const Frame& second) {
   const double twist = twist_of(s, first, second);
-  if (s.law != nullptr) return stored_energy(*s.law, twist);
+  if (s.law != nullptr) return base::stored_energy(*s.law, twist);
   return 0.5 * s.stiffness * twist * twist;
 }
 

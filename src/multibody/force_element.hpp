@@ -25,7 +25,7 @@ struct SpringGeometry {
   double reference_length = 0.0;                         // m
   double preload = 0.0;                                  // N, at the reference length
   double reference_rate = 0.0;                           // m/s, of the reference length
-  std::shared_ptr<const ForceLaw> law;                   // null: linear
+  std::shared_ptr<const base::ForceLaw> law;             // null: linear
   std::shared_ptr<base::TimeFunction> winding;           // null: the reference length is constant
 };
 
@@ -40,10 +40,10 @@ inline SpringGeometry wound(const SpringGeometry& spring, double t) {
 struct TorsionGeometry {
   int first = ground;
   int second = ground;
-  double stiffness = 0.0;                         // N m/rad
-  double damping = 0.0;                           // N m s/rad
-  double free_angle = 0.0;                        // rad
-  std::shared_ptr<const ForceLaw> law = nullptr;  // null: linear
+  double stiffness = 0.0;                               // N m/rad
+  double damping = 0.0;                                 // N m s/rad
+  double free_angle = 0.0;                              // rad
+  std::shared_ptr<const base::ForceLaw> law = nullptr;  // null: linear
 };
 
 /// `first` and `second` are the bodies' frames at t = 0.

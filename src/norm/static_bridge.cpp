@@ -59,8 +59,8 @@ double StaticBridge::first_frequency() const {
 }
 
 /// The line with these nodal values, plus the direct effect of a force on the element of the recovery's station.
-InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const beam::Recovery* recovery,
-                                    double beam::Response::*direct) {
+InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const recovery::Recovery* recovery,
+                                    double recovery::Response::*direct) {
   const beam::Mesh& mesh = beam_.mesh();
   const std::size_t count = static_cast<std::size_t>(mesh.elements());
   const double section = recovery != nullptr ? recovery->stations().front() : 0.0;
@@ -96,12 +96,12 @@ InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const beam::Recov
 }
 
 std::array<InfluenceLine, 3> StaticBridge::lines_at(double x) {
-  beam::Recovery recovery(beam_, {x}, 0.0);
+  recovery::Recovery recovery(beam_, {x}, 0.0);
   const auto unknowns = beam_.bridge().transverse(beam_.mesh().locate(x).element);
   const std::vector<double> zero(static_cast<std::size_t>(beam_.local_unknowns()), 0.0);
   std::vector<double> unit = zero;
-  std::array<beam::Response, 4> forms;
-  std::vector<beam::Response> responses;
+  std::array<recovery::Response, 4> forms;
+  std::vector<recovery::Response> responses;
   for (std::size_t k = 0; k < 4; ++k) {
     unit[static_cast<std::size_t>(unknowns[k])] = 1.0;
     recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, responses);
@@ -109,8 +109,8 @@ std::array<InfluenceLine, 3> StaticBridge::lines_at(double x) {
     forms[k] = responses.front();
   }
   std::array<InfluenceLine, 3> lines;
-  constexpr double beam::Response::*quantities[] = {&beam::Response::deflection, &beam::Response::moment,
-                                                    &beam::Response::shear};
+  constexpr double recovery::Response::*quantities[] = {&recovery::Response::deflection, &recovery::Response::moment,
+                                                        &recovery::Response::shear};
   for (std::size_t q = 0; q < lines.size(); ++q) {
     std::vector<double> nodal = zero;
     for (std::size_t k = 0; k < 4; ++k) {

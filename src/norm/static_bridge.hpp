@@ -48,7 +48,8 @@ class StaticBridge {
 
  private:
   InfluenceLine rotation_of(const std::vector<std::pair<int, double>>& form);
-  InfluenceLine line_of(std::vector<double> nodal, const beam::Recovery* recovery, double beam::Response::*direct);
+  InfluenceLine line_of(std::vector<double> nodal, const recovery::Recovery* recovery,
+                        double recovery::Response::*direct);
 
   beam::Beam beam_;
   structure::BeamOperator statics_;

@@ -150,7 +150,7 @@ void RailBridge::recover(const std::vector<double>& P, State& state) {
   if (reactions.size() > beam_.mesh().span_ends().size()) state.rail_ends = reactions.back()[0];
   for (const int end : held_ends_) state.bearings.push_back(reactions[static_cast<std::size_t>(end)][0]);
   structure::NonlinearForces other;
-  std::vector<beam::ElementLoad> loads;
+  std::vector<recovery::ElementLoad> loads;
   nonlinear_.evaluate(v.data(), zero.data());
   nonlinear_.report(other, loads);
   ground_.evaluate(v.data(), zero.data(), zero.data());
@@ -162,7 +162,7 @@ void RailBridge::recover(const std::vector<double>& P, State& state) {
 double RailBridge::residual(const Loads& loads, const State& state) {
   const std::vector<double> zero(state.v.size(), 0.0);
   structure::NonlinearForces other;
-  std::vector<beam::ElementLoad> on_bridge;
+  std::vector<recovery::ElementLoad> on_bridge;
   nonlinear_.set_history(state.slid);
   nonlinear_.set_loaded_range(loads.from, loads.to > loads.from ? loads.to : -HUGE_VAL);
   nonlinear_.evaluate(state.v.data(), zero.data());

@@ -65,8 +65,8 @@ class RailBridge {
   beam::Beam beam_;
   structure::BeamOperator op_;
   structure::NonlinearFoundation nonlinear_;
-  beam::GroundForces ground_;
-  beam::RailDevices devices_;
+  recovery::GroundForces ground_;
+  recovery::RailDevices devices_;
   double area_;
   std::vector<double> elements_, restrained_stress_, sleepers_, bearings_, ends_;
   std::vector<int> held_ends_;  // span ends whose support holds the bridge along x

@@ -11,26 +11,26 @@
 #include "beam/point_shape.hpp"
 #include "beam/shape.hpp"
 
-namespace traverse::beam {
-GroundForces::GroundForces(const Beam& beam) : beam_(beam) {
-  const Foundation& f = beam.model().foundation;
+namespace traverse::recovery {
+GroundForces::GroundForces(const beam::Beam& beam) : beam_(beam) {
+  const beam::Foundation& f = beam.model().foundation;
   const std::size_t spans = beam.model().spans.size();
-  for (std::size_t i = 0; i < foundation_kind_count; ++i) {
-    const FoundationKind& kind = foundation_kinds[i];
+  for (std::size_t i = 0; i < beam::foundation_kind_count; ++i) {
+    const beam::FoundationKind& kind = beam::foundation_kinds[i];
     first_[i + 1] = first_[i] + (kind.bed != nullptr ? spans : (f.*kind.points).size());
   }
   track_ = first_.back();
   inertia_ = track_ + 2;
   drag_ = inertia_ + 2;
   sums_.assign(drag_ + 2, 0.0);
-  for (std::size_t i = 0; i < foundation_kind_count; ++i) {
-    if (foundation_kinds[i].bed != nullptr) {
+  for (std::size_t i = 0; i < beam::foundation_kind_count; ++i) {
+    if (beam::foundation_kinds[i].bed != nullptr) {
       add_bed(i, beam.bridge());
     } else {
       add_points(i, beam.bridge());
     }
   }
-  for (auto& along : bridge_masses_) along.assign(index(beam.local_unknowns()), 0.0);
+  for (auto& along : bridge_masses_) along.assign(beam::index(beam.local_unknowns()), 0.0);
   add_masses(beam.bridge(), bridge_masses_);
   masses_ = bridge_masses_;
   if (beam.rail() != nullptr) {
@@ -40,77 +40,79 @@ GroundForces::GroundForces(const Beam& beam) : beam_(beam) {
   mass_ = 0.0;
   // In a rigid vertical motion all deflections are equal.
   for (int i = 0; i < beam.local_unknowns(); ++i) {
-    if (Layout::is_vertical(beam.layout().kind[index(i % beam.block())])) mass_ += masses_[1][index(i)];
+    if (beam::Layout::is_vertical(beam.layout().kind[beam::index(i % beam.block())]))
+      mass_ += masses_[1][beam::index(i)];
   }
   MPI_Allreduce(MPI_IN_PLACE, &mass_, 1, MPI_DOUBLE, MPI_SUM, beam.comm());
 }
 
 void GroundForces::add(std::size_t sum, int unknown, double c, double k) {
   const int local = unknown < 0 ? -1 : beam_.local(unknown);
-  if (local >= 0 && (c != 0.0 || k != 0.0)) terms_.push_back({sum, index(local), c, k});
+  if (local >= 0 && (c != 0.0 || k != 0.0)) terms_.push_back({sum, beam::index(local), c, k});
 }
 
 void GroundForces::add_mass(std::vector<double>& masses, int unknown, double mass) const {
   const int local = unknown < 0 ? -1 : beam_.local(unknown);
-  if (local >= 0) masses[index(local)] += mass;
+  if (local >= 0) masses[beam::index(local)] += mass;
 }
 
-void GroundForces::add_points(std::size_t kind, const Line& line) {
+void GroundForces::add_points(std::size_t kind, const beam::Line& line) {
   std::size_t sum = first_[kind];
-  for (const PointFoundation& p : line.model.foundation.*foundation_kinds[kind].points) {
+  for (const beam::PointFoundation& p : line.model.foundation.*beam::foundation_kinds[kind].points) {
     if (!p.law.nonlinear()) {
-      const PointShape s = shape_at(line, foundation_kinds[kind].direction, station_of(line.mesh, p), p.depth);
+      const beam::PointShape s =
+          beam::shape_at(line, beam::foundation_kinds[kind].direction, beam::station_of(line.mesh, p), p.depth);
       for (std::size_t i = 0; i < 4; ++i) add(sum, s.unknown[i], p.c * s.shape[i], p.k * s.shape[i]);
     }
     ++sum;
   }
 }
 
-void GroundForces::add_bed(std::size_t kind, const Line& line) {
-  const std::optional<Bed>& bed = line.model.foundation.*foundation_kinds[kind].bed;
+void GroundForces::add_bed(std::size_t kind, const beam::Line& line) {
+  const std::optional<beam::Bed>& bed = line.model.foundation.*beam::foundation_kinds[kind].bed;
   if (!bed || bed->law.nonlinear()) return;
-  const Direction direction = foundation_kinds[kind].direction;
+  const beam::Direction direction = beam::foundation_kinds[kind].direction;
   for (int e = 0; e < line.mesh.elements(); ++e) {
-    const Element& element = line.mesh.element(e);
-    const auto c = bed_form(direction, bed->c, element), k = bed_form(direction, bed->k, element);
-    const auto places = unknowns_of(line, direction, e);
-    for (std::size_t i = 0; i < 4; ++i) add(first_[kind] + index(element.span), places[i], c[i], k[i]);
+    const beam::Element& element = line.mesh.element(e);
+    const auto c = beam::bed_form(direction, bed->c, element), k = beam::bed_form(direction, bed->k, element);
+    const auto places = beam::unknowns_of(line, direction, e);
+    for (std::size_t i = 0; i < 4; ++i) add(first_[kind] + beam::index(element.span), places[i], c[i], k[i]);
   }
 }
 
-void GroundForces::add_masses(const Line& line, Masses& masses) const {
+void GroundForces::add_masses(const beam::Line& line, Masses& masses) const {
   for (int e = 0; e < line.mesh.elements(); ++e) {
-    const auto along = axial_load(line.model.mass, line.mesh.element(e));
-    const auto up = transverse_load(line.model.mass, line.mesh.element(e));
+    const auto along = beam::axial_load(line.model.mass, line.mesh.element(e));
+    const auto up = beam::transverse_load(line.model.mass, line.mesh.element(e));
     for (std::size_t i = 0; i < 2; ++i) add_mass(masses[0], line.axial(e)[i], along[i]);
     for (std::size_t i = 0; i < 4; ++i) add_mass(masses[1], line.transverse(e)[i], up[i]);
   }
 }
 
 void GroundForces::add_track() {
-  const LayeredTrack& track = *beam_.model().track;
-  const Layout& layout = beam_.layout();
-  for (const Sleeper& s : sleepers_of(beam_.bridge(), 0, beam_.columns())) {
-    visit_ground_springs(s, track, layout, [&](int unknown, const Spring& spring, bool along_x) {
+  const beam::LayeredTrack& track = *beam_.model().track;
+  const beam::Layout& layout = beam_.layout();
+  for (const beam::Sleeper& s : beam::sleepers_of(beam_.bridge(), 0, beam_.columns())) {
+    beam::visit_ground_springs(s, track, layout, [&](int unknown, const beam::Spring& spring, bool along_x) {
       add(track_ + (along_x ? 0 : 1), unknown, spring.c, spring.k);
     });
-    for (const auto& [unknown, mass] : masses_of(s, layout)) add_mass(masses_[1], unknown, mass);
+    for (const auto& [unknown, mass] : beam::masses_of(s, layout)) add_mass(masses_[1], unknown, mass);
     if (!s.on_bridge) continue;
-    const double mass = connection_of(s, track, layout).mass;
-    const Element& element = beam_.mesh().element(s.at.element);
-    const auto psi = hermite(s.at.xi, element.length, element.shear).value;
+    const double mass = beam::connection_of(s, track, layout).mass;
+    const beam::Element& element = beam_.mesh().element(s.at.element);
+    const auto psi = beam::hermite(s.at.xi, element.length, element.shear).value;
     const auto places = beam_.bridge().transverse(s.at.element);
     for (std::size_t i = 0; i < 4; ++i) add_mass(masses_[1], places[i], mass * psi[i]);
   }
-  for (const auto& [left, right] : pairs_in_shear(beam_.bridge(), layout, 0, beam_.columns()))
-    visit_links(left, right, layout, [&](int unknown, double mass) { add_mass(masses_[1], unknown, mass); });
+  for (const auto& [left, right] : beam::pairs_in_shear(beam_.bridge(), layout, 0, beam_.columns()))
+    beam::visit_links(left, right, layout, [&](int unknown, double mass) { add_mass(masses_[1], unknown, mass); });
 }
 
 void GroundForces::evaluate(const double* v, const double* w, const double* a) {
   std::fill(sums_.begin(), sums_.end(), 0.0);
   for (const Term& t : terms_) sums_[t.sum] -= t.c * w[t.unknown] + t.k * v[t.unknown];
   for (const std::size_t direction : {0U, 1U}) {
-    if (direction == 0 && beam_.layout().place[u] < 0) continue;
+    if (direction == 0 && beam_.layout().place[beam::u] < 0) continue;
     sums_[inertia_ + direction] = -base::dot(masses_[direction], a);
     if (beam_.rayleigh().a != 0.0) sums_[drag_ + direction] = -base::dot(bridge_masses_[direction], w);
   }
@@ -121,10 +123,10 @@ std::array<double, 2> GroundForces::foundation() const {
   std::array<double, 2> sum = track_bed();
   // Points, then beds: a constant order of summation.
   for (const bool of_bed : {false, true}) {
-    for (std::size_t kind = 0; kind < foundation_kind_count; ++kind) {
-      const Direction direction = foundation_kinds[kind].direction;
-      if ((foundation_kinds[kind].bed != nullptr) != of_bed || direction == Direction::rotational) continue;
-      double& total = sum[direction == Direction::longitudinal ? 0 : 1];
+    for (std::size_t kind = 0; kind < beam::foundation_kind_count; ++kind) {
+      const beam::Direction direction = beam::foundation_kinds[kind].direction;
+      if ((beam::foundation_kinds[kind].bed != nullptr) != of_bed || direction == beam::Direction::rotational) continue;
+      double& total = sum[direction == beam::Direction::longitudinal ? 0 : 1];
       for (std::size_t i = first_[kind]; i < first_[kind + 1]; ++i) total += sums_[i];
     }
   }
@@ -136,4 +138,4 @@ std::array<double, 2> GroundForces::drag() const {
   return {a * sums_[drag_], a * sums_[drag_ + 1]};
 }
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

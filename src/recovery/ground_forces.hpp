@@ -8,11 +8,11 @@
 
 #include "beam/beam.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
 class GroundForces {
  public:
-  explicit GroundForces(const Beam& beam);
+  explicit GroundForces(const beam::Beam& beam);
 
   /// Collective, from this rank's slices of the nodal vectors; the results are complete on every rank.
   void evaluate(const double* v, const double* w, const double* a);
@@ -39,18 +39,18 @@ class GroundForces {
   using Masses = std::array<std::vector<double>, 2>;
   void add(std::size_t sum, int unknown, double c, double k);
   void add_mass(std::vector<double>& masses, int unknown, double mass) const;
-  void add_points(std::size_t kind, const Line& line);
-  void add_bed(std::size_t kind, const Line& line);
-  void add_masses(const Line& line, Masses& masses) const;
+  void add_points(std::size_t kind, const beam::Line& line);
+  void add_bed(std::size_t kind, const beam::Line& line);
+  void add_masses(const beam::Line& line, Masses& masses) const;
   void add_track();
 
-  const Beam& beam_;
+  const beam::Beam& beam_;
   std::vector<Term> terms_;
   Masses masses_, bridge_masses_;
   std::vector<double> sums_;
-  std::array<std::size_t, foundation_kind_count + 1> first_{};  // first sum of each kind, and past the last
+  std::array<std::size_t, beam::foundation_kind_count + 1> first_{};  // first sum of each kind, and past the last
   std::size_t track_ = 0, inertia_ = 0, drag_ = 0;
   double mass_ = 0.0;
 };
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
 LoadMovement::LoadMovement(const Recovery& recovery) : recovery_(recovery), along_(recovery.stations().size()) {
   std::iota(along_.begin(), along_.end(), std::size_t{0});
@@ -70,4 +70,4 @@ void LoadMovement::record_passages() {
   });
 }
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

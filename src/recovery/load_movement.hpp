@@ -7,7 +7,7 @@
 #include "base/bytes.hpp"
 #include "recovery/recovery.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
 /// A load has passed a station: it is on the other side than at the previous instant.
 struct StationPassage {
@@ -52,4 +52,4 @@ class LoadMovement {
   std::vector<StationPassage> passages_;
 };
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

@@ -3,11 +3,11 @@
 
 #include "beam/assembly.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
-RailDevices::RailDevices(const Beam& beam) : beam_(beam) {
+RailDevices::RailDevices(const beam::Beam& beam) : beam_(beam) {
   if (beam.rail() == nullptr || !beam.model().axial) return;
-  const Line& rail = *beam.rail();
+  const beam::Line& rail = *beam.rail();
   for (const double x : rail.model.expansion_devices) {
     const int right = rail.mesh.locate(x).element, left = rail.mesh.locate(x, true).element;
     x_.push_back(x);
@@ -23,4 +23,4 @@ void RailDevices::evaluate(const double* v) {
   MPI_Allreduce(MPI_IN_PLACE, openings_.data(), static_cast<int>(x_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
 }
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

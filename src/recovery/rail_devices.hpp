@@ -5,11 +5,11 @@
 
 #include "beam/beam.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
 class RailDevices {
  public:
-  explicit RailDevices(const Beam& beam);
+  explicit RailDevices(const beam::Beam& beam);
 
   /// Collective, from this rank's slice of the nodal displacements; the results are complete on every rank.
   void evaluate(const double* v);
@@ -20,9 +20,9 @@ class RailDevices {
   const std::vector<double>& openings() const { return openings_; }
 
  private:
-  const Beam& beam_;
+  const beam::Beam& beam_;
   std::vector<double> x_, openings_;
   std::vector<int> left_, right_;  // global unknowns
 };
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

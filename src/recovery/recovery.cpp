@@ -9,14 +9,14 @@
 #include "beam/support_line.hpp"
 #include "recovery/recovery_section.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 namespace {
 
 constexpr double standing_speed = 1e-6;  // m/s: a slower load stands; rounding errors are far smaller
 
 }  // namespace
 
-Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stations, double self_weight)
+Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<double> stations, double self_weight)
     : beam_(beam), line_(line), stations_(std::move(stations)), gravity_(self_weight) {
   std::size_t size = 0;
   for (double x : stations_) {
@@ -31,7 +31,7 @@ Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stati
     sections_.back().add_weight(line.model, self_weight);
     if (&line == &beam.bridge()) {
       sections_.back().record_sleepers(beam);
-      sections_.back().support_line = support_line(beam.model(), x).height(beam.model().settlement);
+      sections_.back().support_line = beam::support_line(beam.model(), x).height(beam.model().settlement);
     }
     size += 18 + 4 * sections_.back().sleepers.size();
   }
@@ -46,7 +46,7 @@ Recovery::Recovery(Recovery&&) noexcept = default;
 Recovery::~Recovery() = default;
 
 std::pair<double, double> Recovery::element_of(std::size_t station) const {
-  const Element& e = sections_[station].element;
+  const beam::Element& e = sections_[station].element;
   return {e.x, e.x + e.length};
 }
 
@@ -63,7 +63,7 @@ Forces Recovery::inside(std::size_t station, double x, const ElementLoad& load, 
   const RecoverySection& s = sections_[station];
   Forces added = inside(station, x, load);
   const double xi = (x - s.element.x) / s.element.length;
-  if (is_left(xi, s.at.xi) == as_left) return added;
+  if (beam::is_left(xi, s.at.xi) == as_left) return added;
   const Forces by = jump(station, load);
   for (std::size_t f = 0; f < added.size(); ++f) added[f] += as_left ? by[f] : -by[f];
   return added;
@@ -71,12 +71,12 @@ Forces Recovery::inside(std::size_t station, double x, const ElementLoad& load, 
 
 bool Recovery::is_left_of(std::size_t station, double x) const {
   const RecoverySection& s = sections_[station];
-  return is_left((x - s.element.x) / s.element.length, s.at.xi);
+  return beam::is_left((x - s.element.x) / s.element.length, s.at.xi);
 }
 
 bool Recovery::is_outside(double x) const {
-  const Mesh& mesh = line_.mesh;
-  const auto tolerance = [&](int element) { return section_tolerance * mesh.element(element).length; };
+  const beam::Mesh& mesh = line_.mesh;
+  const auto tolerance = [&](int element) { return beam::section_tolerance * mesh.element(element).length; };
   return x < mesh.start() + tolerance(0) || x > mesh.end() - tolerance(mesh.elements() - 1);
 }
 
@@ -208,21 +208,21 @@ StationForms Recovery::forms(std::size_t station) const {
 // Adds the forces of the sleepers on the element: the spring below each, the mass on the beam, the spring along x.
 void Recovery::add_sleepers(const RecoverySection& s, const Values* values, const double* sleepers, Response& r) const {
   for (const RecoverySection::ConnectedSleeper& connected : s.sleepers) {
-    const auto psi = hermite(connected.xi, s.element.length, s.element.shear).value;
+    const auto psi = beam::hermite(connected.xi, s.element.length, s.element.shear).value;
     const auto beam = [&](const Values& y) { return psi[0] * y[1] + psi[1] * y[2] + psi[2] * y[4] + psi[3] * y[5]; };
     const double force = connected.connection.spring.k * (sleepers[0] - beam(values[0])) +
                          connected.connection.spring.c * (sleepers[1] - beam(values[1])) -
                          connected.connection.mass * (beam(values[2]) + gravity_);
     double along = 0.0;
     if (connected.connection.along >= 0) {
-      const auto phi = linear(connected.xi);
-      const auto theta_form = rotation(connected.xi, s.element.length, s.element.shear);
+      const auto phi = beam::linear(connected.xi);
+      const auto theta_form = beam::rotation(connected.xi, s.element.length, s.element.shear);
       const double e = line_.model.surface_height;
       const auto surface = [&](const Values& y) {
         const double theta = theta_form[0] * y[1] + theta_form[1] * y[2] + theta_form[2] * y[4] + theta_form[3] * y[5];
         return phi[0] * y[0] + phi[1] * y[3] - e * theta;
       };
-      const Spring& spring = connected.connection.spring_along;
+      const beam::Spring& spring = connected.connection.spring_along;
       along = spring.k * (sleepers[2] - surface(values[0])) + spring.c * (sleepers[3] - surface(values[1]));
     }
     s.add_load({s.at.element, connected.xi, along, force, -line_.model.surface_height * along}, r);
@@ -257,7 +257,7 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
 
 ElementLoad Recovery::in_own_element(ElementLoad load) const {
   if (load.xi >= 0.0 && load.xi <= 1.0) return load;
-  const Station at = line_.mesh.locate(x_of(load));
+  const beam::Station at = line_.mesh.locate(x_of(load));
   load.element = at.element;
   load.xi = at.xi;
   return load;
@@ -275,7 +275,7 @@ std::span<const Recovery::Place> Recovery::sections_of(int element) const {
 void Recovery::add_beside(const ElementLoad& load, std::vector<Response>& out) const {
   const auto add_at = [&](int element, double xi) {
     for (const Place& place : sections_of(element)) {
-      if (std::abs(xi - sections_[place.section].at.xi) > section_tolerance) continue;
+      if (std::abs(xi - sections_[place.section].at.xi) > beam::section_tolerance) continue;
       const Forces by = jump(place.section, load);
       const bool left = is_left_of(place.section, x_of(load)), from_left = load.speed > 0.0;
       const std::size_t side = left == from_left ? 1 : 0;
@@ -284,7 +284,7 @@ void Recovery::add_beside(const ElementLoad& load, std::vector<Response>& out) c
     }
   };
   add_at(load.element, load.xi);
-  if (load.xi > 1.0 - section_tolerance) add_at(load.element + 1, load.xi - 1.0);
+  if (load.xi > 1.0 - beam::section_tolerance) add_at(load.element + 1, load.xi - 1.0);
 }
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

@@ -9,7 +9,7 @@
 #include "beam/beam.hpp"
 #include "beam/section.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
 /// A load on an element, at xi: fx, fy in N (fy upward), moment in N m counter-clockwise. It moves with
 /// `speed` along x, m/s, and keeps its number `source`, which no other load of a list has; -1: a load that does not
@@ -64,9 +64,9 @@ class Recovery {
   /// Responses of the bridge or the rail; throws InputError for stations that are not on it. `self_weight` is gravity
   /// if it loads the beam, otherwise 0. At a node the response is computed in the element on its right (at the end of
   /// the beam in the element on its left).
-  Recovery(const Beam& beam, const Line& line, std::vector<double> stations, double self_weight);
+  Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<double> stations, double self_weight);
   /// Responses of the bridge.
-  Recovery(const Beam& beam, std::vector<double> stations, double self_weight)
+  Recovery(const beam::Beam& beam, std::vector<double> stations, double self_weight)
       : Recovery(beam, beam.bridge(), std::move(stations), self_weight) {}
   Recovery(Recovery&&) noexcept;
   ~Recovery();
@@ -88,11 +88,11 @@ class Recovery {
   std::pair<double, double> element_of(std::size_t station) const;
   /// Position of a load on this line, m.
   double x_of(const ElementLoad& load) const {
-    const Element& e = line_.mesh.element(load.element);
+    const beam::Element& e = line_.mesh.element(load.element);
     return e.x + load.xi * e.length;
   }
   /// An upper bound of the distance from a station at which a load is at it, m.
-  double greatest_tolerance() const { return section_tolerance * (line_.mesh.end() - line_.mesh.start()); }
+  double greatest_tolerance() const { return beam::section_tolerance * (line_.mesh.end() - line_.mesh.start()); }
   /// Whether a load at x is at an end of the line or outside.
   bool is_outside(double x) const;
   /// The contribution of a load to the forces if it acts at x inside the station's element; zero elsewhere.
@@ -122,8 +122,8 @@ class Recovery {
   void add_beside(const ElementLoad& load, std::vector<Response>& out) const;
   void add_sleepers(const RecoverySection& s, const Values* values, const double* sleepers, Response& r) const;
 
-  const Beam& beam_;
-  const Line& line_;
+  const beam::Beam& beam_;
+  const beam::Line& line_;
   std::vector<double> stations_;
   std::vector<RecoverySection> sections_;
   struct Place {
@@ -137,4 +137,4 @@ class Recovery {
       gathered_;  // for every station: v, w, a, and v, w of the unknowns above each sleeper on its element
 };
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

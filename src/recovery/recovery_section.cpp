@@ -9,24 +9,26 @@
 #include "beam/nonlinear_points.hpp"
 #include "recovery/spread_load.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
-RecoverySection::RecoverySection(const Line& line, double x)
+using beam::Direction;
+
+RecoverySection::RecoverySection(const beam::Line& line, double x)
     : at(line.mesh.locate(x)),
       element(line.mesh.element(at.element)),
-      psi(hermite(at.xi, element.length, element.shear)),
-      phi(linear(at.xi)),
+      psi(beam::hermite(at.xi, element.length, element.shear)),
+      phi(beam::linear(at.xi)),
       bending(element, at.xi),
       stiffness(element, at.xi),
       damping(element, at.xi),
       mass(element, at.xi) {
-  const BeamModel& model = line.model;
+  const beam::BeamModel& model = line.model;
   const auto [v1, theta1, v2, theta2] = line.transverse(at.element);
   const auto [u1, u2] = line.axial(at.element);
   unknowns = {u1, v1, theta1, u2, v2, theta2};
   const double middle = element.x + 0.5 * element.length;
   EI = model.EI.at(middle, element.x);
-  const ElementMatrices matrices = element_matrices(model, element);
+  const beam::ElementMatrices matrices = beam::element_matrices(model, element);
   bending.add_end_forces(matrices.stiffness);
   mass.add_end_forces(matrices.mass);
   mass.add_transverse_density(model.mass);
@@ -42,33 +44,33 @@ RecoverySection::RecoverySection(const Line& line, double x)
 }
 
 /// Subtracts the forces of the temperature: the elastic strain is the total strain minus the thermal strain.
-void RecoverySection::add_strains(const BeamModel& model) {
-  const auto nodal_load = strain_load(model, element);
+void RecoverySection::add_strains(const beam::BeamModel& model) {
+  const auto nodal_load = beam::strain_load(model, element);
   weight.shear -= nodal_load[0];
   weight.moment -= at.xi * element.length * nodal_load[0] - nodal_load[1];
-  weight.axial_force += axial_strain_load(model, element)[0];
+  weight.axial_force += beam::axial_strain_load(model, element)[0];
 }
 
-void RecoverySection::record_sleepers(const Beam& beam) {
+void RecoverySection::record_sleepers(const beam::Beam& beam) {
   if (beam.rail() == nullptr) return;
   const int column = beam.bridge().first_column + element.left;
-  for (const Sleeper& s : sleepers_of(beam.bridge(), column - 1, column + 3)) {
+  for (const beam::Sleeper& s : beam::sleepers_of(beam.bridge(), column - 1, column + 3)) {
     if (s.on_bridge && s.at.element == at.element)
-      sleepers.push_back({connection_of(s, *beam.model().track, beam.layout()), s.at.xi});
+      sleepers.push_back({beam::connection_of(s, *beam.model().track, beam.layout()), s.at.xi});
   }
 }
 
-void RecoverySection::add_foundation(const Line& line) {
-  const BeamModel& model = line.model;
-  const Foundation& f = model.foundation;
-  std::vector<InnerSpring> springs, dampers;
-  for_points(f, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
-    if (!acts(kind, model)) return;
-    for (const PointFoundation& p : points) {
+void RecoverySection::add_foundation(const beam::Line& line) {
+  const beam::BeamModel& model = line.model;
+  const beam::Foundation& f = model.foundation;
+  std::vector<beam::InnerSpring> springs, dampers;
+  beam::for_points(f, [&](const beam::FoundationKind& kind, const std::vector<beam::PointFoundation>& points) {
+    if (!beam::acts(kind, model)) return;
+    for (const beam::PointFoundation& p : points) {
       if (p.law.nonlinear() || p.depth != 0.0) continue;  // it is a load, or at a node
       // locate() determines the element, as in the assembly; a test of x avoids most of the calls.
       if (p.x < element.x - element.length || p.x > element.x + 2.0 * element.length) continue;
-      const Station s = station_of(line.mesh, p);
+      const beam::Station s = beam::station_of(line.mesh, p);
       if (s.element != at.element) continue;
       stiffness.add_spring(kind.direction, p.k, s.xi);
       damping.add_spring(kind.direction, p.c, s.xi);
@@ -78,8 +80,8 @@ void RecoverySection::add_foundation(const Line& line) {
     }
   });
   bool acts_inside = !springs.empty();
-  for_beds(f, [&](const FoundationKind& kind, const Bed& bed) {
-    if (!acts(kind, model) || bed.law.nonlinear()) return;
+  beam::for_beds(f, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
+    if (!beam::acts(kind, model) || bed.law.nonlinear()) return;
     stiffness.add_bed(kind.direction, bed.k);
     damping.add_bed(kind.direction, bed.c);
     acts_inside = acts_inside || kind.direction != Direction::longitudinal;
@@ -90,11 +92,11 @@ void RecoverySection::add_foundation(const Line& line) {
 /// Integrates over the clamped element: calls sum(s, weight*density(s)*G(s)), where G is its influence line for a
 /// force, or for a moment.
 template <class Sum>
-void RecoverySection::integrate_held(const Distribution& density, bool moments, Sum sum) const {
+void RecoverySection::integrate_held(const beam::Distribution& density, bool moments, Sum sum) const {
   const std::vector<double> ends = held->ends();
   const double h = element.length, x = element.x;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-    integrate(density, x + h * ends[i], x + h * ends[i + 1], [&](double s, double piece) {
+    beam::integrate(density, x + h * ends[i], x + h * ends[i + 1], [&](double s, double piece) {
       const double xi = (s - x) / h;
       sum(xi, piece * (moments ? held->by_moment(xi) : held->by_force(xi)));
     });
@@ -102,31 +104,31 @@ void RecoverySection::integrate_held(const Distribution& density, bool moments, 
 
 /// Computes the coefficients for the clamped element on its springs and on the mean of a vertical bed. The effect of a
 /// bed that resists the slope on the deflection between clamped ends is neglected; it is the part k h^2/(40 EI) of it.
-void RecoverySection::set_up_held_element(const BeamModel& model, const std::vector<InnerSpring>& springs,
-                                          const std::vector<InnerSpring>& dampers) {
+void RecoverySection::set_up_held_element(const beam::BeamModel& model, const std::vector<beam::InnerSpring>& springs,
+                                          const std::vector<beam::InnerSpring>& dampers) {
   const double h = element.length;
   double mean = 0.0;
-  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+  beam::for_beds(model.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
     if (kind.direction == Direction::vertical && !bed.law.nonlinear())
-      integrate(bed.k, element.x, element.x + h, [&](double, double piece) { mean += piece / h; });
+      beam::integrate(bed.k, element.x, element.x + h, [&](double, double piece) { mean += piece / h; });
   });
   held.emplace(at.xi, h, EI, mean, springs, element.shear);
-  const auto add = [&](const Distribution& density, Direction direction, std::array<double, 4>& form) {
+  const auto add = [&](const beam::Distribution& density, Direction direction, std::array<double, 4>& form) {
     integrate_held(density, direction == Direction::rotational, [&](double s, double line) {
-      const auto shape = shape_of(direction, s, element);
+      const auto shape = beam::shape_of(direction, s, element);
       for (std::size_t i = 0; i < 4; ++i) form[i] -= line * shape[i];
     });
   };
-  const auto add_points = [&](const std::vector<InnerSpring>& points, std::array<double, 4>& form) {
-    for (const InnerSpring& p : points) {
-      const auto shape = shape_of(p.rotational ? Direction::rotational : Direction::vertical, p.xi, element);
+  const auto add_points = [&](const std::vector<beam::InnerSpring>& points, std::array<double, 4>& form) {
+    for (const beam::InnerSpring& p : points) {
+      const auto shape = beam::shape_of(p.rotational ? Direction::rotational : Direction::vertical, p.xi, element);
       const double line = p.k * (p.rotational ? held->by_moment(p.xi) : held->by_force(p.xi));
       for (std::size_t i = 0; i < 4; ++i) form[i] -= line * shape[i];
     }
   };
   add(model.mass, Direction::vertical, held_by_mass);
   if (model.rotary_inertia.maximum() > 0.0) add(model.rotary_inertia, Direction::rotational, held_by_mass);
-  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+  beam::for_beds(model.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
     if (kind.direction == Direction::longitudinal || bed.law.nonlinear()) return;
     add(bed.k, kind.direction, held_by_stiffness);
     add(bed.c, kind.direction, held_by_damping);
@@ -135,24 +137,24 @@ void RecoverySection::set_up_held_element(const BeamModel& model, const std::vec
   add_points(dampers, held_by_damping);
 }
 
-void RecoverySection::add_weight(const BeamModel& model, double gravity) {
+void RecoverySection::add_weight(const beam::BeamModel& model, double gravity) {
   const double h = element.length, x = at.xi * h;
-  const auto end = transverse_load(model.mass, element);
+  const auto end = beam::transverse_load(model.mass, element);
   weight.shear += gravity * end[0];
   weight.moment += gravity * (x * end[0] - end[1]);
   const auto add_along = [&](double s, double piece) {
     add_axial_point_load((s - element.x) / h, -model.gradient * gravity * piece, weight);
   };
   if (model.gradient != 0.0 && EA > 0.0) {
-    integrate(model.mass, element.x, element.x + x, add_along);
-    integrate(model.mass, element.x + x, element.x + h, add_along);
+    beam::integrate(model.mass, element.x, element.x + x, add_along);
+    beam::integrate(model.mass, element.x + x, element.x + h, add_along);
   }
-  const Bed* nonlinear_bed = nullptr;
-  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+  const beam::Bed* nonlinear_bed = nullptr;
+  beam::for_beds(model.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
     if (kind.direction == Direction::vertical && bed.law.nonlinear()) nonlinear_bed = &bed;
   });
   if (nonlinear_bed != nullptr) return add_weight_at_points(*nonlinear_bed, model.mass, gravity);
-  integrate(model.mass, element.x, element.x + x, [&](double s, double piece) {
+  beam::integrate(model.mass, element.x, element.x + x, [&](double s, double piece) {
     weight.shear -= gravity * piece;
     weight.moment -= gravity * piece * (element.x + x - s);
   });
@@ -166,13 +168,14 @@ void RecoverySection::add_weight(const BeamModel& model, double gravity) {
 }
 
 /// Adds the weight at the integration points of a bed that acts there, so that both cancel where the beam rests on it.
-void RecoverySection::add_weight_at_points(const Bed& bed, const Distribution& mass_per_length, double gravity) {
-  for (const auto& [left, right] : bed_pieces(bed, element)) {
-    integrate(mass_per_length, left, right, [&](double s, double piece) {
+void RecoverySection::add_weight_at_points(const beam::Bed& bed, const beam::Distribution& mass_per_length,
+                                           double gravity) {
+  for (const auto& [left, right] : beam::bed_pieces(bed, element)) {
+    beam::integrate(mass_per_length, left, right, [&](double s, double piece) {
       const double xi = (s - element.x) / element.length, force = gravity * piece;
       weight.deflection -=
-          force * (held ? held->by_force(xi) : fixed_end_by_force(at.xi, xi, element.length, EI, element.shear));
-      if (!is_left(xi, at.xi)) return;
+          force * (held ? held->by_force(xi) : beam::fixed_end_by_force(at.xi, xi, element.length, EI, element.shear));
+      if (!beam::is_left(xi, at.xi)) return;
       weight.shear -= force;
       weight.moment -= force * (at.xi - xi) * element.length;
     });
@@ -185,8 +188,8 @@ void RecoverySection::add_load(const ElementLoad& load, Response& r) const {
 
 void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const {
   const double h = element.length, x = at.xi * h;
-  const Hermite s = hermite(load.xi, h, element.shear);
-  const auto theta = element.shear == 0.0 ? s.slope : rotation(load.xi, h, element.shear);
+  const beam::Hermite s = beam::hermite(load.xi, h, element.shear);
+  const auto theta = element.shear == 0.0 ? s.slope : beam::rotation(load.xi, h, element.shear);
   const double f1 = -load.fy * s.value[0] - load.moment * theta[0];
   const double m1 = -load.fy * s.value[1] - load.moment * theta[1];
   r.shear += f1;
@@ -195,9 +198,9 @@ void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const
     r.deflection +=
         load.fy * held->by_force(load.xi) + (load.moment == 0.0 ? 0.0 : load.moment * held->by_moment(load.xi));
   else
-    r.deflection += load.fy * fixed_end_by_force(at.xi, load.xi, h, EI, element.shear) +
-                    load.moment * fixed_end_by_moment(at.xi, load.xi, h, EI, element.shear);
-  const bool left = is_left(load.xi, at.xi);
+    r.deflection += load.fy * beam::fixed_end_by_force(at.xi, load.xi, h, EI, element.shear) +
+                    load.moment * beam::fixed_end_by_moment(at.xi, load.xi, h, EI, element.shear);
+  const bool left = beam::is_left(load.xi, at.xi);
   if (left) {
     r.shear += load.fy;
     r.moment += load.fy * std::max(at.xi - load.xi, 0.0) * h - load.moment;
@@ -206,9 +209,9 @@ void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const
 }
 
 void RecoverySection::add_axial_point_load(double xi, double force, Response& r) const {
-  const bool left = is_left(xi, at.xi);
+  const bool left = beam::is_left(xi, at.xi);
   r.axial_force += force * (left ? -xi : 1.0 - xi);
   r.axial_displacement += force * element.length / EA * (left ? xi * (1.0 - at.xi) : at.xi * (1.0 - xi));
 }
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

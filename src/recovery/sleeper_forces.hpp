@@ -4,15 +4,14 @@
 #include <vector>
 
 #include "beam/beam.hpp"
+#include "beam/layered_track.hpp"
 
-namespace traverse::beam {
-
-struct Sleeper;
+namespace traverse::recovery {
 
 class SleeperForces {
  public:
   /// Forces of the sleepers nearest to these stations of a layered track, m.
-  SleeperForces(const Beam& beam, const std::vector<double>& stations);
+  SleeperForces(const beam::Beam& beam, const std::vector<double>& stations);
 
   /// Collective, from this rank's slices of the nodal displacements and their rates; complete on every rank.
   void evaluate(const double* v, const double* w);
@@ -31,15 +30,15 @@ class SleeperForces {
     double c, k;
   };
   /// Adds `factor` times the displacement of an unknown to the compression of a spring; -1: it does not move.
-  void add(std::size_t sum, int unknown, const Spring& spring, double factor);
+  void add(std::size_t sum, int unknown, const beam::Spring& spring, double factor);
   /// Adds the bridge's deflection below a sleeper to the compression of a spring.
-  void add_bridge(std::size_t sum, const Sleeper& s, const Spring& spring);
-  void add_sleeper(std::size_t i, const Sleeper& s);
+  void add_bridge(std::size_t sum, const beam::Sleeper& s, const beam::Spring& spring);
+  void add_sleeper(std::size_t i, const beam::Sleeper& s);
 
-  const Beam& beam_;
+  const beam::Beam& beam_;
   std::vector<double> x_;
   std::vector<Term> terms_;
   std::vector<double> sums_;
 };
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

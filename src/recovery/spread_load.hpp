@@ -6,7 +6,7 @@
 
 #include "recovery/recovery.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
 /// Calls f(ElementLoad) with point loads that have the effect of `load`, exact for responses that are polynomials of xi
 /// up to degree 5 on both sides of `kink`. A concentrated load is its own point.
@@ -32,4 +32,4 @@ void for_points(const ElementLoad& load, double kink, F f) {
   }
 }
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

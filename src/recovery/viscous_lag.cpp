@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traverse::beam {
+namespace traverse::recovery {
 namespace {
 
 ElementLoad between(const ElementLoad& from, const ElementLoad& to, double part) {
@@ -99,4 +99,4 @@ void ViscousLag::apply(std::vector<Response>& responses) {
   first_ = false;
 }
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

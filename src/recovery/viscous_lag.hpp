@@ -8,7 +8,7 @@
 #include "recovery/load_movement.hpp"
 #include "recovery/recovery.hpp"
 
-namespace traverse::beam {
+namespace traverse::recovery {
 
 /// With damping b K (eq. 19) a section transmits M + b dM/dt, M = EI v''. Equilibrium of an element determines this
 /// sum. The contribution c of loads, inertia and foundation inside the element therefore enters the elastic forces as m
@@ -51,4 +51,4 @@ class ViscousLag {
   bool first_ = true;
 };
 
-}  // namespace traverse::beam
+}  // namespace traverse::recovery

@@ -9,7 +9,7 @@
 #include "run/process.hpp"
 #include "run/signals.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr std::chrono::microseconds first_interval(100), longest_interval(10'000);
@@ -55,4 +55,4 @@ int run_on_first(MPI_Comm comm, int count, const std::function<int(MPI_Comm)>& w
   return status;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double same_step = 2e-3;  // relative to the step: instants within half of this share the end of a step
@@ -19,12 +19,12 @@ std::vector<const train::WheelContact*> first_points(const train::Fleet& fleet) 
 
 }  // namespace
 
-std::vector<AxleLoadRecords::Event> AxleLoadRecords::events_of(const Scene& scene) {
+std::vector<AxleLoadRecords::Event> AxleLoadRecords::events_of(const scene::Scene& scene) {
   std::vector<Event> events;
   std::size_t wheel = 0;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
     const base::SpeedLaw law = train::law_of(scene.train, i);
-    for (const double start : wheels_at_start(scene, i)) {
+    for (const double start : scene::wheels_at_start(scene, i)) {
       for (const double place : scene.output.passages)
         if (const double time = law.time_of(place - start); time > 0.0 && std::isfinite(time))
           events.push_back({time, place, wheel});
@@ -35,14 +35,14 @@ std::vector<AxleLoadRecords::Event> AxleLoadRecords::events_of(const Scene& scen
   return events;
 }
 
-std::vector<double> axle_passage_times(const Scene& scene) {
+std::vector<double> axle_passage_times(const scene::Scene& scene) {
   std::vector<double> times;
   for (const AxleLoadRecords::Event& event : AxleLoadRecords::events_of(scene)) times.push_back(event.time);
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 
-AxleLoadRecords::AxleLoadRecords(const Scene& scene, double time_step)
+AxleLoadRecords::AxleLoadRecords(const scene::Scene& scene, double time_step)
     : events_(events_of(scene)), tolerance_(same_step * time_step) {}
 
 void AxleLoadRecords::add(double t, const train::Fleet& fleet) {
@@ -83,4 +83,4 @@ std::vector<std::pair<std::string, std::string>> AxleLoadRecords::wheels(const t
   return rows;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

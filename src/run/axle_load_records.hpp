@@ -12,16 +12,16 @@
 #include "train/fleet.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Future times at which wheels pass the places of output_passages, ascending, s.
-std::vector<double> axle_passage_times(const Scene& scene);
+std::vector<double> axle_passage_times(const scene::Scene& scene);
 
 class AxleLoadRecords {
  public:
   AxleLoadRecords() = default;
   /// time_step: the longest one, s.
-  AxleLoadRecords(const Scene& scene, double time_step);
+  AxleLoadRecords(const scene::Scene& scene, double time_step);
 
   /// Evaluates the next observed instant; the first one sets the static forces.
   void add(double t, const train::Fleet& fleet);
@@ -43,8 +43,8 @@ class AxleLoadRecords {
     double force = 0.0, force_at_start = 0.0;  // N, normal
     std::size_t wheel = 0;
   };
-  static std::vector<Event> events_of(const Scene& scene);
-  friend std::vector<double> axle_passage_times(const Scene& scene);
+  static std::vector<Event> events_of(const scene::Scene& scene);
+  friend std::vector<double> axle_passage_times(const scene::Scene& scene);
 
   std::vector<Event> events_;  // in the order of time
   double tolerance_ = 0.0;     // s
@@ -53,4 +53,4 @@ class AxleLoadRecords {
   std::vector<Record> records_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

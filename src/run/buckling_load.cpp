@@ -12,7 +12,7 @@
 #include "structure/beam_operator.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr int most_iterations = 5000;
@@ -69,4 +69,4 @@ double buckling_load(const beam::Beam& compressed) {
   throw SolverError("beam_tension: the buckling load does not converge");
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

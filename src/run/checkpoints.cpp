@@ -17,7 +17,7 @@
 #include "run/signals.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double default_interval = 900.0;  // s
@@ -27,12 +27,12 @@ constexpr std::array<std::string_view, 11> free_options = {
     "ts_max_time",  "scene_tail",   "scene_name",   "restart",         "checkpoint_interval", "output_file",
     "output_quiet", "options_file", "ts_max_steps", "checkpoint_file", "accuracy_cache"};
 
-std::string option_value(const Scene& scene, const char* name) {
+std::string option_value(const scene::Scene& scene, const char* name) {
   const options::Entry* entry = scene.find_option(name);
   return entry == nullptr ? std::string() : entry->value;
 }
 
-std::string path_for(const Scene& scene) {
+std::string path_for(const scene::Scene& scene) {
   std::string name = option_value(scene, "checkpoint_file");
   if (name == "none") return "";
   if (!name.empty()) return name;
@@ -55,7 +55,7 @@ void check_distinct_outputs(const std::string& results, const std::string& check
 }
 
 /// InputError if the results file is an input of the run; a continued study or run is an exception.
-void check_output_is_no_input(const Scene& scene) {
+void check_output_is_no_input(const scene::Scene& scene) {
   const bool continued = !option_value(scene, "restart").empty() || (scene.study && scene.study->resume);
   if (scene.output.file.empty() || continued) return;
   std::vector<std::string> inputs = {results::opened_origin()};
@@ -68,7 +68,7 @@ void check_output_is_no_input(const Scene& scene) {
 
 /// A continued run appends to its results file, unless the command line gives another one. The name in a checkpoint
 /// must be valid as in an options file.
-void set_results_file(const std::string& earlier, const std::string& restart, Scene& scene) {
+void set_results_file(const std::string& earlier, const std::string& restart, scene::Scene& scene) {
   const options::Entry* output = scene.find_option("output_file");
   const bool new_name = output != nullptr && !output->from_file() && !results::is_new_name(*output);
   if (new_name && earlier.empty() && !scene.output.file.empty())
@@ -84,8 +84,8 @@ void set_results_file(const std::string& earlier, const std::string& restart, Sc
 
 }  // namespace
 
-results::Place claim_outputs(MPI_Comm comm, const Scene& scene) {
-  const bool one_run = scene.analysis == Analysis::transient && !scene.study && !scene.sweep;
+results::Place claim_outputs(MPI_Comm comm, const scene::Scene& scene) {
+  const bool one_run = scene.analysis == options::Analysis::transient && !scene.study && !scene.sweep;
   const std::string checkpoint = one_run ? path_for(scene) : "";
   check_distinct_outputs(scene.output.file, checkpoint);
   results::Place place = results::claim_place(comm, scene.output.file);
@@ -102,14 +102,14 @@ results::Place claim_outputs(MPI_Comm comm, const Scene& scene) {
   return place;
 }
 
-std::string digest_of(const Scene& scene) { return digest_of(scene, free_options, options::tables_read()); }
+std::string digest_of(const scene::Scene& scene) { return digest_of(scene, free_options, options::tables_read()); }
 
-std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
+std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, scene::Scene& scene) {
   const std::string path = option_value(scene, "restart");
   if (path.empty()) return std::nullopt;
   if (scene.study || scene.sweep)
     throw InputError("restart = " + path + ": studies and sweeps have no checkpoints; a study goes on by study_resume");
-  if (scene.analysis != Analysis::transient)
+  if (scene.analysis != options::Analysis::transient)
     throw InputError("restart = " + path + ": only runs in time have checkpoints");
   results::Checkpoint earlier = results::read_checkpoint(comm, path);
   if (earlier.digest != digest_of(scene))
@@ -120,7 +120,7 @@ std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
   return earlier;
 }
 
-Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Simulation& simulation, results::Recorder& recorder,
+Checkpoints::Checkpoints(MPI_Comm comm, const scene::Scene& scene, Simulation& simulation, results::Recorder& recorder,
                          results::Checkpoint state)
     : comm_(comm),
       simulation_(simulation),
@@ -128,7 +128,7 @@ Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Simulation& simulati
       state_(std::move(state)),
       own_file_(results::id_at(option_value(scene, "restart").c_str())),
       interval_(default_interval) {
-  if (scene.analysis != Analysis::transient) return;
+  if (scene.analysis != options::Analysis::transient) return;
   path_ = path_for(scene);
   if (const std::string interval = option_value(scene, "checkpoint_interval"); !interval.empty())
     (void)options::parse_number(interval, interval_);
@@ -168,4 +168,4 @@ void Checkpoints::forget() {
     results::remove_checkpoint(comm_, path_);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -12,25 +12,25 @@
 #include "run/simulation.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Digest of all inputs that determine the results: the options, without the options for duration, file names and
 /// display, and the files that the options name.
-std::string digest_of(const Scene& scene);
+std::string digest_of(const scene::Scene& scene);
 
 /// Collective. The checkpoint of the option `restart`; empty if it is not given. InputError if it belongs to another
 /// scene, or if the kind of run has no checkpoints. Sets the scene's results file from the checkpoint if the command
 /// line does not give one.
-std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene);
+std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, scene::Scene& scene);
 
 /// Collective. Claims the place of the results and checks the place of the checkpoint, before any computation.
 /// InputError or FileError if a file would be overwritten that is not the output of an earlier run.
-results::Place claim_outputs(MPI_Comm comm, const Scene& scene);
+results::Place claim_outputs(MPI_Comm comm, const scene::Scene& scene);
 
 class Checkpoints {
  public:
   /// Simulation and recorder must outlive this object. state: all data that are in none of them.
-  Checkpoints(MPI_Comm comm, const Scene& scene, Simulation& simulation, results::Recorder& recorder,
+  Checkpoints(MPI_Comm comm, const scene::Scene& scene, Simulation& simulation, results::Recorder& recorder,
               results::Checkpoint state);
 
   /// Whether this rank requires a checkpoint now. The clock is read at intervals only.
@@ -60,4 +60,4 @@ class Checkpoints {
   unsigned calls_ = 0;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -12,7 +12,7 @@
 #include "run/low_pass.hpp"
 #include "run/response_extremes.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double least_frequency = 30.0;    // Hz; EN 1990, A2.4.4.2.1
@@ -57,8 +57,8 @@ double cutoff_of(const std::vector<double>& frequencies) {
   return std::max({least_frequency, first_factor * frequencies.front(), frequencies.back()});
 }
 
-bool filters_deck(const Scene& scene) {
-  return scene.beam && scene.analysis == Analysis::transient && !scene.output.probes.empty() &&
+bool filters_deck(const scene::Scene& scene) {
+  return scene.beam && scene.analysis == options::Analysis::transient && !scene.output.probes.empty() &&
          scene.output.low_pass.value_or(least_frequency) > 0.0 &&
          (scene.limits_deck_acceleration() || scene.output.low_pass_requested);
 }
@@ -68,9 +68,9 @@ bool frequencies_are_cheap(const beam::Beam& beam) {
   return beam.mesh().nodes() <= cheap_nodes && *std::min_element(elements.begin(), elements.end()) > 1;
 }
 
-double cutoff_frequency(const Scene& scene, const SharedBeam& shared, bool affordable,
+double cutoff_frequency(const scene::Scene& scene, const SharedBeam& shared, bool affordable,
                         std::vector<std::string>& notes) {
-  if (!shared.beam || scene.output.probes.empty() || scene.analysis != Analysis::transient) return 0.0;
+  if (!shared.beam || scene.output.probes.empty() || scene.analysis != options::Analysis::transient) return 0.0;
   if (scene.output.low_pass) return *scene.output.low_pass;
   if (!affordable && !shared.modal) {
     notes.emplace_back(
@@ -112,10 +112,10 @@ DeckAcceleration::DeckAcceleration(double frequency, const Plan& plan, const std
   rows_.reserve(stations.size() * static_cast<std::size_t>(2.0 + plan.end_time / plan.interval));
 }
 
-void DeckAcceleration::add(double t, std::span<const beam::Response> probes) {
+void DeckAcceleration::add(double t, std::span<const recovery::Response> probes) {
   const double due = static_cast<double>(instants_) * interval_;
   if (std::abs(t - due) > instant_tolerance * interval_) return;
-  for (const beam::Response& probe : probes) rows_.push_back(probe.acceleration);
+  for (const recovery::Response& probe : probes) rows_.push_back(probe.acceleration);
   ++instants_;
 }
 
@@ -146,4 +146,4 @@ results::Recorder::Dataset DeckAcceleration::stored() const {
   return set;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

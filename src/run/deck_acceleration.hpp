@@ -14,10 +14,10 @@
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Whether a transient run of the scene filters the accelerations of its probes, if its steps are short enough.
-bool filters_deck(const Scene& scene);
+bool filters_deck(const scene::Scene& scene);
 
 /// Whether at least two frequencies exist and computing them is cheap.
 bool frequencies_are_cheap(const beam::Beam& beam);
@@ -31,7 +31,8 @@ double cutoff_of(const std::vector<double>& frequencies);
 /// Collective, after SharedBeam::prepare. The cut-off frequency (Hz) of deck accelerations in this scene; 0: they are
 /// not filtered. It is given by the scene, or is the greatest of 30 Hz, 1.5 f1 and f3, the bridge's distinct bending
 /// frequencies. affordable: whether to compute these. Appends the choice to `notes`.
-double cutoff_frequency(const Scene& scene, const SharedBeam& shared, bool affordable, std::vector<std::string>& notes);
+double cutoff_frequency(const scene::Scene& scene, const SharedBeam& shared, bool affordable,
+                        std::vector<std::string>& notes);
 
 /// The interval of instants, s, for accurate filtering.
 double spacing_for(double frequency);
@@ -64,7 +65,7 @@ class DeckAcceleration {
   DeckAcceleration(double frequency, const Plan& plan, const std::vector<double>& stations);
 
   /// Stores an instant at a multiple of the plan's interval; ignores others.
-  void add(double t, std::span<const beam::Response> probes);
+  void add(double t, std::span<const recovery::Response> probes);
   /// After the last instant, once: filters all series and adds the extremes before their unsettled ends to the peaks.
   void finish(ResponseExtremes& peaks);
   /// After finish. The peak of the whole series.
@@ -86,4 +87,4 @@ class DeckAcceleration {
   double settled_until_ = 0.0;  // s
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

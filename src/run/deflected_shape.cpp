@@ -7,7 +7,7 @@
 #include "beam/shape_points.hpp"
 #include "beam/support_line.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr std::size_t points_per_call = 4000;  // points inside elements in one call; each needs a kilobyte
@@ -30,15 +30,15 @@ void fill_inside(const beam::Beam& beam, double self_weight, const LargestDeflec
                  std::vector<double>& deflection) {
   std::vector<double> stations;
   for (const std::size_t i : which) stations.push_back(points[i].x);
-  beam::Recovery recovery(beam, std::move(stations), self_weight);
-  std::vector<beam::Response> responses;
+  recovery::Recovery recovery(beam, std::move(stations), self_weight);
+  std::vector<recovery::Response> responses;
   recovery.evaluate(worst.v.data(), worst.w.data(), worst.a.data(), worst.loads, responses);
   for (std::size_t k = 0; k < which.size(); ++k) deflection[which[k]] = responses[k].deflection;
 }
 
 }  // namespace
 
-results::Shape shape_of(const beam::Beam& beam, const Scene& scene, const LargestDeflection& worst) {
+results::Shape shape_of(const beam::Beam& beam, const scene::Scene& scene, const LargestDeflection& worst) {
   const beam::ShapePoints shape(beam.mesh(), scene.output.probes);
   const std::vector<Point>& points = shape.points();
   results::Shape out{worst.time, shape.x(), std::vector<double>(points.size(), 0.0)};
@@ -57,4 +57,4 @@ results::Shape shape_of(const beam::Beam& beam, const Scene& scene, const Larges
   return out;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -9,7 +9,7 @@
 
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double warning_ratio = 0.1;  // relative to the longest span
@@ -17,7 +17,7 @@ constexpr double error_ratio = 100.0;  // relative to the longest span
 
 }  // namespace
 
-void check_deflection(MPI_Comm comm, const Scene& scene, double deflection) {
+void check_deflection(MPI_Comm comm, const scene::Scene& scene, double deflection) {
   if (!scene.beam) return;
   const double span = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end());
   const double size = std::abs(deflection);
@@ -35,4 +35,4 @@ void check_deflection(MPI_Comm comm, const Scene& scene, double deflection) {
         size, span);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

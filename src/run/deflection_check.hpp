@@ -5,10 +5,10 @@
 
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Prints a warning on the first rank if the deflection (m) is a large part of the longest span. SolverError if it is
 /// impossibly large: then some quantity is not in SI units. The same on every rank.
-void check_deflection(MPI_Comm comm, const Scene& scene, double deflection);
+void check_deflection(MPI_Comm comm, const scene::Scene& scene, double deflection);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-namespace traverse::app {
+namespace traverse::run {
 
 std::vector<results::Recorder::Dataset> envelopes(const ResponseExtremes& peaks, bool forces) {
   std::vector<results::Recorder::Dataset> sets;
@@ -30,4 +30,4 @@ std::vector<results::Recorder::Dataset> envelopes(const ResponseExtremes& peaks,
   return sets;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

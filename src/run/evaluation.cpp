@@ -11,7 +11,7 @@
 
 #include "run/envelope.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 // Largest energy residual of a valid result, relative to the change of the energies. At 5 % wheel forces have an error
@@ -26,8 +26,11 @@ constexpr double max_static_work =
 }  // namespace
 
 base::PassagePeaks Result::passage_peaks() const {
-  base::PassagePeaks found{{}, summary.least_wheel_force, summary.greatest_wheel_force,
-                           static_cast<double>(summary.contact_losses), summary.longest_loss};
+  base::PassagePeaks found{{},
+                           summary.least_wheel_force,
+                           summary.greatest_wheel_force,
+                           static_cast<double>(summary.contact_losses),
+                           summary.longest_loss};
   for (std::size_t p = 0; p < peaks.probes(); ++p) {
     const auto peak = [&](Quantity q) {
       const Extreme& extreme = peaks.largest_of_each(q)[p];
@@ -50,7 +53,7 @@ bool Result::has_uncovered_event(double losses_covered_until) const {
          std::any_of(losses.begin(), losses.end(), [&](double t) { return t > losses_covered_until; });
 }
 
-Evaluation::Evaluation(const Scene& scene, coupling::System& system, const beam::Beam* beam, const Plan& plan,
+Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, const beam::Beam* beam, const Plan& plan,
                        const Wants& wants, std::vector<std::string>& notes)
     : scene_(scene), system_(system), beam_(beam), wants_(wants) {
   if (beam != nullptr) {
@@ -80,7 +83,7 @@ Evaluation::Evaluation(const Scene& scene, coupling::System& system, const beam:
 }
 
 void Evaluation::set_up_filters(const Plan& plan, std::vector<std::string>& notes) {
-  const Output& out = scene_.output;
+  const scene::Output& out = scene_.output;
   int rank = 0;
   MPI_Comm_rank(system_.comm(), &rank);
   const auto filters = [&](double cutoff, std::size_t series, double spacing, const char* what, const char* quantity) {
@@ -99,7 +102,7 @@ void Evaluation::set_up_filters(const Plan& plan, std::vector<std::string>& note
 void Evaluation::sample(const integrate::Instant& instant) {
   const bool stored = is_stored(instant.purpose);
   const bool all = stored || limit_check_ || extrapolation_check_.needs_springs() || exits_.needs_bodies() ||
-                   scene_.train.drive == Drive::free;
+                   scene_.train.drive == train::Drive::free;
   system_.observe(instant.time, instant.y, instant.acceleration, now_.motion, all);
   const structure::NodalMotion& beam = now_.motion.beam;
   time_ = instant.time;
@@ -111,10 +114,10 @@ void Evaluation::sample(const integrate::Instant& instant) {
       movement_->advance(instant.time, now_.motion.bridge_loads);
       if (lag_) lag_->apply(now_.probes);
     }
-    for (beam::Response& probe : now_.probes)
+    for (recovery::Response& probe : now_.probes)
       if (!lag_) probe.moment_rate = std::numeric_limits<double>::quiet_NaN();
     if (scene_.by_given_modes())
-      for (beam::Response& probe : now_.probes)  // section forces are unknown
+      for (recovery::Response& probe : now_.probes)  // section forces are unknown
         probe = {probe.deflection, probe.velocity, probe.acceleration, probe.relative_deflection};
     subtract_support_motion();
     for (std::size_t i = 0; i < drag_response_.size(); ++i)
@@ -127,7 +130,7 @@ void Evaluation::sample(const integrate::Instant& instant) {
   record_largest_deflection();
   if (limit_check_) limit_check_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
-  if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
+  if (beam_ != nullptr && scene_.train.drive == train::Drive::free) paths_.add(instant.time, system_.fleet());
   if (stored) store();
 }
 
@@ -177,13 +180,13 @@ void Evaluation::record_peaks() {
   }
   extrapolation_check_.add(time_, fleet, now_.motion.beam.foundation, peaks_);
   peaks_.add(time_, now_.probes, wheel_forces_,
-             movement_ ? movement_->passages() : std::span<const beam::StationPassage>());
+             movement_ ? movement_->passages() : std::span<const recovery::StationPassage>());
   if (deck_) deck_->add(time_, now_.probes);
 }
 
 void Evaluation::record_largest_deflection() {
   double deflection = 0.0;
-  for (const beam::Response& probe : now_.probes)
+  for (const recovery::Response& probe : now_.probes)
     deflection = std::max(deflection, std::abs(probe.relative_deflection));
   if (deflection > largest_deflection_value_) {
     largest_deflection_value_ = deflection;
@@ -210,7 +213,7 @@ void Evaluation::record_energy() {
   for (double term : {e.kinetic, e.strain, e.potential, e.largest_work})
     summary_.largest_energy = std::max(summary_.largest_energy, std::abs(term));
   // Without steps that end at kinks the work of the drive is not accurate enough to be separated.
-  const bool separate = scene_.train.drive == Drive::constant && scene_.model.step_kinks;
+  const bool separate = scene_.train.drive == train::Drive::constant && scene_.model.step_kinks;
   const double forward = separate ? start.kinetic : 0.0;
   for (double change :
        {e.kinetic - forward, e.strain - start.strain, e.potential - start.potential, e.dissipated, e.work})
@@ -257,7 +260,7 @@ void Evaluation::record_wheels() {
   summary_.least_wheel_force_time = least.time;
   summary_.least_wheel = wheel_name(fleet, least.place);
   const Extreme& largest = wheels_.unloading();
-  if (largest.value >= 0.0 && scene_.start == Start::equilibrium)
+  if (largest.value >= 0.0 && scene_.start == scene::Start::equilibrium)
     summary_.unloading = {largest.value, largest.time, wheel_name(fleet, largest.place)};
 }
 
@@ -337,7 +340,7 @@ void Evaluation::summarise_peaks() {
     summary_.axial_force = if_known(axial_force);
   }
   if (!has_largest_deflection()) return;
-  if (scene_.analysis == Analysis::transient)
+  if (scene_.analysis == options::Analysis::transient)
     summary_.static_deflection = system_.weights().static_peak(summary_.deflection.place, paths_, time_);
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
@@ -374,4 +377,4 @@ void Evaluation::record_once(Result& result) {
   add({{"/envelope/static_deflection", {probes.size()}, std::move(deflections), "m"}});
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

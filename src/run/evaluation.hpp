@@ -25,7 +25,7 @@
 #include "run/wheel_unloading.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// What is evaluated of a run beyond its peaks and diagnostics.
 struct Wants {
@@ -41,8 +41,8 @@ struct Wants {
 class Evaluation {
  public:
   /// Scene, system and beam must outlive this object. The reasons why series are not filtered are appended to `notes`.
-  Evaluation(const Scene& scene, coupling::System& system, const beam::Beam* beam, const Plan& plan, const Wants& wants,
-             std::vector<std::string>& notes);
+  Evaluation(const scene::Scene& scene, coupling::System& system, const beam::Beam* beam, const Plan& plan,
+             const Wants& wants, std::vector<std::string>& notes);
 
   /// Evaluates an instant.
   void sample(const integrate::Instant& instant);
@@ -77,14 +77,14 @@ class Evaluation {
   bool has_largest_deflection() const;
   void record_once(Result& result);
 
-  const Scene& scene_;
+  const scene::Scene& scene_;
   coupling::System& system_;
   const beam::Beam* beam_;
   Wants wants_;
-  std::optional<beam::Recovery> recovery_, rail_recovery_;
-  std::optional<beam::LoadMovement> movement_;  // on the bridge
-  std::optional<beam::ViscousLag> lag_;
-  std::vector<beam::Response> drag_response_;
+  std::optional<recovery::Recovery> recovery_, rail_recovery_;
+  std::optional<recovery::LoadMovement> movement_;  // on the bridge
+  std::optional<recovery::ViscousLag> lag_;
+  std::vector<recovery::Response> drag_response_;
   std::vector<double> with_drag_;                 // accelerations including the accelerations of modal damping
   std::vector<beam::SupportLine> support_lines_;  // of each probe, if supports move vertically
   std::vector<double> ground_;                    // m: their displacements now, at every span end
@@ -109,4 +109,4 @@ class Evaluation {
   bool at_first_sample_ = true;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

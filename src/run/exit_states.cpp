@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 /// The number of the vehicle's first body among the bodies of all units.
@@ -17,7 +17,7 @@ std::size_t first_body(const train::Fleet& fleet, const train::Member& member) {
 
 }  // namespace
 
-ExitStates::ExitStates(const Scene& scene) {
+ExitStates::ExitStates(const scene::Scene& scene) {
   if (!scene.beam) return;
   steps_end_before_exits_ = scene.contact_tolerance != 0.0;
   const beam::BeamModel& beam = *scene.beam;
@@ -74,7 +74,7 @@ bool ExitStates::leaves_guide(const train::Member& member) const {
          });
 }
 
-void ExitStates::add(double t, const train::Fleet& fleet, const std::vector<beam::Response>& probes) {
+void ExitStates::add(double t, const train::Fleet& fleet, const std::vector<recovery::Response>& probes) {
   if (ends_.empty()) return;
   std::vector<std::array<Motion, 3>> bodies;
   for (const train::MovingVehicle& vehicle : fleet.vehicles)
@@ -147,4 +147,4 @@ std::vector<std::pair<std::string, std::string>> ExitStates::bodies(const train:
   return rows;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -11,18 +11,18 @@
 #include "train/fleet.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 class ExitStates {
  public:
   ExitStates() = default;
-  explicit ExitStates(const Scene& scene);
+  explicit ExitStates(const scene::Scene& scene);
 
   /// Whether there is an end to leave, so that every instant needs the motion of all bodies.
   bool needs_bodies() const { return !ends_.empty(); }
   /// Evaluates the next observed instant t, s. Between two instants, positions and the deflections of the probes are
   /// interpolated by cubics; the tip that a guided wheel leaves has the motion of the instant before.
-  void add(double t, const train::Fleet& fleet, const std::vector<beam::Response>& probes);
+  void add(double t, const train::Fleet& fleet, const std::vector<recovery::Response>& probes);
   /// The exits in the order of time: /exit/time, position, velocity, and tip_deflection, tip_velocity of a probe at
   /// this end (NaN without such a probe).
   std::vector<results::Recorder::Dataset> datasets() const;
@@ -60,4 +60,4 @@ class ExitStates {
   bool steps_end_before_exits_ = false;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -11,7 +11,7 @@
 
 #include "traverse/train/vehicle.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr unsigned char unloaded = 1, compressed = 2, tensioned = 4;
@@ -30,7 +30,7 @@ ExtrapolationCheck::ExtrapolationCheck(double until, const train::Fleet& fleet, 
 }
 
 void ExtrapolationCheck::add_springs(const train::Fleet& fleet) {
-  std::map<std::tuple<const Vehicle*, bool, std::size_t>, std::size_t> kinds;
+  std::map<std::tuple<const train::Vehicle*, bool, std::size_t>, std::size_t> kinds;
   for (std::size_t vehicle = 0; vehicle < fleet.members.size(); ++vehicle) {
     const train::Member& member = fleet.members[vehicle];
     const auto add = [&](const auto& springs, int first, bool torsion) {
@@ -100,4 +100,4 @@ void ExtrapolationCheck::add(double t, const train::Fleet& fleet, const structur
     for (const double force : foundation.below_sleepers) record(t, sleepers_, force);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

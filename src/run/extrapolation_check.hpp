@@ -14,7 +14,7 @@
 #include "train/fleet.hpp"
 #include "traverse/beam/model.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 class ExtrapolationCheck {
  public:
@@ -67,4 +67,4 @@ class ExtrapolationCheck {
   std::string new_event_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -12,7 +12,7 @@
 #include "base/bytes.hpp"
 #include "run/interpolated_extremum.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// The latest times at which a curve has a kink, s.
 class KinkTimes {
@@ -177,4 +177,4 @@ class JumpingCurve {
   bool known_ = false;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

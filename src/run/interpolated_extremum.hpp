@@ -7,7 +7,7 @@
 
 #include "base/extremum.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 using base::Extreme;
 
@@ -43,4 +43,4 @@ Extreme interpolate_extremum(const Samples& samples, std::size_t i, Smooth&& smo
   return {extreme, t[i] + offset};
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

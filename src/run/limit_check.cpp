@@ -9,7 +9,7 @@
 #include <iterator>
 #include <limits>
 
-namespace traverse::app {
+namespace traverse::run {
 
 using results::EvaluatedQuantity;
 
@@ -106,8 +106,8 @@ struct Quantities {
     return found;
   }
   EvaluatedQuantity no_wheels() const {
-    return unknown(check.scene_.start == Start::given ? "with scene_start given no wheel force at rest is known"
-                                                      : "the scene has no wheels");
+    return unknown(check.scene_.start == scene::Start::given ? "with scene_start given no wheel force at rest is known"
+                                                             : "the scene has no wheels");
   }
   EvaluatedQuantity not_filtered() const {
     return summary.unloading ? unknown("wheel forces are not low-passed in this run") : no_wheels();
@@ -168,7 +168,7 @@ static_assert(std::all_of(std::begin(options::limit_quantities), std::end(option
 
 }  // namespace
 
-LimitCheck::LimitCheck(const Scene& scene, const train::Fleet& fleet, const beam::Beam* beam)
+LimitCheck::LimitCheck(const scene::Scene& scene, const train::Fleet& fleet, const beam::Beam* beam)
     : scene_(scene), fleet_(fleet), cars_(fleet) {
   if (beam != nullptr) rotations_.emplace(*beam);
 }
@@ -190,4 +190,4 @@ std::vector<results::Verdict> LimitCheck::verdicts(const results::Summary& summa
   return list;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

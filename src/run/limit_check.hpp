@@ -10,13 +10,13 @@
 #include "run/response_extremes.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Records the quantities of limits during a run. Scene, fleet and beam must outlive this object.
 class LimitCheck {
  public:
   /// beam: null without a bridge.
-  LimitCheck(const Scene& scene, const train::Fleet& fleet, const beam::Beam* beam);
+  LimitCheck(const scene::Scene& scene, const train::Fleet& fleet, const beam::Beam* beam);
 
   /// Collective. Evaluates an observed instant; v: this rank's displacements of the structure.
   void sample(double t, const double* v);
@@ -34,10 +34,10 @@ class LimitCheck {
  private:
   friend struct Quantities;
 
-  const Scene& scene_;
+  const scene::Scene& scene_;
   const train::Fleet& fleet_;
   std::optional<DeckRotations> rotations_;
   CarAccelerations cars_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr int rotation = 2, rotation_right = 3;  // unknowns of a node
@@ -57,4 +57,4 @@ const std::string& CarAccelerations::body(std::size_t vehicle) const {
   return fleet_.members[vehicle].type->mechanism.bodies[heaviest_[vehicle]].name;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -11,7 +11,7 @@
 #include "beam/beam.hpp"
 #include "train/fleet.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 using base::Extreme;
 
@@ -61,4 +61,4 @@ class CarAccelerations {
   Extreme largest_{-1.0};
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

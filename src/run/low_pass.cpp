@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double margin_periods =
@@ -75,4 +75,4 @@ void LowPass::apply(std::vector<double>& series, std::size_t count) const {
     for (std::size_t k = 0; k < count; ++k) series[i * count + k] = inner[i * width + k];
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

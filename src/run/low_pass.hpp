@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// The name of the filter in the results file.
 inline constexpr const char* low_pass_name = "Butterworth, order 4, forward and backward";
@@ -34,4 +34,4 @@ class LowPass {
   std::size_t margin_ = 0;  // added instants at either end
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -10,7 +10,7 @@
 #include "run/quantity.hpp"
 #include "traverse/options/verdict_limit.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 using results::Recorder;
@@ -85,14 +85,14 @@ void record_bridge(const beam::BeamModel& beam, Recorder& recorder) {
   record_foundation(beam, recorder);
 }
 
-void record_type(const Vehicle& vehicle, const std::string& group, Recorder& recorder) {
+void record_type(const train::Vehicle& vehicle, const std::string& group, Recorder& recorder) {
   Pairs names, joint_names;
   std::vector<double> bodies, wheels, springs, joints, joint_ends;
   for (const multibody::Body& b : vehicle.mechanism.bodies) {
     names.emplace_back(vehicle.name, b.name);
     bodies.insert(bodies.end(), {b.position.x(), b.position.y(), b.mass});
   }
-  for (const Wheel& w : vehicle.wheels) {
+  for (const train::Wheel& w : vehicle.wheels) {
     const multibody::Body& body = vehicle.mechanism.bodies[static_cast<std::size_t>(w.body)];
     wheels.insert(wheels.end(), {body.position.x(), body.position.y(), w.radius});
   }
@@ -115,7 +115,7 @@ void record_type(const Vehicle& vehicle, const std::string& group, Recorder& rec
   add_rows(recorder, group + "/joint_ends", 4, std::move(joint_ends), "m, m, m, m");
 }
 
-void record_load(const MovingLoad& load, const std::string& name, Recorder& recorder) {
+void record_load(const train::MovingLoad& load, const std::string& name, Recorder& recorder) {
   std::vector<double> forces, lines;
   for (std::size_t i = 0; i < load.forces.size(); ++i) {
     const double length = length_of(load, i);
@@ -151,7 +151,7 @@ void record_courses(const Moving& moving, const std::string& name, Recorder& rec
   if (!list.empty()) recorder.attributes("/model/" + name, list);
 }
 
-void record_train(const Scene& scene, Recorder& recorder) {
+void record_train(const scene::Scene& scene, Recorder& recorder) {
   record_courses(scene.train, "trains", recorder);
   record_courses(scene.load, "loads", recorder);
   std::vector<double> train;
@@ -175,7 +175,7 @@ void record_quantities(Recorder& recorder) {
 
 }  // namespace
 
-void record_model(const Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder) {
+void record_model(const scene::Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder) {
   Pairs rows;
   for (const std::string& note : notes) rows.emplace_back(std::to_string(rows.size() + 1), base::text_of_note(note));
   if (!rows.empty()) recorder.tables({{"/model/notes", rows}});
@@ -199,4 +199,4 @@ void record_modes(const SharedBeam& shared, results::Recorder& recorder) {
   recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -8,13 +8,13 @@
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Stores spans, supports, hinges, foundations, stiffness and mass, vehicles and forces at t = 0, and the notes of the
 /// run.
-void record_model(const Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder);
+void record_model(const scene::Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder);
 
 /// Stores the modes that represent the bridge, or its first distinct frequencies, with their damping ratios: /modes.
 void record_modes(const SharedBeam& shared, results::Recorder& recorder);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -11,7 +11,7 @@
 #include "results/stage.hpp"
 #include "run/simulation.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 norm::LoadModel static_train(std::string name, const std::vector<coupling::StaticLoad>& weights) {
   std::vector<double> forces, x;
@@ -22,8 +22,8 @@ norm::LoadModel static_train(std::string name, const std::vector<coupling::Stati
   return norm::train_of(std::move(name), forces, x);
 }
 
-std::vector<norm::LoadModel> static_trains(const Scene& given, const SharedBeam& shared) {
-  Scene scene = given;
+std::vector<norm::LoadModel> static_trains(const scene::Scene& given, const SharedBeam& shared) {
+  scene::Scene scene = given;
   std::vector<norm::LoadModel> trains;
   const std::size_t count = given.sweep && !given.sweep->loads.empty() ? given.sweep->loads.size() : 1;
   for (std::size_t i = 0; i < count; ++i) {
@@ -45,23 +45,23 @@ std::vector<norm::LoadModel> static_trains(const Scene& given, const SharedBeam&
   return trains;
 }
 
-norm::NormCheck norm_check(const Scene& scene, std::vector<norm::LoadModel> trains) {
+norm::NormCheck norm_check(const scene::Scene& scene, std::vector<norm::LoadModel> trains) {
   const results::Stage stage("static effects of trains and load models");
   return {*scene.beam, *scene.norm, std::move(trains), scene.output.probes};
 }
 
-norm::ComputedPeaks peaks_of_run(const Scene& scene, const ResponseExtremes& peaks) {
-  norm::ComputedPeaks computed{{greatest_speed(scene)}, scene.output.probes, {{}}};
+norm::ComputedPeaks peaks_of_run(const scene::Scene& scene, const ResponseExtremes& peaks) {
+  norm::ComputedPeaks computed{{scene::greatest_speed(scene)}, scene.output.probes, {{}}};
   for (const Extreme& peak : peaks.largest_of_each(deflection))
     computed.trains[0].deflection.push_back(std::abs(peak.value));
   for (const Extreme& peak : peaks.largest_of_each(moment)) computed.trains[0].moment.push_back(std::abs(peak.value));
   return computed;
 }
 
-bool compares_with_lm71(const Scene& scene) {
+bool compares_with_lm71(const scene::Scene& scene) {
   const std::vector<std::string>& models = scene.norm->load_models;
   return !scene.self_weight && !scene.beam->strained() && !scene.output.probes.empty() &&
          std::find(models.begin(), models.end(), "lm71") != models.end();
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

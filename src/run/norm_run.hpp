@@ -10,19 +10,19 @@
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// The static wheel loads of a train and the forces that move with it.
 norm::LoadModel static_train(std::string name, const std::vector<coupling::StaticLoad>& weights);
 /// The trains of a scene, one for each train of its sweep. shared: the beam that all calling ranks share.
-std::vector<norm::LoadModel> static_trains(const Scene& scene, const SharedBeam& shared);
+std::vector<norm::LoadModel> static_trains(const scene::Scene& scene, const SharedBeam& shared);
 
 /// Not collective; the result is the same on every rank.
-norm::NormCheck norm_check(const Scene& scene, std::vector<norm::LoadModel> trains);
+norm::NormCheck norm_check(const scene::Scene& scene, std::vector<norm::LoadModel> trains);
 /// The peaks of one run after its end.
-norm::ComputedPeaks peaks_of_run(const Scene& scene, const ResponseExtremes& peaks);
+norm::ComputedPeaks peaks_of_run(const scene::Scene& scene, const ResponseExtremes& peaks);
 /// Whether dynamic effects can be compared with load models: LM71 is selected, and the results do not contain the
 /// bridge's own weight.
-bool compares_with_lm71(const Scene& scene);
+bool compares_with_lm71(const scene::Scene& scene);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

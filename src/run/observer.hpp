@@ -6,7 +6,7 @@
 
 #include "integrate/stepper.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 class Observer {
  public:
@@ -35,4 +35,4 @@ class ObserverBy : public Observer {
   Step step_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

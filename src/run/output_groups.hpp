@@ -3,7 +3,7 @@
 
 #include "run/outputs.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 using OutputGroup = void (*)(const Source& source, Outputs& outputs);
 
@@ -24,4 +24,4 @@ inline constexpr OutputGroup output_groups[] = {add_couplers, add_vehicles, add_
 inline constexpr OutputGroup output_groups_of_a_bridge[] = {
     add_probes, add_supports, add_foundation, add_balance, add_rail, add_outputs_of_modes, add_hanging, add_sleepers};
 
-}  // namespace traverse::app
+}  // namespace traverse::run

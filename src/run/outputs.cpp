@@ -4,7 +4,7 @@
 
 #include "output_groups.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr Row<EnergyTerms> energy_rows[] = {
@@ -35,7 +35,7 @@ std::vector<results::Layout::Constant> stations(const std::vector<double>& probe
   return constants;
 }
 
-results::Layout layout_without_series(const Scene& scene) {
+results::Layout layout_without_series(const scene::Scene& scene) {
   std::vector<double> ends = {scene.beam->start};
   for (const double span : scene.beam->spans) ends.push_back(ends.back() + span);
   results::Layout layout;
@@ -43,4 +43,4 @@ results::Layout layout_without_series(const Scene& scene) {
   return layout;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

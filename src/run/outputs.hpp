@@ -2,7 +2,7 @@
 // that evaluates it from its object (a probe, a body, a wheel). The width of a dataset follows from the type of the
 // function's result. The same row describes the dataset and fills it, so that both always agree.
 //
-//   constexpr Row<beam::Response> rows[] = {{"moment", "N m", of<&beam::Response::moment>}, ...};
+//   constexpr Row<recovery::Response> rows[] = {{"moment", "N m", of<&recovery::Response::moment>}, ...};
 //   outputs.add_each("/probes/", rows, 12, [](const Observed& now, std::size_t probe) { return now.probes[probe]; });
 #pragma once
 
@@ -22,7 +22,7 @@
 #include "results/recorder.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Stored energies and integrals of powers, J; `residual` is the imbalance.
 struct EnergyTerms {
@@ -31,19 +31,19 @@ struct EnergyTerms {
 
 /// The values at a stored instant.
 struct Observed {
-  std::vector<beam::Response> probes, rail;     // at the scene's probes; empty without a bridge or a rail
-  std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam, at the ends of spans
+  std::vector<recovery::Response> probes, rail;  // at the scene's probes; empty without a bridge or a rail
+  std::vector<std::array<double, 3>> supports;   // fx, fy, moment on the beam, at the ends of spans
   std::array<std::vector<structure::Movement>, 2> support_motion;  // of the supports there, upward and along the beam
   coupling::Observation motion;
-  std::optional<beam::GroundForces> ground;     // with a bridge
-  std::optional<beam::SleeperForces> sleepers;  // forces of the sleepers in output_sleepers
-  std::optional<beam::RailDevices> devices;     // with a rail
+  std::optional<recovery::GroundForces> ground;     // with a bridge
+  std::optional<recovery::SleeperForces> sleepers;  // forces of the sleepers in output_sleepers
+  std::optional<recovery::RailDevices> devices;     // with a rail
   EnergyTerms energy;
 };
 
 /// Objects that do not change during a run; outputs may refer to them.
 struct Source {
-  const Scene& scene;
+  const scene::Scene& scene;
   const train::Fleet& fleet;
   const beam::Beam* beam;  // null: none
 };
@@ -144,6 +144,6 @@ Outputs outputs_of(const Source& source);
 /// The stations of probes and span ends, in files of modes and of sweeps.
 std::vector<results::Layout::Constant> stations(const std::vector<double>& probes, const std::vector<double>& supports);
 /// The layout of a file of many runs of a bridge: its stations, and nothing over time.
-results::Layout layout_without_series(const Scene& scene);
+results::Layout layout_without_series(const scene::Scene& scene);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

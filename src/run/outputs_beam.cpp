@@ -4,10 +4,10 @@
 
 #include "output_groups.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
-using beam::Response;
+using recovery::Response;
 using Pair = std::array<double, 2>;
 using Triple = std::array<double, 3>;
 
@@ -60,11 +60,11 @@ constexpr Row<Balance> balance_rows[] = {
 
 /// gravity: gravity for the structure's own weight, m/s2; 0 without it. gradient: gradient of the beam.
 Balance balance_of(const Observed& now, double gravity, bool axial, double gradient) {
-  const beam::GroundForces& ground = *now.ground;
+  const recovery::GroundForces& ground = *now.ground;
   Balance b;
   b.load = {0.0, -(gravity * ground.mass())};
   if (axial) b.load[0] = gradient * b.load[1];
-  for (const beam::ElementLoad& l : now.motion.loads) {
+  for (const recovery::ElementLoad& l : now.motion.loads) {
     if (axial) b.load[0] += l.fx;
     b.load[1] += l.fy;
   }
@@ -130,7 +130,7 @@ void add_rail(const Source& source, Outputs& outputs) {
   if (source.beam->rail() == nullptr) return;
   outputs.add_each("/rail/", motion_rows, source.scene.output.probes.size(), rail);
   outputs.add_each("/rail/", force_rows, source.scene.output.probes.size(), rail);
-  const std::vector<double> devices = beam::RailDevices(*source.beam).x();
+  const std::vector<double> devices = recovery::RailDevices(*source.beam).x();
   if (devices.empty()) return;
   outputs.add_constant("/rail/devices/x", devices, "m");
   outputs.add_numbers("/rail/devices/opening", "m", devices.size(),
@@ -146,4 +146,4 @@ void add_outputs_of_modes(const Source& source, Outputs& outputs) {
     });
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

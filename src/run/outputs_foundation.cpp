@@ -5,7 +5,7 @@
 #include "beam/nonlinear_points.hpp"
 #include "output_groups.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr std::size_t max_points = 2000;  // largest number of points of a kind whose forces are stored
@@ -67,7 +67,7 @@ void add_hanging(const Source& source, Outputs& outputs) {
 void add_sleepers(const Source& source, Outputs& outputs) {
   if (source.scene.output.sleepers.empty()) return;
   const std::vector<double> hanging = hanging_positions(*source.beam);
-  const std::vector<double> x = beam::SleeperForces(*source.beam, source.scene.output.sleepers).x();
+  const std::vector<double> x = recovery::SleeperForces(*source.beam, source.scene.output.sleepers).x();
   std::vector<std::optional<std::size_t>> gap;  // index of the gap, for sleepers over one
   for (const double station : x) {
     const auto found = std::find(hanging.begin(), hanging.end(), station);
@@ -82,4 +82,4 @@ void add_sleepers(const Source& source, Outputs& outputs) {
   });
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

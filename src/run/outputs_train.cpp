@@ -3,7 +3,7 @@
 
 #include "output_groups.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 using Triple = std::array<double, 3>;
@@ -176,4 +176,4 @@ void add_couplers(const Source& source, Outputs& outputs) {
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

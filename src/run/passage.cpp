@@ -15,7 +15,7 @@
 #include "structure/active_window.hpp"
 #include "structure/modal_structure.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double min_steps = 5.0;  // steps for each crossing of a probe
@@ -24,9 +24,9 @@ constexpr double default_solves = 5.0;  // stage solves of the default method, f
 
 /// The times at which a wheel or force crosses a probe; empty if there are too many of them for the steps, or if wheels
 /// run on the rail of a layered track. Wheels without a prescribed speed have none.
-std::vector<double> crossing_times(const Scene& scene, const Plan& plan) {
+std::vector<double> crossing_times(const scene::Scene& scene, const Plan& plan) {
   std::vector<double> times;
-  if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return times;
+  if (!scene.beam || scene.beam->track || scene.analysis != options::Analysis::transient) return times;
   const auto add = [&](double x, const base::SpeedLaw& law) {
     if (law.direction() == 0.0) return;
     for (const double probe : scene.output.probes)
@@ -34,7 +34,7 @@ std::vector<double> crossing_times(const Scene& scene, const Plan& plan) {
   };
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
     if (drive_of(scene.train, i) == train::Drive::constant)
-      for (const double x : wheels_at_start(scene, i)) add(x, law_of(scene.train, i));
+      for (const double x : scene::wheels_at_start(scene, i)) add(x, law_of(scene.train, i));
   for (std::size_t i = 0; i < scene.load.positions.size(); ++i)
     if (length_of(scene.load, i) == 0.0) add(scene.load.positions[i], law_of(scene.load, i));
   std::sort(times.begin(), times.end());
@@ -45,7 +45,7 @@ std::vector<double> crossing_times(const Scene& scene, const Plan& plan) {
 
 }  // namespace
 
-coupling::SystemInput system_input(const Scene& scene, bool static_only) {
+coupling::SystemInput system_input(const scene::Scene& scene, bool static_only) {
   coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,         scene.profile,
                                  scene.gravity,  scene.self_weight, scene.impact_steps, scene.model.local_compliance};
   if (!static_only) {
@@ -60,7 +60,7 @@ coupling::SystemInput system_input(const Scene& scene, bool static_only) {
   return input;
 }
 
-std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
+std::unique_ptr<structure::Structure> carrier(const scene::Scene& scene, const SharedBeam& shared,
                                               const coupling::SystemInput& input) {
   if (!shared.modal || scene.exact_in_time()) {
     std::unique_ptr<structure::Structure> elements = coupling::by_elements(shared.bridge(), input, shared.statics);
@@ -71,10 +71,11 @@ std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBe
                                                      shared.statics);
 }
 
-Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes, const Plan* earlier)
+Passage::Passage(const scene::Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes,
+                 const Plan* earlier)
     : scene_(scene),
       shared_(shared),
-      static_only_(scene.analysis != Analysis::transient),
+      static_only_(scene.analysis != options::Analysis::transient),
       input_(system_input(scene, static_only_)),
       system_(shared.comm, carrier(scene, shared, input_), input_) {
   check_mesh(scene, notes);
@@ -89,8 +90,8 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
   }
   std::string method;
   if (scene.exact_in_time()) {
-    modal_.emplace(system_, *shared.modal, *shared.statics, input_, scene.start == Start::equilibrium, plan_.end_time,
-                   plan_.interval, plan_.stored);
+    modal_.emplace(system_, *shared.modal, *shared.statics, input_, scene.start == scene::Start::equilibrium,
+                   plan_.end_time, plan_.interval, plan_.stored);
     method = modal_->method();
   } else {
     limit_to_active_window(notes);
@@ -143,13 +144,14 @@ void Passage::start(std::vector<std::string>& notes) {
   const results::Stage stage("search for the static equilibrium");
   if (modal_) {  // the modes have their own start; the system stores the static wheel loads
     std::vector<double> y(static_cast<std::size_t>(system_.local_size()));
-    system_.start(scene_.start == Start::equilibrium, y.data());
+    system_.start(scene_.start == scene::Start::equilibrium, y.data());
     return;
   }
   double* y = stepper_->state();
-  for (const std::string& line : system_.start(static_only_ || scene_.start == Start::equilibrium, y, static_only_))
+  for (const std::string& line :
+       system_.start(static_only_ || scene_.start == scene::Start::equilibrium, y, static_only_))
     notes.push_back(line);
-  if (scene_.model.vehicles == VehicleModel::linear && !static_only_)
+  if (scene_.model.vehicles == scene::VehicleModel::linear && !static_only_)
     for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(base::detail(line));
   if (!static_only_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);
@@ -171,4 +173,4 @@ void Passage::keep(base::Archive& archive) {
     stepper_->keep(archive);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

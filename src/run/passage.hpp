@@ -12,20 +12,21 @@
 #include "run/plan.hpp"
 #include "run/shared_beam.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// The vehicles and loads of a scene. static_only: they do not move.
-coupling::SystemInput system_input(const Scene& scene, bool static_only);
+coupling::SystemInput system_input(const scene::Scene& scene, bool static_only);
 
 /// The bridge by modes if vehicles run on its modes, otherwise by elements; null without a bridge.
-std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
+std::unique_ptr<structure::Structure> carrier(const scene::Scene& scene, const SharedBeam& shared,
                                               const coupling::SystemInput& input);
 
 class Passage {
  public:
   /// Collective. InputError if the scene cannot be run. Scene and structure must outlive this object. earlier: the plan
   /// of the run that this one continues, with its steps and samples; null: none.
-  Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes, const Plan* earlier = nullptr);
+  Passage(const scene::Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes,
+          const Plan* earlier = nullptr);
 
   /// Collective. Sets the initial state; SolverError if there is no equilibrium.
   void start(std::vector<std::string>& notes);
@@ -59,7 +60,7 @@ class Passage {
   void add_axle_passages(std::vector<double>& times) const;
   void limit_to_active_window(std::vector<std::string>& notes);
 
-  const Scene& scene_;
+  const scene::Scene& scene_;
   const SharedBeam& shared_;
   bool static_only_;
   coupling::SystemInput input_;
@@ -69,4 +70,4 @@ class Passage {
   std::optional<integrate::ModalStepper> modal_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

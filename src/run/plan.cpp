@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double steps_per_period = 100.0;   // in the first period or a span's crossing, at an accuracy of 1e-3
@@ -28,7 +28,7 @@ double round_down(double x) {
   return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
 }
 
-double end_of(const Scene& scene, const coupling::System& system) {
+double end_of(const scene::Scene& scene, const coupling::System& system) {
   if (scene.end_time) return *scene.end_time;
   const double leaving = system.leaving_time();
   if (!std::isfinite(leaving))
@@ -39,21 +39,21 @@ double end_of(const Scene& scene, const coupling::System& system) {
 }
 
 // A step that does not resolve the scene causes a wrong result without any other sign.
-void check_step(const Scene& scene, const Plan& plan) {
+void check_step(const scene::Scene& scene, const Plan& plan) {
   if (!(plan.end_time / plan.time_step < max_steps) && scene.step_open)
     throw InputError(fmt::format(
         "{}: the run ends at {:g} s only, which takes too many of the steps of {:g} s that the scene needs; allowed: "
         "{}, or a longer step (ts_dt)",
         scene.end_time ? fmt::format("ts_max_time = {:g}", *scene.end_time)
-                       : fmt::format("at {:g} m/s", greatest_speed(scene)),
+                       : fmt::format("at {:g} m/s", scene::greatest_speed(scene)),
         plan.end_time, plan.time_step,
         scene.end_time ? "an earlier end" : "a higher train_speed or load_speed, an earlier end (ts_max_time)"));
   if (!(plan.end_time / plan.time_step < max_steps))
     throw InputError(fmt::format(
         "ts_dt = {:g}: too many steps to the end at {:g} s{}; allowed: above {:g} s", plan.time_step, plan.end_time,
-        scene.end_time ? "" : fmt::format(", when all has passed at {:g} m/s", greatest_speed(scene)),
+        scene.end_time ? "" : fmt::format(", when all has passed at {:g} m/s", scene::greatest_speed(scene)),
         plan.end_time / max_steps));
-  const double speed = greatest_speed(scene);
+  const double speed = scene::greatest_speed(scene);
   if (!scene.beam || speed <= 0.0) return;
   const double crossing = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end()) / speed;
   if (plan.time_step > crossing / min_steps_per_span)
@@ -62,19 +62,19 @@ void check_step(const Scene& scene, const Plan& plan) {
 }
 
 // s: the shorter of the first period and the crossing of the shortest span, for a scene with a beam.
-double shortest_scale(const Scene& scene, double first_period) {
+double shortest_scale(const scene::Scene& scene, double first_period) {
   double scale = first_period > 0.0 ? first_period : 1.0;
   if (const double frequency = highest_load_frequency(scene.load); frequency > 0.0)
     scale = std::min(scale, 1.0 / frequency);
-  const double speed = greatest_speed(scene);
+  const double speed = scene::greatest_speed(scene);
   const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
   return speed > 0.0 ? std::min(scale, span / speed) : scale;
 }
 
-double chosen_step(const Scene& scene, double first_period, std::vector<std::string>& notes) {
+double chosen_step(const scene::Scene& scene, double first_period, std::vector<std::string>& notes) {
   const double factor = std::pow(scene.accuracy / 1e-3, 0.25);
   const double wave_step =
-      round_down(std::min(shortest_wave(scene) / scene.train.speed, 1e6) / steps_per_wave * factor);
+      round_down(std::min(scene::shortest_wave(scene) / scene.train.speed, 1e6) / steps_per_wave * factor);
   const auto step_by_waves = [&] {
     notes.push_back(
         fmt::format("time step {:g} s: from accuracy {:g} and the shortest wave of track and wheels; -ts_dt changes it",
@@ -103,7 +103,7 @@ long samples_among(long steps, double step, double longest) {
 }
 
 // The motion between samples is exact: their distance follows from the shape of the curves only.
-void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector<std::string>& notes) {
+void plan_modal(const scene::Scene& scene, double first_period, Plan& plan, std::vector<std::string>& notes) {
   plan.interval = plan.time_step =
       std::min(plan.end_time, scene.output.interval.value_or(round_down(first_period / samples_per_period)));
   if (!scene.output.interval)
@@ -130,7 +130,8 @@ void move_end_to_sample(Plan& plan) {
 
 bool Plan::ends_at_sample() const { return end_time == sample_next_to_end(*this); }
 
-Plan plan_exact_in_time(const Scene& scene, double end_time, double first_period, std::vector<std::string>& notes) {
+Plan plan_exact_in_time(const scene::Scene& scene, double end_time, double first_period,
+                        std::vector<std::string>& notes) {
   Plan plan;
   plan.end_time = end_time;
   plan_modal(scene, first_period, plan, notes);
@@ -138,7 +139,7 @@ Plan plan_exact_in_time(const Scene& scene, double end_time, double first_period
   return plan;
 }
 
-Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
+Plan make_plan(const scene::Scene& scene, const coupling::System& system, double first_period,
                std::vector<std::string>& notes) {
   Plan plan;
   plan.end_time = end_of(scene, system);
@@ -173,4 +174,4 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   return plan;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

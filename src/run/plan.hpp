@@ -7,7 +7,7 @@
 #include "coupling/system.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 struct Plan {
   double end_time = 0.0;   // s
@@ -21,10 +21,11 @@ struct Plan {
 
 /// The plan of a scene. Open values are chosen, and each choice is appended to `notes`. first_period: first period of
 /// the beam, s; 0 if unknown. InputError if the scene has no end.
-Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
+Plan make_plan(const scene::Scene& scene, const coupling::System& system, double first_period,
                std::vector<std::string>& notes);
 
 /// The plan of a scene that is computed exactly in time and whose end is known.
-Plan plan_exact_in_time(const Scene& scene, double end_time, double first_period, std::vector<std::string>& notes);
+Plan plan_exact_in_time(const scene::Scene& scene, double end_time, double first_period,
+                        std::vector<std::string>& notes);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -15,7 +15,7 @@
 #include "run/extremum_tracker.hpp"
 #include "run/quantity.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 class ProbeForces {
  public:
@@ -27,10 +27,10 @@ class ProbeForces {
   /// shear at a moment's extreme, the moment at a shear's extreme. passages: those since the previous instant,
   /// ascending; lag: b of Rayleigh damping, s, if the responses lag.
   template <class Record>
-  void add(double t, const beam::Response& r, std::span<const beam::StationPassage> passages, double lag,
+  void add(double t, const recovery::Response& r, std::span<const recovery::StationPassage> passages, double lag,
            Record&& record) {
     const bool lagging = lag > 0.0 && !std::isnan(r.moment_rate);
-    for (const beam::StationPassage& passage : passages) kinks_.add(passage.time);
+    for (const recovery::StationPassage& passage : passages) kinks_.add(passage.time);
     store({t, r.moment, r.shear, r.axial_force});
     largest_moment_ = std::max(largest_moment_, std::abs(r.moment));
     if (lagging)
@@ -84,8 +84,8 @@ class ProbeForces {
   static bool reaches(double beyond, double apart) { return beyond <= base::Stencil::most_uneven * apart; }
 
   template <class Record>
-  void add_jumping(double t, const beam::Response& r, std::span<const beam::StationPassage> passages, double lag,
-                   Record&& record) {
+  void add_jumping(double t, const recovery::Response& r, std::span<const recovery::StationPassage> passages,
+                   double lag, Record&& record) {
     if (instants_ > 0 && t <= latest_[0].time) return;  // this instant was already added
     const Forces relaxed = {t, r.moment, r.shear - (lag > 0.0 ? r.unrelaxed_shear : 0.0),
                             r.axial_force - (lag > 0.0 ? r.unrelaxed_axial_force : 0.0)};
@@ -93,7 +93,7 @@ class ProbeForces {
     const double tolerance = instants_ > 0 ? same_instant * (t - latest_[0].time) : 0.0;
     std::size_t between = 0;
     double passage = 0.0;
-    for (const beam::StationPassage& p : passages) {
+    for (const recovery::StationPassage& p : passages) {
       if ((ended_there_ && p.time <= latest_[0].time + tolerance) || (ends_there && p.time >= t - tolerance)) continue;
       passage = p.time;
       ++between;
@@ -121,7 +121,7 @@ class ProbeForces {
   }
   /// Adds an instant on one side of all passages of loads to the present interval between passages, or to a new one.
   template <class Record>
-  void add_to_piece(const Forces& now, const beam::Response& r, double lag, Record& record) {
+  void add_to_piece(const Forces& now, const recovery::Response& r, double lag, Record& record) {
     if (has_before_ && instants_ == 1 && reaches(latest_[0].time - before_passage_.time, now.time - latest_[0].time))
       record_sides(latest_[0].at(before_passage_.time, now), now, lag, record);
     shear_.add(now.time, now.shear, r.shear - now.shear, lag, of_shear(record));
@@ -190,4 +190,4 @@ class ProbeForces {
   bool has_axial_ = false;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

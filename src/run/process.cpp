@@ -14,9 +14,9 @@
 #include "base/notes.hpp"
 #include "results/terminal.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
-std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene) {
+std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const scene::Scene& scene) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   return {{"program", "traverse"},
@@ -26,7 +26,7 @@ std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const
           {"scene", scene.name}};
 }
 
-void print_notes(MPI_Comm comm, const Scene& scene, const std::vector<std::string>& notes) {
+void print_notes(MPI_Comm comm, const scene::Scene& scene, const std::vector<std::string>& notes) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   if (rank != 0) return;
@@ -63,4 +63,4 @@ Error as_error(const std::exception& failure) {
   return {std::string("internal error, please report it: ") + failure.what(), 70};
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -11,11 +11,11 @@
 #include "traverse/base/error.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
-std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene);
+std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const scene::Scene& scene);
 /// Rank 0 of comm prints the description of the model, without unusual input, which is printed before.
-void print_notes(MPI_Comm comm, const Scene& scene, const std::vector<std::string>& notes);
+void print_notes(MPI_Comm comm, const scene::Scene& scene, const std::vector<std::string>& notes);
 /// Prints one line on standard error, if possible.
 void print_error(const Error& error);
 /// Ends all ranks if a file cannot be written. Only the writing rank detects this, and the others would wait for it.
@@ -25,4 +25,4 @@ void print_error(const Error& error);
 /// reduce the scene.
 Error as_error(const std::exception& failure);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace traverse::app {
+namespace traverse::run {
 
 enum Quantity : std::size_t {
   deflection,
@@ -30,4 +30,4 @@ inline constexpr std::array<const char*, quantities> quantity_units = {"m", "m/s
 /// Whether only single runs by elements evaluate its peaks, not runs by modes or in batches.
 inline constexpr bool by_elements_only(std::size_t q) { return q >= shear_force; }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

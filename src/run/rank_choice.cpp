@@ -12,7 +12,7 @@
 
 #include "run/step_cost.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 // Time for a coach in a stage, s: the part that only its rank computes, and its contacts, which every rank solves
@@ -27,7 +27,7 @@ constexpr double pause = 2e-5;              // s, of computation between two of 
 
 }  // namespace
 
-StageWork stage_work(const Scene& scene) {
+StageWork stage_work(const scene::Scene& scene) {
   StageWork work;
   if (!scene.beam) {
     work.vehicles = static_cast<double>(scene.train.vehicles.size());
@@ -38,7 +38,8 @@ StageWork stage_work(const Scene& scene) {
   work.unknowns = unknowns_of(scene);
   work.seconds_per_unknown = unknown_seconds(scene);
   // Every rank computes all linear vehicles.
-  work.vehicles = scene.model.vehicles == VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
+  work.vehicles =
+      scene.model.vehicles == scene::VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
   work.cut = !(scene.model.window_tolerance > 0.0 || (scene.model.window_tolerance < 0.0 && spans_apart));
   if (scene.model.modes > 0)
     work.single_rank_reason = "the modes' steps have no more in them than a message";
@@ -94,7 +95,7 @@ double message_latency(MPI_Comm comm) {
   return latency;
 }
 
-RankChoice choose_ranks(MPI_Comm comm, const Scene& scene) {
+RankChoice choose_ranks(MPI_Comm comm, const scene::Scene& scene) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   if (ranks == 1) return {};
@@ -116,4 +117,4 @@ RankChoice choose_ranks(MPI_Comm comm, const Scene& scene) {
   return {chosen, note + fmt::format(" ({})", measured)};
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

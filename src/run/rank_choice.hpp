@@ -8,7 +8,7 @@
 
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Work of a stage.
 struct StageWork {
@@ -18,7 +18,7 @@ struct StageWork {
   bool cut = true;  // whether the ranks share the unknowns; false for the few active unknowns on a long bridge
   std::string single_rank_reason;  // the reason for one rank, in words; empty: ranks may share the steps
 };
-StageWork stage_work(const Scene& scene);
+StageWork stage_work(const scene::Scene& scene);
 
 /// Duration of a stage on `ranks` ranks, s. latency: duration of a message between two ranks, s.
 double stage_seconds(const StageWork& work, int ranks, double latency);
@@ -35,6 +35,6 @@ struct RankChoice {
   std::string note;  // one line; empty on one rank
 };
 /// Collective; the same on every rank.
-RankChoice choose_ranks(MPI_Comm comm, const Scene& scene);
+RankChoice choose_ranks(MPI_Comm comm, const scene::Scene& scene);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

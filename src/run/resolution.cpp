@@ -12,7 +12,7 @@
 #include "base/whole.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 // Element length times lambda, lambda = (k/4EI)^(1/4). The error of the deflection under a force on a bed is 2 % at 1,
@@ -34,9 +34,9 @@ constexpr double steps_per_sleeper = 4.0, steps_per_oscillation = 10.0;
 constexpr double max_stored_samples = 1e10;
 constexpr double shortest_run = 1e-12;  // s
 
-bool has_loads(const Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
+bool has_loads(const scene::Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
 
-void check_waves(const Scene& scene, double step, std::vector<std::string>& notes) {
+void check_waves(const scene::Scene& scene, double step, std::vector<std::string>& notes) {
   double wave = scene.profile.shortest_wave();
   for (const train::Course& course : scene.train.courses)
     if (course.profile) wave = std::min(wave, course.profile->shortest_wave());
@@ -55,9 +55,9 @@ void check_waves(const Scene& scene, double step, std::vector<std::string>& note
 }
 
 // Single sleepers affect the wheels, not the bridge.
-void check_sleepers(const Scene& scene, double step, std::vector<std::string>& notes) {
-  if (!scene.beam || !scene.beam->track || greatest_speed(scene) <= 0.0) return;
-  const double passage = scene.beam->track->spacing / greatest_speed(scene);
+void check_sleepers(const scene::Scene& scene, double step, std::vector<std::string>& notes) {
+  if (!scene.beam || !scene.beam->track || scene::greatest_speed(scene) <= 0.0) return;
+  const double passage = scene.beam->track->spacing / scene::greatest_speed(scene);
   if (step > passage / steps_per_sleeper)
     notes.push_back(
         fmt::format("steps of {:g} s are long for the sleepers, each passed in {:g} s: forces of wheels and rail are "
@@ -65,8 +65,9 @@ void check_sleepers(const Scene& scene, double step, std::vector<std::string>& n
                     step, passage, passage / steps_per_oscillation));
 }
 
-void check_periods(const Scene& scene, double step, double period, bool high_order, std::vector<std::string>& notes) {
-  const double speed = greatest_speed(scene);
+void check_periods(const scene::Scene& scene, double step, double period, bool high_order,
+                   std::vector<std::string>& notes) {
+  const double speed = scene::greatest_speed(scene);
   if (!scene.beam || period <= 0.0 || speed <= 0.0) return;
   const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
   if (span / speed > slow_crossing_periods * period) return;
@@ -83,7 +84,7 @@ void check_periods(const Scene& scene, double step, double period, bool high_ord
                   step, period, high_order ? "" : " and order 2", good, high_order ? "" : " or -ts_type esdirk4"));
 }
 
-void check_harmonics(const Scene& scene, double step, std::vector<std::string>& notes) {
+void check_harmonics(const scene::Scene& scene, double step, std::vector<std::string>& notes) {
   const double frequency = highest_load_frequency(scene.load);
   if (frequency == 0.0) return;
   const double period = 1.0 / frequency;
@@ -130,10 +131,10 @@ void check_beds(const beam::BeamModel& beam, std::vector<std::string>& notes) {
 
 }  // namespace
 
-void check_mesh(const Scene& scene, std::vector<std::string>& notes) {
+void check_mesh(const scene::Scene& scene, std::vector<std::string>& notes) {
   if (!scene.beam || scene.beam->track || !has_loads(scene)) return;
   const beam::BeamModel& beam = *scene.beam;
-  const bool moves = scene.analysis == Analysis::transient && greatest_speed(scene) > 0.0;
+  const bool moves = scene.analysis == options::Analysis::transient && scene::greatest_speed(scene) > 0.0;
   if (moves && scene.model.modes == 0 && *std::min_element(beam.elements.begin(), beam.elements.end()) == 1)
     notes.emplace_back(
         "one element a span: its first frequency is up to a tenth too high, and so may the response be wrong; "
@@ -150,7 +151,7 @@ void check_times(const Plan& plan) {
                                  plan.interval, plan.end_time, plan.end_time / max_stored_samples));
 }
 
-void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
+void check_steps(const scene::Scene& scene, const Plan& plan, double first_period, bool high_order,
                  std::vector<std::string>& notes) {
   if (!scene.model.step) return;
   const double step = std::min(plan.time_step, plan.interval);
@@ -160,7 +161,8 @@ void check_steps(const Scene& scene, const Plan& plan, double first_period, bool
   check_harmonics(scene, step, notes);
 }
 
-void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fleet, std::vector<std::string>& notes) {
+void check_contacts(const scene::Scene& scene, const Plan& plan, const train::Fleet& fleet,
+                    std::vector<std::string>& notes) {
   double period = std::numeric_limits<double>::infinity();
   for (const train::WheelContact& c : fleet.wheels) {
     const train::Wheel& wheel = fleet.wheel(c);
@@ -178,4 +180,4 @@ void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fl
                     step, period, period / (2.0 * steps_per_oscillation)));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

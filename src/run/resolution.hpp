@@ -8,11 +8,11 @@
 #include "run/plan.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// InputError if elements are longer than the bending waves of the beam on its bed. If they are only so long that
 /// results are inaccurate, a warning is appended to `notes`.
-void check_mesh(const Scene& scene, std::vector<std::string>& notes);
+void check_mesh(const scene::Scene& scene, std::vector<std::string>& notes);
 
 /// InputError if the run or its sampling interval is too short for the resolution of floating-point times.
 void check_times(const Plan& plan);
@@ -20,11 +20,12 @@ void check_times(const Plan& plan);
 /// InputError if a given step does not resolve periods of the bridge or waves of the track. If it is only so long that
 /// results are inaccurate, a warning is appended to `notes`. first_period: first period of the beam, s, 0 if unknown;
 /// high_order: the integrator's order is above 2.
-void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
+void check_steps(const scene::Scene& scene, const Plan& plan, double first_period, bool high_order,
                  std::vector<std::string>& notes);
 
 /// After the start: appends a warning to `notes` if steps do not resolve the wheels' oscillation on their contacts,
 /// where the track or the wheels' shape excites it.
-void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fleet, std::vector<std::string>& notes);
+void check_contacts(const scene::Scene& scene, const Plan& plan, const train::Fleet& fleet,
+                    std::vector<std::string>& notes);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double stored_share = 0.5;    // relative to the largest extreme so far
@@ -86,8 +86,8 @@ auto ResponseExtremes::recorder_of_forces(std::size_t probe) {
   };
 }
 
-void ResponseExtremes::add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces,
-                           std::span<const beam::StationPassage> passages) {
+void ResponseExtremes::add(double t, std::span<const recovery::Response> probes, std::span<const double> wheel_forces,
+                           std::span<const recovery::StationPassage> passages) {
   const auto at_probe = [&passages](std::size_t probe) {  // removes them from the list
     std::size_t count = 0;
     while (count < passages.size() && passages[count].station == probe) ++count;
@@ -210,8 +210,8 @@ double difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Q
   return std::max(peak_difference(rough, fine, q), spread_factor * spread);
 }
 
-ResponseExtremes peaks_for(const Scene& scene, std::size_t wheels, double lag) {
+ResponseExtremes peaks_for(const scene::Scene& scene, std::size_t wheels, double lag) {
   return {scene.output.probes.size(), wheels, lag, scene.beam && scene.beam->axial};
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

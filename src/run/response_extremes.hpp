@@ -18,7 +18,7 @@
 #include "run/quantity.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// The least and the greatest value of one quantity at one probe, with their times.
 struct Range {
@@ -46,8 +46,8 @@ class ResponseExtremes {
   ResponseExtremes(std::size_t probes, std::size_t wheels, double lag = 0.0, bool axial = false);
 
   /// passages: of probes since the previous instant, as of LoadMovement.
-  void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces,
-           std::span<const beam::StationPassage> passages = {});
+  void add(double t, std::span<const recovery::Response> probes, std::span<const double> wheel_forces,
+           std::span<const recovery::StationPassage> passages = {});
   void finish();
   /// Adds the extremes of low-passed accelerations, rows of all probes at intervals of `interval` s from 0 on.
   void add_low_passed(std::span<const double> rows, double interval);
@@ -107,6 +107,6 @@ double difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Q
 double peak_difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Quantity q);
 
 /// The empty extremes of a run of the scene. lag: b of Rayleigh damping if responses have rates, s.
-ResponseExtremes peaks_for(const Scene& scene, std::size_t wheels, double lag);
+ResponseExtremes peaks_for(const scene::Scene& scene, std::size_t wheels, double lag);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -11,7 +11,7 @@
 #include "results/verdict.hpp"
 #include "run/response_extremes.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 struct Result {
   /// The magnitudes of the peaks at each probe, and the extremes of all wheels.
@@ -38,4 +38,4 @@ struct Result {
   void record(results::Recorder& recorder) const;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

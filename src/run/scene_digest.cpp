@@ -7,9 +7,9 @@
 
 #include "base/digest.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
-std::string digest_of(const Scene& scene, std::span<const std::string_view> excluded,
+std::string digest_of(const scene::Scene& scene, std::span<const std::string_view> excluded,
                       const std::vector<options::InputText>& files, std::string_view more) {
   auto entries = scene.options;
   std::erase_if(entries, [&](const auto& option) {
@@ -33,4 +33,4 @@ std::string digest_of(const Scene& scene, std::span<const std::string_view> excl
   return fmt::format("{:016x}", digest.value());
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

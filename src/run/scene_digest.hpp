@@ -9,11 +9,11 @@
 #include "options/input_texts.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// A 64-bit hash (16 hex digits) of the scene's options, the files' texts and `more`. Options in `excluded`, and
 /// options that only change the display, are not included.
-std::string digest_of(const Scene& scene, std::span<const std::string_view> excluded,
+std::string digest_of(const scene::Scene& scene, std::span<const std::string_view> excluded,
                       const std::vector<options::InputText>& files, std::string_view more = {});
 
-}  // namespace traverse::app
+}  // namespace traverse::run

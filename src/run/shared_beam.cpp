@@ -12,7 +12,7 @@
 #include "results/stage.hpp"
 #include "run/buckling_load.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double distinct = 1e-6;  // relative difference of two frequencies
@@ -69,8 +69,8 @@ std::vector<modes::BendingMode> distinct_modes_of(const beam::Beam& beam) {
 }
 
 /// Whether the scene asks for natural modes that nothing couples, so that each can have its own damping ratio.
-bool computes_uncoupled_modes(const Scene& scene, const beam::Beam& beam) {
-  return scene.analysis == Analysis::modes && beam.dampers() == nullptr;
+bool computes_uncoupled_modes(const scene::Scene& scene, const beam::Beam& beam) {
+  return scene.analysis == options::Analysis::modes && beam.dampers() == nullptr;
 }
 
 /// Refuses a compression at which the beam buckles.
@@ -87,12 +87,12 @@ void check_compression(const beam::Beam& beam) {
 
 }  // namespace
 
-SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<std::string>& notes)
+SharedBeam::SharedBeam(MPI_Comm communicator, const scene::Scene& scene, std::vector<std::string>& notes)
     : comm(communicator) {
   if (!scene.beam) return;
   const results::Stage stage("assembly of the beam");
   const std::string floating =
-      scene.analysis == Analysis::modes || scene.beam->given ? "" : beam::floating_motion(*scene.beam);
+      scene.analysis == options::Analysis::modes || scene.beam->given ? "" : beam::floating_motion(*scene.beam);
   if (!floating.empty())
     throw InputError("support_types: the beam can float away (" + floating +
                      "); hold it with supports or a foundation");
@@ -105,14 +105,14 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
     notes.emplace_back(
         "sleepers hang over gaps, which close on one side: forces; frequencies are those of small motions, with all "
         "gaps open");
-  beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
+  beam.emplace(comm, nonlinear && scene.analysis == options::Analysis::modes ? linearised(*scene.beam) : *scene.beam);
   if (!scene.beam->given) beam::check_springs(beam->model());
   check_compression(*beam);
   notes.push_back(base::detail(scene.beam->given ? given_modes_text(*beam) : beam_text(*beam)));
   if (beam->rail() != nullptr) notes.push_back(base::detail(track_text(*beam)));
 }
 
-void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
+void SharedBeam::damp(const scene::Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
   if (beam->model().given) {
     const std::vector<double>& given = beam->model().given->omega;
     const auto second =
@@ -121,7 +121,7 @@ void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<s
     return;
   }
   const results::Stage stage("search for the first frequencies");
-  const Damping& damping = scene.damping;
+  const scene::Damping& damping = scene.damping;
   const bool each_has_one = !scene.damping_of_modes.empty();
   const bool of_each_mode = each_has_one && (scene.model.modes > 0 || computes_uncoupled_modes(scene, *beam));
   const bool by_ratios = damping.ratios && !of_each_mode;
@@ -143,7 +143,7 @@ void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<s
 }
 
 /// Gives the ratios to the first two distinct modes, or to modes at the given frequencies.
-void SharedBeam::set_rayleigh_from_ratios(const Damping& damping, std::vector<std::string>& notes) {
+void SharedBeam::set_rayleigh_from_ratios(const scene::Damping& damping, std::vector<std::string>& notes) {
   const auto [zeta1, zeta2] = *damping.ratios;
   if (damping.frequencies) {
     omega = {2.0 * std::numbers::pi * damping.frequencies->first, 2.0 * std::numbers::pi * damping.frequencies->second};
@@ -191,7 +191,7 @@ std::vector<SharedBeam::RatioOfMode> SharedBeam::damping_ratios() const {
   return ratios;
 }
 
-void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
+void SharedBeam::prepare(const scene::Scene& scene, std::vector<std::string>& notes) {
   if (!beam) return;
   const results::Stage stage(scene.model.modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
   statics = std::make_shared<structure::BeamOperator>(*beam);
@@ -216,4 +216,4 @@ void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
 
 double SharedBeam::first_period() const { return omega ? 2.0 * std::numbers::pi / omega->first : 0.0; }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -13,21 +13,21 @@
 #include "structure/support_motion.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 struct SharedBeam {
   /// Collective. Checks and assembles the beam, if there is one. Its description is appended to `notes`.
-  SharedBeam(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
+  SharedBeam(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes);
   SharedBeam(const SharedBeam&) = delete;
   SharedBeam& operator=(const SharedBeam&) = delete;
 
   /// Collective, once. Sets the scene's Rayleigh damping. Computes the first distinct modes if damping ratios need them
   /// or frequencies_wanted is true.
-  void damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes);
+  void damp(const scene::Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes);
   /// Collective, after damp. Computes factorisation or modes for transient and static runs.
-  void prepare(const Scene& scene, std::vector<std::string>& notes);
+  void prepare(const scene::Scene& scene, std::vector<std::string>& notes);
   /// Both, which is all that a run needs.
-  void set_up(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
+  void set_up(const scene::Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
     damp(scene, frequencies_wanted, notes);
     prepare(scene, notes);
   }
@@ -54,7 +54,7 @@ struct SharedBeam {
   std::shared_ptr<structure::SupportMotion> moving_supports;  // null: the supports are at rest
 
  private:
-  void set_rayleigh_from_ratios(const Damping& damping, std::vector<std::string>& notes);
+  void set_rayleigh_from_ratios(const scene::Damping& damping, std::vector<std::string>& notes);
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -19,7 +19,7 @@
 #include "results/place.hpp"
 #include "results/stage.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 struct HandledSignal {
@@ -143,4 +143,4 @@ Requests requests_on_any(MPI_Comm comm, bool wanted) {
   return {both[0], both[1] != 0};
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// Stores which signals are ignored (nohup); they remain ignored. Called before libraries are initialised, because UCX
 /// handles SIGHUP while it is loaded.
@@ -52,4 +52,4 @@ struct Requests {
 };
 Requests requests_on_any(MPI_Comm comm, bool wanted);
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -5,14 +5,14 @@
 
 #include "run/signals.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double rounding_worth_a_note = 1e-9;  // relative error of static deflections
 
 }  // namespace
 
-Simulation::Simulation(const Scene& scene, const SharedBeam& shared, const Wants& wants,
+Simulation::Simulation(const scene::Scene& scene, const SharedBeam& shared, const Wants& wants,
                        std::vector<std::string>& notes, const Plan* earlier)
     : comm_(shared.comm), scene_(scene), passage_(scene, shared, notes, earlier) {
   passage_.start(notes);
@@ -74,4 +74,4 @@ void Simulation::keep(base::Archive& archive) {
   evaluation_->keep(archive);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

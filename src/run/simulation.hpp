@@ -10,13 +10,13 @@
 #include "run/observer.hpp"
 #include "run/passage.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 class Simulation {
  public:
   /// Collective. Brings the run to its start: in static equilibrium, or undeflected. Throws like Passage. Scene and
   /// structure must outlive this object. earlier: as for Passage.
-  Simulation(const Scene& scene, const SharedBeam& shared, const Wants& wants, std::vector<std::string>& notes,
+  Simulation(const scene::Scene& scene, const SharedBeam& shared, const Wants& wants, std::vector<std::string>& notes,
              const Plan* earlier = nullptr);
 
   using Observers = std::initializer_list<Observer*>;
@@ -43,9 +43,9 @@ class Simulation {
   void sample(const integrate::Instant& instant, Observers observers);
 
   MPI_Comm comm_;
-  const Scene& scene_;
+  const scene::Scene& scene_;
   Passage passage_;
   std::optional<Evaluation> evaluation_;  // there after the start
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -7,7 +7,7 @@
 #include "base/one_step_methods.hpp"
 #include "beam/layered_track.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 // Time for an unknown in a stage with its share of the step's end, s: continuous bridge, separate spans, bridge with a
@@ -26,7 +26,7 @@ constexpr double per_lane_vehicle = 1e-7, per_lane_element = 5e-9;
 constexpr double per_mode = 2e-9, per_mode_and_probe = 4e-10, coupled_factor = 8.0;
 constexpr double per_sample = 3e-6, per_mode_with_energy = 5e-8, per_mode_and_unknown = 1e-9;
 
-double bodies_of(const Scene& scene) {
+double bodies_of(const scene::Scene& scene) {
   double bodies = 0.0;
   for (const int type : scene.train.vehicles)
     bodies += static_cast<double>(scene.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
@@ -34,18 +34,18 @@ double bodies_of(const Scene& scene) {
 }
 
 /// The pairs of contacts of one mechanism, which are many in a chain on rollers.
-double contact_pairs_of(const Scene& scene) {
+double contact_pairs_of(const scene::Scene& scene) {
   double pairs = 0.0;
   for (const int type : scene.train.vehicles)
     pairs += std::pow(static_cast<double>(scene.vehicles[static_cast<std::size_t>(type)].wheels.size()), 2);
   return pairs;
 }
 
-double roughness_of(const Scene& scene) { return scene.profile.level() ? 1.0 : rough_track_factor; }
+double roughness_of(const scene::Scene& scene) { return scene.profile.level() ? 1.0 : rough_track_factor; }
 
 }  // namespace
 
-double unknowns_of(const Scene& scene, int elements) {
+double unknowns_of(const scene::Scene& scene, int elements) {
   if (!scene.beam) return 0.0;
   const beam::BeamModel& beam = *scene.beam;
   const auto spans = static_cast<double>(beam.spans.size());
@@ -64,17 +64,17 @@ double unknowns_of(const Scene& scene, int elements) {
   return per_node * (all + spans);
 }
 
-double unknown_seconds(const Scene& scene) {
+double unknown_seconds(const scene::Scene& scene) {
   if (!scene.beam) return 0.0;
   if (scene.beam->track) return layered;
   return scene.beam->all_separate() && scene.beam->spans.size() > 1 ? separate : continuous;
 }
 
-double step_seconds(const Scene& scene, const std::string& method, int elements, double moving) {
-  const structure::MethodRow* row = structure::find_method(method);
-  const double stages = (row == nullptr ? structure::methods().front() : *row).solves();
-  const bool linear = scene.model.vehicles == VehicleModel::linear ||
-                      (scene.model.vehicles == VehicleModel::automatic && scene.beam && scene.train.steady());
+double step_seconds(const scene::Scene& scene, const std::string& method, int elements, double moving) {
+  const base::MethodRow* row = base::find_method(method);
+  const double stages = (row == nullptr ? base::methods().front() : *row).solves();
+  const bool linear = scene.model.vehicles == scene::VehicleModel::linear ||
+                      (scene.model.vehicles == scene::VehicleModel::automatic && scene.beam && scene.train.steady());
   const double body = linear ? per_linear_body : per_body;
   const double contacts = linear ? 0.0 : per_contact_pair * contact_pairs_of(scene);
   const double probes = per_probe * static_cast<double>(scene.output.probes.size());
@@ -82,12 +82,12 @@ double step_seconds(const Scene& scene, const std::string& method, int elements,
                    moving * unknown_seconds(scene) * unknowns_of(scene, elements));
 }
 
-double batch_stage_seconds(const Scene& scene, double elements) {
+double batch_stage_seconds(const scene::Scene& scene, double elements) {
   return roughness_of(scene) *
          (per_lane_vehicle * static_cast<double>(scene.train.vehicles.size()) + per_lane_element * elements);
 }
 
-double modal_instant_seconds(const Scene& scene, double modes, bool coupled) {
+double modal_instant_seconds(const scene::Scene& scene, double modes, bool coupled) {
   const auto probes = static_cast<double>(scene.output.probes.size());
   return (coupled ? coupled_factor : 1.0) * modes * (per_mode + per_mode_and_probe * probes);
 }
@@ -97,4 +97,4 @@ double modal_sample_seconds(double modes, double unknowns, bool coupled) {
          modes * ((coupled ? coupled_factor : 1.0) * per_mode_with_energy + per_mode_and_unknown * unknowns);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

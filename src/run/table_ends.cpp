@@ -9,7 +9,7 @@
 
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 /// What a table determines: a displacement cannot jump in rate, a force of 0 needs no note.
@@ -17,9 +17,9 @@ enum class Table { displacement, length, force };
 
 using Use = std::function<void(const std::string&, const base::TimeFunction&, Table)>;
 
-void of_vehicles(const Scene& scene, const Use& use) {
+void of_vehicles(const scene::Scene& scene, const Use& use) {
   for (const int type : std::set<int>(scene.train.vehicles.begin(), scene.train.vehicles.end())) {
-    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(type)];
+    const train::Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(type)];
     const auto option = [&](const std::string& part, const char* word) {
       return fmt::format("vehicle_{}_{}_{}", vehicle.name, part, word);
     };
@@ -32,7 +32,7 @@ void of_vehicles(const Scene& scene, const Use& use) {
   }
 }
 
-void of_scene(const Scene& scene, const Use& use) {
+void of_scene(const scene::Scene& scene, const Use& use) {
   for (const base::TimeFunction& f : scene.support_motion) use("support_motion", f, Table::displacement);
   for (const base::TimeFunction& f : scene.support_motion_along) use("support_motion_along", f, Table::displacement);
   for (const train::Course& course : scene.load.courses)
@@ -59,7 +59,7 @@ void add_note(const std::string& note, std::vector<std::string>& notes) {
 
 }  // namespace
 
-void check_table_ends(const Scene& scene, double end, std::vector<std::string>& notes) {
+void check_table_ends(const scene::Scene& scene, double end, std::vector<std::string>& notes) {
   of_scene(scene, [&](const std::string& option, const base::TimeFunction& f, Table table) {
     if (f.straight()) return;
     if (table == Table::displacement) refuse_jolt(option, f, end);
@@ -87,4 +87,4 @@ void check_table_ends(const Scene& scene, double end, std::vector<std::string>& 
   of_speeds(scene.load.courses);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

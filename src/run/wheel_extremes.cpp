@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traverse::app {
+namespace traverse::run {
 
 WheelExtremes::WheelExtremes(std::size_t wheels, std::vector<double> kinks)
     : latest_(wheels), at_start_(wheels, 0.0), kinks_(std::move(kinks)) {}
@@ -49,4 +49,4 @@ void WheelExtremes::evaluate(const Latest& latest, std::size_t i, std::size_t wh
   record(std::max(extremum.value, 0.0), extremum.time, wheel);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

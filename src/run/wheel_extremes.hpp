@@ -10,7 +10,7 @@
 #include "base/bytes.hpp"
 #include "run/interpolated_extremum.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 class WheelExtremes {
  public:
@@ -50,4 +50,4 @@ class WheelExtremes {
   Extreme unloading_{-1.0};
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

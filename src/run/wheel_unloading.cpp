@@ -10,7 +10,7 @@
 #include "run/low_pass.hpp"
 #include "run/response_extremes.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double interval_tolerance = 1e-6;  // relative tolerance of a multiple of the interval
@@ -54,14 +54,14 @@ std::string wheel_name(const train::Fleet& fleet, std::size_t wanted) {
   return "";
 }
 
-bool filters_wheels(const Scene& scene) {
+bool filters_wheels(const scene::Scene& scene) {
   const bool limited = std::any_of(scene.limits.begin(), scene.limits.end(), [](const options::VerdictLimit& limit) {
     return limit.quantity == "filtered_wheel_unloading" || limit.quantity == "unloading_time";
   });
   const bool has_wheels = std::any_of(scene.vehicles.begin(), scene.vehicles.end(),
-                                      [](const Vehicle& vehicle) { return !vehicle.wheels.empty(); });
-  return has_wheels && (limited || scene.output.wheels_filtered) && scene.analysis == Analysis::transient &&
-         scene.start == Start::equilibrium;
+                                      [](const train::Vehicle& vehicle) { return !vehicle.wheels.empty(); });
+  return has_wheels && (limited || scene.output.wheels_filtered) && scene.analysis == options::Analysis::transient &&
+         scene.start == scene::Start::equilibrium;
 }
 
 FilteredWheels::FilteredWheels(double frequency, double level, const Plan& plan, std::size_t wheels)
@@ -101,4 +101,4 @@ results::FilteredUnloading FilteredWheels::finish(const train::Fleet& fleet) {
   return result;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -10,14 +10,14 @@
 #include "train/fleet.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 
 /// "vehicle 3, rear_wheel", for wheels in the order of the fleet without further contact points.
 std::string wheel_name(const train::Fleet& fleet, std::size_t wheel);
 
 /// Whether wheel forces are low-passed: the scene starts in equilibrium and has wheels, and the user or a limit
 /// requires it.
-bool filters_wheels(const Scene& scene);
+bool filters_wheels(const scene::Scene& scene);
 
 /// Stores the force of every wheel at the plan's interval and filters all of them at the end of the run. Memory: 8
 /// bytes for each instant and wheel, at most DeckAcceleration::max_stored numbers.
@@ -40,4 +40,4 @@ class FilteredWheels {
   std::vector<double> rows_;  // a row of wheels for each instant
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -17,7 +17,7 @@
 #include "results/origin.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 constexpr std::size_t most_given_modes = 10'000, most_shape_stations = 100'000, most_characters = std::size_t{1} << 30;
@@ -241,4 +241,4 @@ beam::GivenModes read_given_modes(const std::string& path, int track) {
   return ModesParser(path, track).read(stream);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

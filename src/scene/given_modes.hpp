@@ -5,7 +5,7 @@
 
 #include "traverse/beam/given_modes.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 /// The modes with their shapes along one of the tracks of the file, counted from 1. InputError with file and line.
 ///
@@ -18,4 +18,4 @@ namespace traverse::app {
 ///   x, shape1, shape2, ...            a station, m, with all shapes, or with all shapes and then all slopes
 beam::GivenModes read_given_modes(const std::string& path, int track);
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <numeric>
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 // Bytes for each item, measured in runs with many of them.
@@ -150,4 +150,4 @@ void check_size(const options::Options& o, const Scene& scene) {
                        1e-9 * needed, 1e-9 * most.bytes, most.what, 1e-9 * available));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -4,7 +4,7 @@
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 inline constexpr double most_elements = 2e7;  // 32 bits can number the entries of their matrices
 
@@ -15,4 +15,4 @@ double memory_of(const Scene& scene);
 /// that contributes most.
 void check_size(const options::Options& options, const Scene& scene);
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -11,7 +11,7 @@
 #include "options/data_file.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 constexpr double hslm_b_force = 170e3;   // N
@@ -92,4 +92,4 @@ AxleList read_axles(const std::string& path, bool backward) {
   return axles;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::scene {
 
 /// Forces and their positions relative to the first axle.
 struct AxleList {
@@ -26,4 +26,4 @@ AxleList en15528(std::string_view line, int wagons);
 /// InputError.
 AxleList read_axles(const std::string& path, bool backward);
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -158,4 +158,4 @@ std::vector<std::string> part_names(const Options& o, const std::string& prefix,
   return names;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

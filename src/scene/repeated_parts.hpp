@@ -9,7 +9,7 @@
 
 #include "traverse/options/options.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 /// Adds the options of all repetitions as defaults, so that options given for one of them are kept, and makes the
 /// options of the repeated parts known. `prefix` is "vehicle_NAME_". Throws InputError with the name of the option.
@@ -18,4 +18,4 @@ void add_repeated_parts(options::Options& options, const std::string& prefix);
 /// The names of all parts of this kind, in the order of their list.
 std::vector<std::string> part_names(const options::Options& options, const std::string& prefix, options::Part part);
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

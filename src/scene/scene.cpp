@@ -15,7 +15,7 @@
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -282,4 +282,4 @@ Scene read_scene() {
   return scene;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -6,7 +6,7 @@
 
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -130,4 +130,4 @@ std::optional<beam::Temperature> read_temperature(const Options& o) {
   return t;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

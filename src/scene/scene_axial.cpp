@@ -6,7 +6,7 @@
 #include "base/notes.hpp"
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 bool acts_along_x(const options::Options& o, const std::string& actuator) {
@@ -94,4 +94,4 @@ void decide_axial(const options::Options& o, Scene& scene) {
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

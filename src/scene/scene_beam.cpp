@@ -9,7 +9,7 @@
 #include "options/data_file.hpp"
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -283,4 +283,4 @@ void read_beam(const Options& o, Scene& scene) {
   read_ground(o, beam);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

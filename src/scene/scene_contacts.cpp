@@ -6,7 +6,7 @@
 
 #include "vehicle_reader.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 using Eigen::Vector2d;
 
@@ -130,4 +130,4 @@ void VehicleReader::sensor(const std::string& name) {
   vehicle_.sensors.push_back(s);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

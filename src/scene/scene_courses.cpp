@@ -10,7 +10,7 @@
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -155,4 +155,4 @@ void check_courses(const Options& o, Scene& scene) {
     scene.notes.emplace_back("parallel tracks: all wheels and forces act on the beam's axis; its torsion is neglected");
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

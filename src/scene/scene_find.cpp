@@ -9,7 +9,7 @@
 #include "scene_parts.hpp"
 #include "vary_reader.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -156,4 +156,4 @@ void finish_search(const Options& o, Scene& scene) {
   });
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

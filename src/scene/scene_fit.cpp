@@ -11,7 +11,7 @@
 #include "traverse/base/error.hpp"
 #include "traverse/options/fit.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Entry;
@@ -324,4 +324,4 @@ Scene read_scene_of_fit(const Options& given, const Fit& fit, const std::vector<
   return read_scene(Options(std::move(entries)));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

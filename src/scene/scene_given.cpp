@@ -8,7 +8,7 @@
 #include "given_modes.hpp"
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -58,4 +58,4 @@ void read_modes_of_given(const Options& o, Scene& scene) {
       o.refuse("limits", fmt::format("{} {}", limit.quantity, needs_elements));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -6,7 +6,7 @@
 
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -145,4 +145,4 @@ void read_layers(const Options& o, Scene& scene) {
   scene.beam->track = track;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

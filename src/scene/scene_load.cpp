@@ -7,7 +7,7 @@
 #include "load_models.hpp"
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -180,4 +180,4 @@ void read_load(const Options& o, Scene& scene) {
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -8,7 +8,7 @@
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -90,4 +90,4 @@ train::ForceVariation read_variation(const Options& o, const Block& block) {
   return variation;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -5,7 +5,7 @@
 #include "traverse/base/error.hpp"
 #include "vehicle_reader.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 using Eigen::Vector2d;
 
@@ -97,24 +97,24 @@ auto VehicleReader::from_table(std::string_view field, std::size_t least, std::s
   }
 }
 
-multibody::Polyline VehicleReader::polyline(std::string_view field) const {
-  return from_table(field, 2, 2, [](auto columns) { return multibody::Polyline(columns[0], columns[1]); });
+base::Polyline VehicleReader::polyline(std::string_view field) const {
+  return from_table(field, 2, 2, [](auto columns) { return base::Polyline(columns[0], columns[1]); });
 }
 
 /// The force law of a nonlinear spring; none for a linear one.
-std::optional<multibody::ForceLaw> VehicleReader::force_law() const {
+std::optional<base::ForceLaw> VehicleReader::force_law() const {
   const std::string side = o_.choice(key("side"));
-  multibody::ForceLaw law;
+  base::ForceLaw law;
   law.gap = number("gap");
-  law.side = side == "tension"       ? multibody::Side::tension
-             : side == "compression" ? multibody::Side::compression
-                                     : multibody::Side::both;
+  law.side = side == "tension"       ? base::Side::tension
+             : side == "compression" ? base::Side::compression
+                                     : base::Side::both;
   if (!law.can_disengage() && !has("table") && !has("damper_table")) return {};
   for (const auto& [table, constant] : {std::pair("table", "stiffness"), std::pair("damper_table", "damping")}) {
     if (has(table) && has(constant)) o_.refuse(key(table), fmt::format("give either {} or {}", table, key(constant)));
   }
-  law.elastic = has("table") ? polyline("table") : multibody::Polyline::line(number("stiffness"));
-  law.damper = has("damper_table") ? polyline("damper_table") : multibody::Polyline::line(number("damping"));
+  law.elastic = has("table") ? polyline("table") : base::Polyline::line(number("stiffness"));
+  law.damper = has("damper_table") ? polyline("damper_table") : base::Polyline::line(number("damping"));
   if (const std::string where = law.damper.opposing(); !where.empty())
     o_.refuse(key("damper_table"),
               "the force of a damper must have the sign of the rate, so that it dissipates energy; " + where);
@@ -241,4 +241,4 @@ Vehicle read_vehicle(const options::Options& options, const std::string& name) {
   return VehicleReader(options, name).read();
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

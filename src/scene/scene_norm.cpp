@@ -7,7 +7,7 @@
 #include "norm/static_bridge.hpp"
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -111,4 +111,4 @@ void read_norm(const Options& o, Scene& scene) {
     scene.notes.emplace_back("static effects: loads act directly on the bridge, without distribution by the track");
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

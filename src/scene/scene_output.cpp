@@ -9,7 +9,7 @@
 
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -229,4 +229,4 @@ void read_output(const Options& o, Scene& scene) {
   read_sleepers(o, scene);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

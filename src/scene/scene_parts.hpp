@@ -9,7 +9,7 @@
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 /// A block of options of a train or a load.
 struct Block {
@@ -157,4 +157,4 @@ void read_screen(const options::Options& options, Scene& scene);
 /// Refuses input that is possible but certainly not intended, and adds notes on unusual input. Called last.
 void check_plausibility(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

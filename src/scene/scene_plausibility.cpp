@@ -12,7 +12,7 @@
 #include "options/data_file.hpp"
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -377,4 +377,4 @@ void check_plausibility(const Options& o, const NamedVehicles& vehicles, Scene& 
   scene.unusual.assign(scene.notes.begin() + static_cast<std::ptrdiff_t>(before), scene.notes.end());
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -5,7 +5,7 @@
 
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -69,4 +69,4 @@ void read_rail_loads(const Options& o, Scene& scene) {
   scene.rail_loads = loads;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -3,7 +3,7 @@
 
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 using options::Options;
 
@@ -48,4 +48,4 @@ void read_screen(const Options& o, Scene& scene) {
   scene.screen = screen;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

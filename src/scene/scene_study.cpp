@@ -6,7 +6,7 @@
 
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -103,4 +103,4 @@ void read_modal(const Options& o, Scene& scene) {
                                                  scene.damping_of_modes.size(), scene.model.modes));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -7,7 +7,7 @@
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 /// The displacements of the columns of a file.
@@ -92,4 +92,4 @@ void read_support_motion(const options::Options& o, Scene& scene) {
                     scene.support_motion.empty() ? "have settled" : "move"));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -8,7 +8,7 @@
 #include "scene_parts.hpp"
 #include "track/spectrum_names.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -100,4 +100,4 @@ void read_track(const Options& o, Scene& scene) {
   read_dips(o, scene);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

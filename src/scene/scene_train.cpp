@@ -10,7 +10,7 @@
 #include "scene_parts.hpp"
 #include "train/mirrored.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Options;
@@ -209,4 +209,4 @@ void read_trains(const Options& o, const NamedVehicles& vehicles, Scene& scene) 
   }
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -14,7 +14,7 @@
 #include "study_axes.hpp"
 #include "vary_reader.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Kind;
@@ -334,4 +334,4 @@ Scene read_scene_of_study(const options::Options& given,
   return scene;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

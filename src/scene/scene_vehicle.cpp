@@ -10,7 +10,7 @@
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using options::Entry;
@@ -168,4 +168,4 @@ void declare_couplers(Options& o) {
   for (const Block& train : blocks_of(o, "trains")) declare_couplers_of(o, train);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

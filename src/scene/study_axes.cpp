@@ -11,7 +11,7 @@
 #include "base/sampling_design.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 using options::Study;
 using options::StudyDimension;
@@ -166,4 +166,4 @@ void StudyAxes::draw_from_list(StudyDimension& dimension) const {
     dimension.values.push_back(list[static_cast<std::size_t>(stream.uniform(i) * static_cast<double>(list.size()))]);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -11,7 +11,7 @@
 #include "traverse/options/study.hpp"
 #include "vary_reader.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 class StudyAxes {
  public:
@@ -55,4 +55,4 @@ class StudyAxes {
   std::vector<VaryReader> readers_;   // of its factors
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -10,7 +10,7 @@
 #include "base/random_stream.hpp"
 #include "options/data_file.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 constexpr double range_tolerance = 1e-3;  // relative to a step: ends are often rounded values in km/h
 }
@@ -155,4 +155,4 @@ void VaryReader::check_one_way() const {
   if (ways.size() > 1) o_.refuse(ways[1], "give either these or " + ways[0]);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

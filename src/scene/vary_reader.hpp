@@ -8,7 +8,7 @@
 
 #include "traverse/options/options.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 /// Reads study_vary_OPTION, study_vary_OPTION_from and so on. Throws InputError with one line.
 class VaryReader {
@@ -59,4 +59,4 @@ class VaryReader {
   const options::Row& row_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -12,7 +12,7 @@
 #include "repeated_parts.hpp"
 #include "scene_parts.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 /// Reads a vehicle or a coupler. Throws InputError with the name of the option.
 class VehicleReader {
@@ -94,8 +94,8 @@ class VehicleReader {
   void joint_numbers(multibody::Joint& j) const;
   template <class Make>
   auto from_table(std::string_view field, std::size_t least, std::size_t most, Make&& make) const;
-  multibody::Polyline polyline(std::string_view field) const;
-  std::optional<multibody::ForceLaw> force_law() const;
+  base::Polyline polyline(std::string_view field) const;
+  std::optional<base::ForceLaw> force_law() const;
   void check_spring_given(std::string_view kind) const;
   void spring(const std::string& name);
   void winding(multibody::Spring& s) const;
@@ -118,4 +118,4 @@ class VehicleReader {
   bool coupler_ = false;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

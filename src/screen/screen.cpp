@@ -31,22 +31,22 @@ std::vector<Verdict> judge_all(const Problem& problem, const Bridge& bridge, con
   for (const Formation& formation : problem.fleet) {
     verdicts.push_back(pairs.judge(formation));
     after_each();
-    if (app::caught_signal() != 0) return {};
+    if (run::caught_signal() != 0) return {};
   }
   return verdicts;
 }
 
-app::RunFailure compute(MPI_Comm comm, const Problem& problem, const std::vector<std::size_t>& open, ScreenFile& file,
-                        Totals& totals, std::size_t& finished) {
+ensemble::RunFailure compute(MPI_Comm comm, const Problem& problem, const std::vector<std::size_t>& open,
+                             ScreenFile& file, Totals& totals, std::size_t& finished) {
   const results::Stage stage("bridges of the screen");
-  app::ResultGather gather(comm, [&](const std::vector<double>& message) {
+  ensemble::ResultGather gather(comm, [&](const std::vector<double>& message) {
     const std::vector<double> row(message.begin() + 1, message.end());
     const auto bridge = static_cast<std::size_t>(message.front());
     file.put(bridge, row);
     totals.add(bridge, row);
     ++finished;
   });
-  app::SharedWork work;
+  ensemble::SharedWork work;
   work.pieces.assign(open.size(), {1, 1.0});
   work.compute = [&](std::size_t piece, const std::function<void(double)>& reached) {
     double done = 0.0;
@@ -63,9 +63,9 @@ app::RunFailure compute(MPI_Comm comm, const Problem& problem, const std::vector
     gather.collect();
   };
   work.name = [&](std::size_t piece) { return "the bridge " + problem.stock[open[piece]].name; };
-  app::RunFailure failure = app::run_cases_in_parallel(comm, work, problem.scene.quiet);
+  ensemble::RunFailure failure = ensemble::run_cases_in_parallel(comm, work, problem.scene.quiet);
   gather.finish();
-  return app::first_of(comm, std::move(failure));
+  return ensemble::first_of(comm, std::move(failure));
 }
 
 /// Collective. The bridges without a finished row, which only rank 0 knows.
@@ -127,13 +127,13 @@ int run(MPI_Comm comm, results::Place place, const Problem& problem, const std::
   const auto begin = std::chrono::steady_clock::now();
   std::map<std::size_t, std::vector<double>> known = stored_rows(comm, problem);
   const std::vector<std::size_t> open = open_bridges(comm, problem, known);
-  const app::DeferredSignals deferred;
+  const run::DeferredSignals deferred;
   Totals totals(problem.stock.size(), problem.fleet.size());
   ScreenFile file(comm, std::move(place), problem, notes, known, totals);
   known.clear();
   std::size_t finished = problem.stock.size() - open.size();
-  const app::RunFailure failure = compute(comm, problem, open, file, totals, finished);
-  const int signal = app::signal_on_any(comm);
+  const ensemble::RunFailure failure = compute(comm, problem, open, file, totals, finished);
+  const int signal = run::signal_on_any(comm);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const std::string ended = failure.failed() ? failure.message
                             : signal != 0    ? fmt::format("ended by signal {}", signal)
@@ -144,7 +144,7 @@ int run(MPI_Comm comm, results::Place place, const Problem& problem, const std::
   try {
     file.finish(totals, finished, seconds, ended, checked ? checked->attributes() : std::vector<results::Attribute>());
   } catch (const FileError& error) {
-    app::leave_together(comm, error);
+    run::leave_together(comm, error);
   }
   int rank = 0;
   MPI_Comm_rank(comm, &rank);

@@ -84,7 +84,7 @@ std::map<std::size_t, std::vector<double>> rows_in(const Problem& problem, std::
 
 }  // namespace
 
-Problem read_problem(const app::Scene& scene) {
+Problem read_problem(const scene::Scene& scene) {
   const options::Screen& screen = *scene.screen;
   Problem problem{scene, read_stock(screen.stock, scene.limits), read_fleet(screen.fleet), {}};
   problem.digest =
@@ -117,8 +117,8 @@ ScreenFile::ScreenFile(MPI_Comm comm, results::Place place, const Problem& probl
                        const std::vector<std::string>& notes, std::map<std::size_t, std::vector<double>>& rows,
                        Totals& totals)
     : comm_(comm), formations_(problem.fleet.size()), recorder_([&] {
-        results::Recorder made(comm, std::move(place), {}, app::attributes(comm, problem.scene), problem.scene.options);
-        app::record_model(problem.scene, notes, made);
+        results::Recorder made(comm, std::move(place), {}, run::attributes(comm, problem.scene), problem.scene.options);
+        run::record_model(problem.scene, notes, made);
         made.names("/bridge", names_of(problem.stock));
         made.names("/formation", names_of(problem.fleet));
         std::vector<Dataset> sets;
@@ -158,7 +158,7 @@ void ScreenFile::put(std::size_t bridge, const std::vector<double>& row) {
   try {
     write(bridge, row);
   } catch (const FileError& error) {
-    app::leave_together(comm_, error);
+    run::leave_together(comm_, error);
   }
 }
 

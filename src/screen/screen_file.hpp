@@ -19,14 +19,14 @@ namespace traverse::screen {
 
 /// A screen with everything that was read.
 struct Problem {
-  const app::Scene& scene;
+  const scene::Scene& scene;
   std::vector<Bridge> stock;
   std::vector<Formation> fleet;
   std::string digest;
 };
 
 /// Reads and checks stock and fleet. InputError.
-Problem read_problem(const app::Scene& scene);
+Problem read_problem(const scene::Scene& scene);
 
 /// Collective. With screen_resume: on rank 0 the finished rows of the results file, by the index of their bridge;
 /// otherwise none. InputError if the file belongs to another screen.

@@ -29,11 +29,11 @@ BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* d
     if (beam.fixed()[i] != 0) held_.push_back(i);
 }
 
-void BeamMotion::begin(const Method& method) {
+void BeamMotion::begin(const base::Method& method) {
   const auto [a, b] = fused() && proportional_ ? beam_.rayleigh() : beam::Rayleigh{};
-  std::array<Sum, most_accelerations> accelerations{};  // A_j
+  std::array<Sum, base::most_accelerations> accelerations{};  // A_j
   accelerations[0].stored[0] = 1.0;
-  const auto v_and_w = [&](double w_in_v, const Weights& a_in_v, const Weights& a_in_w, Sum& v, Sum& w) {
+  const auto v_and_w = [&](double w_in_v, const base::Weights& a_in_v, const base::Weights& a_in_w, Sum& v, Sum& w) {
     v = {1.0, w_in_v, {}};
     w = {0.0, 1.0, {}};
     for (std::size_t j = 0; j < accelerations.size(); ++j) {
@@ -42,7 +42,7 @@ void BeamMotion::begin(const Method& method) {
     }
   };
   stages_.clear();
-  for (const StageRule& rule : method.stages) {
+  for (const base::StageRule& rule : method.stages) {
     Stage stage;
     stage.rate = rule.rate;
     stage.displacement = rule.displacement;

@@ -40,7 +40,7 @@ class BeamMotion final : private solve::RhsCallback {
   BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load);
 
   /// Sets the method of the next steps, for their length; the acceleration at the start is unchanged.
-  void begin(const Method& method);
+  void begin(const base::Method& method);
 
   /// Nodal accelerations at the start of the step, this rank's unknowns.
   double* start_acceleration() { return stored_[0].data(); }
@@ -108,7 +108,7 @@ class BeamMotion final : private solve::RhsCallback {
  private:
   struct Sum {  // linear combination of v_n, w_n and the stored vectors
     double v = 0.0, w = 0.0;
-    Weights stored{};
+    base::Weights stored{};
     void add(double by, const Sum& other);
   };
   struct Stage {
@@ -118,7 +118,7 @@ class BeamMotion final : private solve::RhsCallback {
   };
   struct View {  // the vectors of the nodes [first, past)
     const double *v = nullptr, *w = nullptr;
-    std::array<const double*, most_accelerations> stored{};
+    std::array<const double*, base::most_accelerations> stored{};
     int first = 0, past = 0;
   };
   template <int outputs>
@@ -152,10 +152,10 @@ class BeamMotion final : private solve::RhsCallback {
   BeamOperator& operator_;
   const double* dead_load_;
   int block_;
-  std::optional<beam::ElementRows> elements_;                   // only if fused
-  bool proportional_ = false;                                   // C = a M + b K
-  std::vector<int> held_;                                       // local unknowns that supports hold at zero
-  std::array<std::vector<double>, most_accelerations> stored_;  // A_0, then one per stage
+  std::optional<beam::ElementRows> elements_;                         // only if fused
+  bool proportional_ = false;                                         // C = a M + b K
+  std::vector<int> held_;                                             // local unknowns that supports hold at zero
+  std::array<std::vector<double>, base::most_accelerations> stored_;  // A_0, then one per stage
   int n_ = 0, nodes_ = 0;
   std::vector<Range> ranges_;
   bool has_ranges_ = false;
@@ -171,7 +171,7 @@ class BeamMotion final : private solve::RhsCallback {
   std::array<Ghosts, 3> ghosts_{};  // neighbours' values of e, w and w~, or of the errors of v and w
   double* target_ = nullptr;        // the solution at the first unknown of the view
   Dissipation dissipation_;
-  std::array<std::vector<double>, most_accelerations> scratch_;  // work arrays of step_free
+  std::array<std::vector<double>, base::most_accelerations> scratch_;  // work arrays of step_free
 };
 
 }  // namespace traverse::structure

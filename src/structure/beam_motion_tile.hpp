@@ -9,7 +9,7 @@
 namespace traverse::structure {
 
 inline constexpr int tile = beam::tile;
-inline constexpr int most_terms = most_accelerations + 2;  // with v and w
+inline constexpr int most_terms = base::most_accelerations + 2;  // with v and w
 
 template <class Call>
 void with_count(int count, Call call) {

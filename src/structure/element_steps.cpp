@@ -18,7 +18,7 @@ void ElementStructure::limit_to_active_window(double tolerance, const std::vecto
     probe_columns_.push_back(beam_.bridge().first_column + beam_.mesh().element(beam_.mesh().locate(x).element).left);
 }
 
-void ElementStructure::begin_motion(const Method& method) {
+void ElementStructure::begin_motion(const base::Method& method) {
   method_ = method;
   const bool has_dead_load = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
   motion_.emplace(beam_, *statics_, has_dead_load ? dead_load_.data() : nullptr);
@@ -29,7 +29,7 @@ void ElementStructure::begin_motion(const Method& method) {
                   static_displacements_.empty() ? nullptr : static_displacements_.data());
 }
 
-void ElementStructure::set_method(const Method& method, double h) {
+void ElementStructure::set_method(const base::Method& method, double h) {
   method_ = method;
   length_ = h;
   motion_->begin(method);
@@ -87,7 +87,7 @@ void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
   if (!window_ && !by_parts) return;
   find_loaded(loaded);
   if (window_) {
-    const StageRule& rule = method_.stages.front();
+    const base::StageRule& rule = method_.stages.front();
     window_->open(loaded_, compliance_.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
   }
   free_.clear();
@@ -144,7 +144,7 @@ void ElementStructure::end_stage(std::size_t i, const double* v, const double* w
 }
 
 void ElementStructure::finish_step(double* v, double* w) {
-  const StepRule& rule = method_.step;
+  const base::StepRule& rule = method_.step;
   for (int j = 0; j < rule.known; ++j) {
     dissipated_ += rule.power[j] * powers_[j].beam;
     worked_ += rule.power[j] * powers_[j].forces;
@@ -207,7 +207,7 @@ void ElementStructure::start_with(const double* a) {
     std::copy_n(a, n_, start);
     return;
   }
-  const StageRule& rule = method_.stages.front();
+  const base::StageRule& rule = method_.stages.front();
   const double shift = rule.rate / rule.displacement, shift2 = 1.0 / rule.displacement;
   for (int i = 0; i < n_; ++i) work_[i] = a[i] - start[i];
   statics_->multiply(1.0, work_.data(), nullptr, nullptr, z_.data());

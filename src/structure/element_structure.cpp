@@ -28,9 +28,9 @@ void ElementStructure::set_reference_loads(double sum, double greatest) {
 
 // --- loads ---------------------------------------------------------------------------------------------------------
 
-void ElementStructure::load(const std::vector<beam::ElementLoad>& forces) {
+void ElementStructure::load(const std::vector<recovery::ElementLoad>& forces) {
   nodal_forces_.clear();
-  for (const beam::ElementLoad& force : forces) {
+  for (const recovery::ElementLoad& force : forces) {
     const auto unknowns = line_.unknowns(force.element);
     const auto parts = on_unknowns(line_, force);
     for (std::size_t i = 0; i < unknowns.size(); ++i) {
@@ -145,7 +145,7 @@ void ElementStructure::begin_stage(double shift, const double* c_v, const double
 }
 
 void ElementStructure::begin_stage(std::size_t i, const double* v, const double* w) {
-  const StageRule& rule = method_.stages[i];
+  const base::StageRule& rule = method_.stages[i];
   stage_ = {};
   stage_.kind = fused() ? Kind::fused : Kind::step;
   stage_.shift = rule.rate / rule.displacement;

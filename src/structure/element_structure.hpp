@@ -35,7 +35,7 @@ class ElementStructure final : public Structure {
   bool linear() const override { return !nonlinear_; }
   void set_reference_loads(double sum, double greatest) override;
 
-  void load(const std::vector<beam::ElementLoad>& forces) override;
+  void load(const std::vector<recovery::ElementLoad>& forces) override;
   void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
   std::array<double, 2> powers(const double* w) override;
 
@@ -61,8 +61,8 @@ class ElementStructure final : public Structure {
   std::optional<double> energy_left() const override {
     return window_ ? std::optional(window_->energy_left()) : std::nullopt;
   }
-  void begin_motion(const Method& method) override;
-  void set_method(const Method& method, double h) override;
+  void begin_motion(const base::Method& method) override;
+  void set_method(const base::Method& method, double h) override;
   void measure_errors() override { measures_errors_ = true; }
   void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
   void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) override;
@@ -125,7 +125,7 @@ class ElementStructure final : public Structure {
   std::vector<double> element_work_;
 
   // Steps
-  Method method_;
+  base::Method method_;
   double length_ = 0.0;  // s, of a step
   std::optional<BeamMotion> motion_;
   std::optional<ActiveWindow> window_;
@@ -133,7 +133,7 @@ class ElementStructure final : public Structure {
   double window_tolerance_ = 0.0;             // 0: time steps include all nodes
   std::vector<int> probe_columns_;            // columns of probes
   std::vector<double> static_displacements_;  // deflections under the dead load only; empty: none
-  std::array<Powers, most_accelerations> powers_;
+  std::array<Powers, base::most_accelerations> powers_;
   /// Integrals of this rank's powers, J. The measured dissipation is integrated up to `unmeasured_` s ago, when it was
   /// `measured_`.
   double dissipated_ = 0.0, worked_ = 0.0, unmeasured_ = 0.0;

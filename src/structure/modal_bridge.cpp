@@ -145,13 +145,13 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   probes_ = {};
   probes_.count = stations.size();
   if (given()) return add_given_probes(stations);
-  beam::Recovery recovery(beam_, stations, 0.0);
+  recovery::Recovery recovery(beam_, stations, 0.0);
   record_forms(recovery);
   if (forces_on_others_.cols() > 0) record_others(recovery);
-  beam::Recovery with_weight(beam_, stations, gravity);
+  recovery::Recovery with_weight(beam_, stations, gravity);
   record_weight(with_weight, gravity);
   std::vector<Line> lines = lines_of_modes();
-  for (const auto quantity : {&beam::Response::deflection, &beam::Response::moment})
+  for (const auto quantity : {&recovery::Response::deflection, &recovery::Response::moment})
     for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
   influence_ = influence_of(lines, stations);
 }
@@ -194,12 +194,12 @@ ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, double gravity
   return slopes;
 }
 
-void ModalBridge::record_forms(beam::Recovery& recovery) {
+void ModalBridge::record_forms(recovery::Recovery& recovery) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
-  std::vector<beam::Response> responses;
+  std::vector<recovery::Response> responses;
   for (std::size_t i = 0; i < modes(); ++i) {
     recovery.evaluate(shape(i), zero.data(), zero.data(), {}, responses);
-    for (const beam::Response& r : responses) {
+    for (const recovery::Response& r : responses) {
       probes_.deflection.push_back(r.deflection);
       probes_.moment.push_back(r.moment);
     }
@@ -210,7 +210,7 @@ void ModalBridge::record_forms(beam::Recovery& recovery) {
       probes_.moment_by_acceleration.push_back(responses[p].moment);
     }
     recovery.evaluate(zero.data(), shape(i), zero.data(), {}, responses);
-    for (const beam::Response& r : responses) {
+    for (const recovery::Response& r : responses) {
       const std::size_t at = probes_.moment_by_rate.size();
       probes_.moment_by_rate.push_back(r.moment + own_drag_[i] * probes_.moment_by_acceleration[at]);
     }
@@ -218,10 +218,10 @@ void ModalBridge::record_forms(beam::Recovery& recovery) {
 }
 
 /// The static deflections of the other modes per rate of each mode.
-void ModalBridge::record_others(beam::Recovery& recovery) {
+void ModalBridge::record_others(recovery::Recovery& recovery) {
   const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
-  std::vector<beam::Response> responses;
+  std::vector<recovery::Response> responses;
   for (std::size_t i = 0; i < modes(); ++i) {
     std::vector<double> force(basis_.shape.front().size(), 0.0);
     const auto own = forces_on_others_.col(static_cast<Eigen::Index>(i));
@@ -242,12 +242,12 @@ std::vector<double> ModalBridge::weight_displacements(double gravity) {
   return static_solution(weight);
 }
 
-void ModalBridge::record_weight(beam::Recovery& recovery, double gravity) {
+void ModalBridge::record_weight(recovery::Recovery& recovery, double gravity) {
   const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
   const std::vector<double> displacements = weight_displacements(gravity), zero(beam_.local_unknowns(), 0.0);
-  std::vector<beam::Response> responses;
+  std::vector<recovery::Response> responses;
   recovery.evaluate(displacements.data() + begin, zero.data(), zero.data(), {}, responses);
-  for (const beam::Response& r : responses) {
+  for (const recovery::Response& r : responses) {
     probes_.weight_deflection.push_back(r.deflection);
     probes_.weight_moment.push_back(r.moment);
   }
@@ -256,10 +256,10 @@ void ModalBridge::record_weight(beam::Recovery& recovery, double gravity) {
 /// The influence line of a response at a probe, minus the modes' share. By the theorem of Maxwell and Betti it is the
 /// deflection of the structure under a load. The nodal forces of this load are the coefficients of the nodal values of
 /// the probe's element in the response.
-ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size_t p,
-                                             double beam::Response::*quantity) {
+ModalBridge::Line ModalBridge::correction_of(recovery::Recovery& recovery, std::size_t p,
+                                             double recovery::Response::*quantity) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
-  std::vector<beam::Response> responses;
+  std::vector<recovery::Response> responses;
   std::vector<double> load(basis_.shape.front().size(), 0.0);
   for (const int unknown : beam_.bridge().transverse(beam_.mesh().locate(recovery.stations()[p]).element)) {
     std::vector<double> unit = zero;
@@ -267,7 +267,7 @@ ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size
     recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, responses);
     load[static_cast<std::size_t>(unknown)] = responses[p].*quantity;
   }
-  const std::vector<double>& form = quantity == &beam::Response::deflection ? probes_.deflection : probes_.moment;
+  const std::vector<double>& form = quantity == &recovery::Response::deflection ? probes_.deflection : probes_.moment;
   Line line = line_of(load, [&](std::size_t mode) { return form[mode * probes_.count + p]; });
   line.probe = p;
   line.direct = quantity;
@@ -289,7 +289,7 @@ ModalBridge::Line ModalBridge::line_of(const std::vector<double>& load,
 
 PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const {
   const beam::Mesh& mesh = beam_.mesh();
-  std::vector<beam::Recovery> recoveries;
+  std::vector<recovery::Recovery> recoveries;
   for (const double x : stations) recoveries.emplace_back(beam_, std::vector<double>{x}, 0.0);
   PiecewiseCubic influence = {{mesh.start()}, lines.size(), {}};
   for (int e = 0; e < mesh.elements(); ++e) {
@@ -312,7 +312,7 @@ PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const s
         beam::Cubic cubic = beam::shifted(beam::hermite_cubic(nodal, element.length, element.shear), left);
         if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
           const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {
-            const beam::ElementLoad unit = {e, (left + x) / element.length, 0.0, -1.0, 0.0};
+            const recovery::ElementLoad unit = {e, (left + x) / element.length, 0.0, -1.0, 0.0};
             return recoveries[line.probe].inside_response(0, unit).*line.direct;
           });
           for (std::size_t k = 0; k < 4; ++k) cubic[k] += more[k];

@@ -107,17 +107,17 @@ class ModalBridge {
   struct Line {
     std::vector<double> nodal;  // all ranks' unknowns
     std::size_t probe = 0;
-    double beam::Response::*direct = nullptr;  // null: none
+    double recovery::Response::*direct = nullptr;  // null: none
   };
   Eigen::MatrixXd on_shapes(Mat matrix) const;
   Eigen::MatrixXd share_of_modes(const Eigen::MatrixXd& forces) const;
   void set_damping(const std::vector<double>& ratios);
   void set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share);
   void add_given_probes(const std::vector<double>& stations);
-  void record_forms(beam::Recovery& recovery);
-  void record_others(beam::Recovery& recovery);
-  void record_weight(beam::Recovery& recovery, double gravity);
-  Line correction_of(beam::Recovery& recovery, std::size_t probe, double beam::Response::*quantity);
+  void record_forms(recovery::Recovery& recovery);
+  void record_others(recovery::Recovery& recovery);
+  void record_weight(recovery::Recovery& recovery, double gravity);
+  Line correction_of(recovery::Recovery& recovery, std::size_t probe, double recovery::Response::*quantity);
   std::vector<Line> lines_of_modes() const;
   Line line_of(const std::vector<double>& load, const std::function<double(std::size_t)>& form);
   PiecewiseCubic influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const;

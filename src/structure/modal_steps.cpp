@@ -52,7 +52,7 @@ void ModalStructure::begin_stage(double shift, const double* c_v, const double* 
 }
 
 void ModalStructure::begin_stage(std::size_t stage, const double* v, const double* w) {
-  const StageRule& rule = method_.stages[stage];
+  const base::StageRule& rule = method_.stages[stage];
   set_stage(rule.rate / rule.displacement, 1.0 / rule.displacement);
   for (int i = 0; i < n_; ++i) {
     v_predicted_[i] = v[i] + rule.w_in_v * w[i];
@@ -154,18 +154,18 @@ void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const dou
 
 // --- steps ---------------------------------------------------------------------------------------------------------
 
-void ModalStructure::begin_motion(const Method& method) {
+void ModalStructure::begin_motion(const base::Method& method) {
   method_ = method;
   for (int j = 0; j < method.step.known; ++j) accelerations_[j].assign(static_cast<std::size_t>(n_), 0.0);
 }
 
-void ModalStructure::set_method(const Method& method, double /*h*/) { method_ = method; }
+void ModalStructure::set_method(const base::Method& method, double /*h*/) { method_ = method; }
 
 void ModalStructure::restart(const std::vector<Reach>& /*loaded*/, double* /*v*/, double* w, const double* a) {
   if (method_.stages.size() > 1) {
     std::copy_n(a, n_, accelerations_[0].begin());
   } else {  // as ElementStructure::start_with
-    const StageRule& rule = method_.stages.front();
+    const base::StageRule& rule = method_.stages.front();
     set_stage(rule.rate / rule.displacement, 1.0 / rule.displacement);
     for (int i = 0; i < n_; ++i) q_[i] = a[i] - accelerations_[0][i];
     divide(q_.data(), z_.data());
@@ -185,7 +185,7 @@ void ModalStructure::begin_step(const std::vector<Reach>& /*loaded*/, const doub
 }
 
 void ModalStructure::finish_step(double* v, double* w) {
-  const StepRule& rule = method_.step;
+  const base::StepRule& rule = method_.step;
   for (int i = 0; i < n_; ++i) {
     v[i] += rule.w_in_v * w[i];
     double next = 0.0;
@@ -211,7 +211,7 @@ void ModalStructure::reject_step(double* v, double* w) {
 }
 
 double ModalStructure::error_energy(const double* /*v*/, const double* /*w*/) {
-  const StepRule& rule = method_.step;
+  const base::StepRule& rule = method_.step;
   double energy = 0.0;
   for (int i = 0; i < n_; ++i) {
     double error_of_v = 0.0, error_of_w = 0.0;

@@ -60,10 +60,10 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
 
 // --- loads and states ----------------------------------------------------------------------------------------------
 
-void ModalStructure::load(const std::vector<beam::ElementLoad>& forces) {
+void ModalStructure::load(const std::vector<recovery::ElementLoad>& forces) {
   forces_ = forces;
   std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
-  for (const beam::ElementLoad& force : forces_) {
+  for (const recovery::ElementLoad& force : forces_) {
     const auto unknowns = line_.unknowns(force.element);
     const auto parts = on_unknowns(line_, force);
     for (std::size_t k = 0; k < unknowns.size() && unknowns[k] >= 0; ++k) {
@@ -188,7 +188,7 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   // Forces except the self-weight; the static deflections under them and dampers' forces, minus the modes' share.
   out.P.assign(size, 0.0);
   add_contacts(contacts, out.P.data());
-  for (const beam::ElementLoad& force : forces_) add_force(line_, force, out.P.data());
+  for (const recovery::ElementLoad& force : forces_) add_force(line_, force, out.P.data());
   static_displacement_ = out.P;
   bridge_.add_forces_on_others(&q[modes_], static_displacement_.data());
   release_held(static_displacement_.data());

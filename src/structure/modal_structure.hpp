@@ -25,7 +25,7 @@ class ModalStructure final : public Structure {
   ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics);
 
   bool uses_local_compliance(bool /*asked*/) const override { return false; }
-  void load(const std::vector<beam::ElementLoad>& forces) override;
+  void load(const std::vector<recovery::ElementLoad>& forces) override;
   void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
   std::array<double, 2> powers(const double* w) override;
 
@@ -38,8 +38,8 @@ class ModalStructure final : public Structure {
   void end_stage(double* v, double* w) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
 
-  void begin_motion(const Method& method) override;
-  void set_method(const Method& method, double h) override;
+  void begin_motion(const base::Method& method) override;
+  void set_method(const base::Method& method, double h) override;
   void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
   void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) override;
   void finish_step(double* v, double* w) override;
@@ -92,14 +92,14 @@ class ModalStructure final : public Structure {
 
   const ModalBridge& bridge_;
   std::size_t modes_;
-  std::vector<double> by_unknown_;           // [unknown][mode]
-  std::vector<Extent> extents_;              // of each mode's shape
-  std::vector<double> weight_displacement_;  // v_0, of all ranks' unknowns
-  std::vector<double> weight_;               // phi^T of the self-weight, N
-  double weight_work_ = 0.0;                 // J, self-weight times v_0
-  std::vector<beam::ElementLoad> forces_;    // the moving forces
-  std::vector<double> modal_force_;          // modal forces of the moving forces
-  double shift_ = 0.0, shift2_ = 0.0;        // factors of the stage: rates and accelerations over displacements
+  std::vector<double> by_unknown_;             // [unknown][mode]
+  std::vector<Extent> extents_;                // of each mode's shape
+  std::vector<double> weight_displacement_;    // v_0, of all ranks' unknowns
+  std::vector<double> weight_;                 // phi^T of the self-weight, N
+  double weight_work_ = 0.0;                   // J, self-weight times v_0
+  std::vector<recovery::ElementLoad> forces_;  // the moving forces
+  std::vector<double> modal_force_;            // modal forces of the moving forces
+  double shift_ = 0.0, shift2_ = 0.0;          // factors of the stage: rates and accelerations over displacements
   // The diagonal of the stage's S = s2 + 2 sigma s + omega^2; for coupled modes S^-1 including the damping between
   // them.
   std::vector<double> stiffness_;
@@ -108,9 +108,10 @@ class ModalStructure final : public Structure {
   std::vector<double> v_predicted_, w_predicted_, z_;  // same meaning as in ElementStructure
   std::vector<int> elements_;                          // elements of the last computed compliance
   ModalCompliance compliance_;
-  Method method_;
-  std::array<std::vector<double>, most_accelerations> accelerations_;  // q'' at the start of the step and at its stages
-  std::array<Powers, most_accelerations> powers_;
+  base::Method method_;
+  std::array<std::vector<double>, base::most_accelerations>
+      accelerations_;  // q'' at the start of the step and at its stages
+  std::array<Powers, base::most_accelerations> powers_;
   double dissipated_ = 0.0, worked_ = 0.0;  // J, on the first rank
   struct {
     double dissipated = 0.0, worked = 0.0;

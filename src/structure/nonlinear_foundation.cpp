@@ -127,7 +127,7 @@ double NonlinearFoundation::dissipation() const {
   return sum;
 }
 
-void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::ElementLoad>& loads) const {
+void NonlinearFoundation::report(NonlinearForces& forces, std::vector<recovery::ElementLoad>& loads) const {
   for (std::size_t i = 0; i < beam::foundation_kind_count; ++i) {
     const beam::FoundationKind& kind = beam::foundation_kinds[i];
     const bool bed = kind.bed != nullptr && foundation_.*kind.bed && (foundation_.*kind.bed)->law.nonlinear();
@@ -136,7 +136,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
                                                      : 0;
     forces.of_kind[i].assign(count, 0.0);
   }
-  std::vector<beam::ElementLoad> own_loads;
+  std::vector<recovery::ElementLoad> own_loads;
   forces.below_sleepers.assign(sleepers_, 0.0);
   forces.open_gaps.assign(sleepers_, 0.0);
   forces.of_ground = forces.along_ground = 0.0;
@@ -159,7 +159,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
       continue;
     }
     forces.of_kind[p.source.kind][static_cast<std::size_t>(p.source.index)] += p.state.force;
-    beam::ElementLoad load{p.source.at.element, p.source.at.xi};
+    recovery::ElementLoad load{p.source.at.element, p.source.at.xi};
     (p.source.direction == Direction::vertical       ? load.fy
      : p.source.direction == Direction::longitudinal ? load.fx
                                                      : load.moment) = p.state.force;
@@ -180,11 +180,11 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
   MPI_Comm_size(comm_, &ranks);
   const auto count = static_cast<std::size_t>(ranks);
   std::vector<int> counts(count), starts(count);
-  const int bytes = static_cast<int>(own_loads.size() * sizeof(beam::ElementLoad));
+  const int bytes = static_cast<int>(own_loads.size() * sizeof(recovery::ElementLoad));
   MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_);
   std::exclusive_scan(counts.begin(), counts.end(), starts.begin(), 0);
   const std::size_t before = loads.size();
-  loads.resize(before + static_cast<std::size_t>(starts.back() + counts.back()) / sizeof(beam::ElementLoad));
+  loads.resize(before + static_cast<std::size_t>(starts.back() + counts.back()) / sizeof(recovery::ElementLoad));
   MPI_Allgatherv(own_loads.data(), bytes, MPI_BYTE, loads.data() + before, counts.data(), starts.data(), MPI_BYTE,
                  comm_);
 }

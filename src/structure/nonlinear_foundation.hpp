@@ -59,7 +59,7 @@ class NonlinearFoundation {
   double dissipation() const;
   double slip_loss() const { return slip_loss_; }  // J, lost by sliding so far, this rank's share
   /// Collective. Sets the forces, equal on all ranks, and appends the loads on the bridge to `loads`.
-  void report(NonlinearForces& forces, std::vector<beam::ElementLoad>& loads) const;
+  void report(NonlinearForces& forces, std::vector<recovery::ElementLoad>& loads) const;
 
   // Sliding sleepers and bearings ------------------------------------------------------------------------------------
   /// Sets the range of the trains from now on, m: sleepers between these stations are loaded. Empty range: none are.

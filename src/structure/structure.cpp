@@ -53,11 +53,11 @@ void Structure::release_held(double* nodal) const {
     if (fixed[i] != 0) nodal[i] = 0.0;
 }
 
-std::array<double, 6> on_unknowns(const beam::Line& line, const beam::ElementLoad& force) {
+std::array<double, 6> on_unknowns(const beam::Line& line, const recovery::ElementLoad& force) {
   const beam::Element& element = line.mesh.element(force.element);
   std::array<double, 4> transverse{};
   std::array<double, 2> along{};
-  beam::for_points(force, 0.0, [&](const beam::ElementLoad& point) {
+  recovery::for_points(force, 0.0, [&](const recovery::ElementLoad& point) {
     const auto psi = beam::hermite(point.xi, element.length, element.shear).value;
     for (std::size_t i = 0; i < 4; ++i) transverse[i] += point.fy * psi[i];
     const auto phi = beam::linear(point.xi);
@@ -70,7 +70,7 @@ std::array<double, 6> on_unknowns(const beam::Line& line, const beam::ElementLoa
   return {along[0], transverse[0], transverse[1], along[1], transverse[2], transverse[3]};
 }
 
-void Structure::add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const {
+void Structure::add_force(const beam::Line& line, const recovery::ElementLoad& force, double* nodal) const {
   const auto unknowns = line.unknowns(force.element);
   const auto parts = on_unknowns(line, force);
   for (std::size_t i = 0; i < unknowns.size(); ++i)

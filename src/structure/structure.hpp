@@ -35,7 +35,7 @@ struct ElementLoads {
 
 /// A load on a line as forces on the unknowns of its element, in the order of beam::Line::unknowns (equations 13 to
 /// 15). Forces along x have an effect only if there are axial unknowns.
-std::array<double, 6> on_unknowns(const beam::Line& line, const beam::ElementLoad& force);
+std::array<double, 6> on_unknowns(const beam::Line& line, const recovery::ElementLoad& force);
 
 /// The largest magnitudes of the displacements, m, and rotations, rad, of a state.
 struct Extent {
@@ -64,7 +64,7 @@ struct NodalMotion {
   std::vector<double> drag;          // acceleration whose inertia forces equal modal damping forces; empty: none
   std::vector<double> coordinates;   // by modes: q of each mode, m kg^(1/2), on every rank
   NonlinearForces foundation;
-  std::vector<beam::ElementLoad> foundation_loads;  // loads from the nonlinear foundation
+  std::vector<recovery::ElementLoad> foundation_loads;  // loads from the nonlinear foundation
 };
 
 /// A structure with n unknowns on this rank. All functions are collective, except those that only return a value.
@@ -97,7 +97,7 @@ class Structure {
   /// Sets nodal forces on held unknowns to zero: the supports carry them.
   void release_held(double* nodal) const;
   /// Adds a vertical force (N, upward) inside an element of a line to this rank's nodal forces.
-  void add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const;
+  void add_force(const beam::Line& line, const recovery::ElementLoad& force, double* nodal) const;
   /// Whether the superposition of loads is valid.
   virtual bool linear() const { return true; }
   /// Sum of all weights and forces, and the greatest single one, N: the reference for forces of a foundation.
@@ -120,7 +120,7 @@ class Structure {
   void add_support_motion(NodalMotion& motion);
 
   /// Sets the moving forces with their present positions.
-  virtual void load(const std::vector<beam::ElementLoad>& forces) = 0;
+  virtual void load(const std::vector<recovery::ElementLoad>& forces) = 0;
   /// v and w of elements at a state, on all ranks.
   void gather(const std::vector<int>& elements, const double* v, const double* w, std::vector<double>& v_elements,
               std::vector<double>& w_elements);
@@ -188,9 +188,9 @@ class Structure {
   /// J, energy lost by setting nodes to rest so far, this rank's share; none if all nodes are in the steps.
   virtual std::optional<double> energy_left() const { return std::nullopt; }
   /// The method of all following steps, for steps of 1 s.
-  virtual void begin_motion(const Method& method) = 0;
+  virtual void begin_motion(const base::Method& method) = 0;
   /// The method of all following steps, for steps of h, s.
-  virtual void set_method(const Method& method, double h) = 0;
+  virtual void set_method(const base::Method& method, double h) = 0;
   /// The errors of all steps will be requested.
   virtual void measure_errors() {}
   /// Before the first step from a state with the accelerations a, and after a change of the state from outside; v and w

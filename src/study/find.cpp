@@ -14,7 +14,7 @@
 #include "run/process.hpp"
 #include "traverse/base/error.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 using options::Find;
@@ -251,4 +251,4 @@ void record_answers(const StudyTable& table, const std::vector<FoundAnswer>& ans
       "/find", {{"option", searched.name()}, {"condition", condition(table)}, {"accuracy", study.find->accuracy}});
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

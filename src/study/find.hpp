@@ -11,7 +11,7 @@
 #include "results/study_table.hpp"
 #include "study/interval_search.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// The answer for one combination of the axes of Find::for_each, or for all runs.
 struct FoundAnswer {
@@ -39,4 +39,4 @@ void print_answers(const results::StudyTable& table, const std::vector<FoundAnsw
 void record_answers(const results::StudyTable& table, const std::vector<FoundAnswer>& answers,
                     results::Recorder& recorder);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -7,7 +7,7 @@
 
 #include "study/speed_refinement.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 constexpr double part_of_accuracy =
@@ -98,4 +98,4 @@ std::vector<double> values_to_add(const std::vector<double>& value, const std::v
   return apart;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

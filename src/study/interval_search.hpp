@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// The first and the last value of a run of samples within the bound. An end of the searched range is not the end of
 /// the true interval.
@@ -26,4 +26,4 @@ std::vector<WithinInterval> intervals_within(const std::vector<double>& value, c
 std::vector<double> values_to_add(const std::vector<double>& value, const std::vector<std::vector<double>>& ratios,
                                   double accuracy);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -3,10 +3,10 @@
 
 #include "base/sampling_design.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 void reduce_local_steps(StudyScenes& scenes) {
-  Study study = scenes.study();
+  options::Study study = scenes.study();
   if (!study.sensitivity || study.sensitivity->method != options::Sensitivity::Method::local) return;
   const StudyScenes::Runner nominal = scenes.runner(0);
   if (!nominal.runs->has_lanes()) return;
@@ -27,4 +27,4 @@ void reduce_local_steps(StudyScenes& scenes) {
   scenes.enumerate(study);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -3,7 +3,7 @@
 
 #include "study/study_scenes.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// Reduces the step of a local analysis for each factor whose runs are in one batch with the nominal point. Runs of a
 /// batch have the same steps in distance, so that their results are smooth functions of the factor: differences over a
@@ -11,4 +11,4 @@ namespace traverse::app {
 /// steps, and so their errors, differ.
 void reduce_local_steps(StudyScenes& scenes);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

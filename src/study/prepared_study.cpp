@@ -11,13 +11,13 @@
 #include "study/study_model.hpp"
 #include "study/study_runs.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
-PreparedStudy::PreparedStudy(MPI_Comm comm, const Scene& given, StudyScenes::Read read)
+PreparedStudy::PreparedStudy(MPI_Comm comm, const scene::Scene& given, StudyScenes::Read read)
     : scenes(given, std::move(read)),
       choice(chosen(comm, given)),
-      scene(with(scenes.base(scenes.extreme_bases().front()), choice.model)),
-      model(stored_model(scene, choice.accuracy)) {
+      scene(error_control::with(scenes.base(scenes.extreme_bases().front()), choice.model)),
+      model(error_control::stored_model(scene, choice.accuracy)) {
   scenes.choose(choice.model);
   first = scenes.runner(0, &notes).runs;
   std::vector<std::string> of_others;
@@ -25,27 +25,28 @@ PreparedStudy::PreparedStudy(MPI_Comm comm, const Scene& given, StudyScenes::Rea
   reduce_local_steps(scenes);
 }
 
-Choice PreparedStudy::chosen(MPI_Comm comm, const Scene& given) {
+error_control::Choice PreparedStudy::chosen(MPI_Comm comm, const scene::Scene& given) {
   for (const std::size_t base : scenes.extreme_bases())
     scenes.base(base);  // checks all input before the first computation
-  Choice found;
-  ChoiceCache cache(comm, given);
+  error_control::Choice found;
+  error_control::ChoiceCache cache(comm, given);
   if (cache.read(given, notes, found)) return found;
   found = choose_for_study(scenes, notes);
   if (found.accuracy.measured) cache.write(notes, found);
   return found;
 }
 
-RunFailure PreparedStudy::compute(MPI_Comm comm, const std::function<void()>& stored) {
+ensemble::RunFailure PreparedStudy::compute(MPI_Comm comm, const std::function<void()>& stored) {
   table_.emplace(scenes.study(), scene.output.probes.size(), has_wheels(scene), scene.limits);
   const std::vector<char> none_known(scenes.runs().size(), 0);
-  RunFailure failure = compute_runs(comm, scenes, none_known, *table_, stored);
+  ensemble::RunFailure failure = compute_runs(comm, scenes, none_known, *table_, stored);
   table_->broadcast(comm);
   return failure;
 }
 
-bool has_wheels(const Scene& scene) {
-  return std::any_of(scene.vehicles.begin(), scene.vehicles.end(), [](const Vehicle& v) { return !v.wheels.empty(); });
+bool has_wheels(const scene::Scene& scene) {
+  return std::any_of(scene.vehicles.begin(), scene.vehicles.end(),
+                     [](const train::Vehicle& v) { return !v.wheels.empty(); });
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -14,34 +14,34 @@
 #include "results/study_table.hpp"
 #include "study/study_scenes.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 class PreparedStudy {
  public:
   /// Collective. Reads the scenes with extreme values, chooses the model and checks the first runs. Throws InputError,
   /// SolverError. The scene must outlive the object. read: as for StudyScenes.
-  PreparedStudy(MPI_Comm comm, const Scene& given, StudyScenes::Read read = {});
+  PreparedStudy(MPI_Comm comm, const scene::Scene& given, StudyScenes::Read read = {});
 
   /// Collective. Computes all runs without a file. `stored` is called on rank 0 after each row of results. The results
   /// are in the table of every rank.
-  RunFailure compute(MPI_Comm comm, const std::function<void()>& stored);
+  ensemble::RunFailure compute(MPI_Comm comm, const std::function<void()>& stored);
   /// The table of `compute`.
   const results::StudyTable& table() const { return *table_; }
 
   StudyScenes scenes;
   std::vector<std::string> notes;  // on the choice and the model
-  Choice choice;
-  Scene scene;                        // of the first run, with the model
-  results::RunModel model;            // for the results
-  std::shared_ptr<CaseRunner> first;  // computes the runs of the first scene
+  error_control::Choice choice;
+  scene::Scene scene;                           // of the first run, with the model
+  results::RunModel model;                      // for the results
+  std::shared_ptr<ensemble::CaseRunner> first;  // computes the runs of the first scene
 
  private:
-  Choice chosen(MPI_Comm comm, const Scene& given);
+  error_control::Choice chosen(MPI_Comm comm, const scene::Scene& given);
 
   std::optional<results::StudyTable> table_;
 };
 
 /// Whether a run of the scene has wheels.
-bool has_wheels(const Scene& scene);
+bool has_wheels(const scene::Scene& scene);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

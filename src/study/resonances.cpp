@@ -9,7 +9,7 @@
 #include "results/sweep.hpp"
 #include "run/deck_acceleration.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 constexpr double same_position = 0.005;  // m: two axles are at the same position below this difference
@@ -33,16 +33,16 @@ struct Axles {
 };
 
 /// The axles of train number `train` of the sweep. All wheels have the same weight here.
-Axles axles_of(const Scene& scene, std::size_t train) {
+Axles axles_of(const scene::Scene& scene, std::size_t train) {
   if (!scene.vehicles.empty()) {
-    const std::vector<double> x = wheels_at_start(scene);
+    const std::vector<double> x = scene::wheels_at_start(scene);
     return {x, std::vector<double>(x.size(), 1.0)};
   }
-  const MovingLoad& load = scene.sweep->loads.empty() ? scene.load : scene.sweep->loads[train];
+  const train::MovingLoad& load = scene.sweep->loads.empty() ? scene.load : scene.sweep->loads[train];
   return {load.positions, load.forces};
 }
 
-std::size_t trains_of(const Scene& scene) { return std::max<std::size_t>(1, scene.sweep->loads.size()); }
+std::size_t trains_of(const scene::Scene& scene) { return std::max<std::size_t>(1, scene.sweep->loads.size()); }
 
 bool simple_spans(const beam::BeamModel& beam) {
   const auto simple_support = [](beam::Support s) { return beam::fixes_vertical(s) && !beam::fixes_rotation(s); };
@@ -108,13 +108,13 @@ double regular_distance(std::span<const double> x, std::span<const double> force
   return best > repeated_share * weight ? distance : 0.0;
 }
 
-std::vector<double> resonant_frequencies(const SharedBeam& shared) {
+std::vector<double> resonant_frequencies(const run::SharedBeam& shared) {
   if (!shared.modal && shared.beam->mesh().nodes() > max_nodes) return {};
-  return first_frequencies(shared);
+  return run::first_frequencies(shared);
 }
 
-std::vector<results::Resonance> resonances_of(const Scene& scene, std::span<const double> frequencies, double slowest,
-                                              double fastest) {
+std::vector<results::Resonance> resonances_of(const scene::Scene& scene, std::span<const double> frequencies,
+                                              double slowest, double fastest) {
   std::vector<results::Resonance> found;
   for (std::size_t train = 0; train < trains_of(scene); ++train) {
     const Axles axles = axles_of(scene, train);
@@ -167,4 +167,4 @@ std::vector<double> unresolved(std::span<const results::Resonance> resonances, s
   return found;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

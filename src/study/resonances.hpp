@@ -10,7 +10,7 @@
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// The regular axle distance (m): the shift of a train after which most of its weight is at positions of axles of the
 /// unshifted train. Each pair of axles contributes the lesser of its forces. Of equal shifts the shortest is returned;
@@ -19,11 +19,11 @@ double regular_distance(std::span<const double> x, std::span<const double> force
 
 /// At most the first three distinct bending frequencies, Hz, ascending. Empty for a bridge with so many nodes that
 /// computing them would be expensive.
-std::vector<double> resonant_frequencies(const SharedBeam& shared);
+std::vector<double> resonant_frequencies(const run::SharedBeam& shared);
 
 /// The speeds v = f d/i for i = 1 to 4 within the given range (m/s), sorted by train, frequency and i.
-std::vector<results::Resonance> resonances_of(const Scene& scene, std::span<const double> frequencies, double slowest,
-                                              double fastest);
+std::vector<results::Resonance> resonances_of(const scene::Scene& scene, std::span<const double> frequencies,
+                                              double slowest, double fastest);
 
 /// For equal, uniform, simply supported spans L without foundations: the speeds v = 2 f_n L/(n + 2 k), at which a
 /// constant force leaves no free vibration in the undamped mode n. The force excites the mode by sin(n pi v t/L). The
@@ -38,4 +38,4 @@ void find_peaks(const results::StudyTable& sweep, std::vector<results::Resonance
 /// The resonance speeds whose peaks may not be resolved by `speeds` (ascending), because all of these are too far away.
 std::vector<double> unresolved(std::span<const results::Resonance> resonances, std::span<const double> speeds);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

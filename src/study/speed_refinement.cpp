@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 constexpr double shortest_interval = 1e-7;  // relative to the speed
@@ -70,4 +70,4 @@ Refinement refine_for_limits(const std::vector<double>& speed, const std::vector
   return refinement;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// A quantity of one train over the speed.
 struct SpeedCurve {
@@ -43,4 +43,4 @@ Refinement refine_for_limits(const std::vector<double>& speed, const std::vector
 inline std::size_t max_speeds(std::size_t given) { return 10 * given + 200; }
 inline std::size_t max_speeds_by_default(std::size_t given) { return 3 * given + 50; }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -28,7 +28,10 @@
 #include "study/sweep_findings.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
+
+using options::Study;
+
 namespace {
 
 constexpr double max_listed = 5.0;      // a dimension with more values is not listed value by value
@@ -36,7 +39,7 @@ constexpr double long_duration = 10.0;  // s: estimated duration from which mode
 constexpr double quicker_ratio = 0.2;   // relative duration that modes must not exceed to be suggested
 
 /// "track_seed: 1000 values from 1 to 1000".
-std::string description(const StudyDimension& d, bool of_design) {
+std::string description(const options::StudyDimension& d, bool of_design) {
   const auto [least, greatest] = std::minmax_element(d.values.begin(), d.values.end());
   if (d.law != "list")
     return fmt::format("{}: {} {} ({}) from {:g} to {:g}", d.name(), d.values.size(),
@@ -69,13 +72,14 @@ void describe_runs(const Study& study, std::vector<std::string>& notes) {
       axes += fmt::format("{}{} of {}", axes.empty() ? "" : " times ", axis.length, axis.name);
     notes.push_back(
         fmt::format("study of {} runs ({}); the values above are those of the first run", study.runs(), axes));
-    for (const StudyDimension& d : study.dimensions) notes.push_back(description(d, study.sensitivity.has_value()));
+    for (const options::StudyDimension& d : study.dimensions)
+      notes.push_back(description(d, study.sensitivity.has_value()));
   }
 }
 
 /// Suggests modes for a sweep of `seconds` on all ranks if these are much faster.
-void suggest_modes(const Scene& scene, double seconds, int ranks, bool chosen, std::vector<std::string>& notes) {
-  const std::optional<QuickerModes> quicker = quicker_modes(scene);
+void suggest_modes(const scene::Scene& scene, double seconds, int ranks, bool chosen, std::vector<std::string>& notes) {
+  const std::optional<error_control::QuickerModes> quicker = error_control::quicker_modes(scene);
   if (!quicker || quicker->seconds >= quicker_ratio * seconds * ranks) return;
   notes.push_back(
       fmt::format("quicker: -model_modes {} (all modes up to {:.3g} Hz) would take about {}{}", quicker->modes,
@@ -86,10 +90,10 @@ void suggest_modes(const Scene& scene, double seconds, int ranks, bool chosen, s
 }
 
 /// Adds notes on the number of runs, their estimated duration and the way of computing them.
-void describe(const Scene& scene, StudyScenes& scenes, const results::RunModel& model, std::size_t known, int ranks,
-              std::vector<std::string>& notes) {
+void describe(const scene::Scene& scene, StudyScenes& scenes, const results::RunModel& model, std::size_t known,
+              int ranks, std::vector<std::string>& notes) {
   const Study& study = scenes.study();
-  const CaseRunner& first = *scenes.runner(0).runs;
+  const ensemble::CaseRunner& first = *scenes.runner(0).runs;
   describe_runs(study, notes);
   if (known > 0)
     notes.push_back(fmt::format("{} of them are read from the existing results file", known));
@@ -140,7 +144,7 @@ bool adds_values(const Study& study) { return study.find || study.refine != 0.0;
 class Rounds {
  public:
   /// width: width of a resonance, relative to the speed.
-  Rounds(MPI_Comm comm, const Scene& scene, StudyScenes& scenes, const results::RunModel& model, double width,
+  Rounds(MPI_Comm comm, const scene::Scene& scene, StudyScenes& scenes, const results::RunModel& model, double width,
          results::StoredStudy stored, const std::vector<std::string>& notes)
       : comm_(comm),
         scene_(scene),
@@ -174,13 +178,13 @@ class Rounds {
     if (!why.empty()) throw InputError(why);
   }
   /// Collective. Computes all rounds and leaves their file open.
-  RunFailure run(results::Place place, StudyCourse& course) {
+  ensemble::RunFailure run(results::Place place, StudyCourse& course) {
     course.known = std::count(known_.begin(), known_.end(), 1);
     while (true) {
       file_.emplace(comm_, std::move(place), scene_, model_, *table_, notes_);
-      RunFailure failure = compute_runs(comm_, scenes_, known_, *table_, [this] { file_->update(); });
+      ensemble::RunFailure failure = compute_runs(comm_, scenes_, known_, *table_, [this] { file_->update(); });
       if (!adds_values(scenes_.study())) return failure;
-      const bool ends = failure.failed() || signal_on_any(comm_) != 0;
+      const bool ends = failure.failed() || run::signal_on_any(comm_) != 0;
       const std::vector<double> more = ends ? std::vector<double>() : next();
       if (more.empty()) {
         if (scenes_.study().find) return failure;
@@ -253,7 +257,7 @@ class Rounds {
   }
 
   MPI_Comm comm_;
-  const Scene& scene_;
+  const scene::Scene& scene_;
   StudyScenes& scenes_;
   const results::RunModel& model_;
   double width_;
@@ -277,14 +281,14 @@ double largest_deflection(MPI_Comm comm, const results::StudyTable& table) {
 
 }  // namespace
 
-int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
+int run_study(MPI_Comm comm, const scene::Scene& given, results::Place place) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
   PreparedStudy prepared(comm, given);
   StudyScenes& scenes = prepared.scenes;
   std::vector<std::string>& notes = prepared.notes;
-  const Scene& scene = prepared.scene;
+  const scene::Scene& scene = prepared.scene;
   const results::RunModel& model = prepared.model;
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
   for (const std::string& note : options::notes_on_unused(*given.given)) notes.push_back(note);
@@ -296,14 +300,14 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   const std::size_t known = rounds.copy_stored();
   if (known == 0) rounds.check_search();
   describe(scene, scenes, model, known, ranks, notes);
-  print_notes(comm, given, notes);
+  run::print_notes(comm, given, notes);
   if (findings && scenes.study().refine > 0.0) rounds.add(findings->unresolved_speeds());
 
-  const DeferredSignals noted;
+  const run::DeferredSignals noted;
   const auto begin = std::chrono::steady_clock::now();
   StudyCourse course;
-  const RunFailure failure = rounds.run(std::move(place), course);
-  const int signal = signal_on_any(comm);
+  const ensemble::RunFailure failure = rounds.run(std::move(place), course);
+  const int signal = run::signal_on_any(comm);
   course.separate_runs = scenes.separate_runs();
   MPI_Allreduce(MPI_IN_PLACE, &course.separate_runs, 1, MPI_LONG, MPI_SUM, comm);
   course.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -320,13 +324,13 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   try {
     rounds.file().finish(course, verdicts, found);
   } catch (const FileError& error) {
-    leave_together(comm, error);
+    run::leave_together(comm, error);
   }
   if (rank == 0) print_study_course(table, model, course, verdicts, found, given);
   if (failure.failed()) throw Error(failure.message, failure.status);
   if (table.study().find && signal == 0) check_answers(comm, table);
-  check_deflection(comm, given, largest_deflection(comm, table));
+  run::check_deflection(comm, given, largest_deflection(comm, table));
   return signal == 0 ? 0 : 128 + signal;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -7,11 +7,11 @@
 #include "results/place.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// Collective. For a scene with a study or a sweep: computes every run on one rank, writes the results to `place` as
 /// runs end, and prints extremes, statistics and verdicts. The results are the same on any number of ranks. If a run
 /// fails, the error with the run's name is thrown, and the file contains the earlier results. Returns the exit status.
-int run_study(MPI_Comm comm, const Scene& scene, results::Place place);
+int run_study(MPI_Comm comm, const scene::Scene& scene, results::Place place);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -18,7 +18,7 @@
 #include "run/process.hpp"
 #include "study/find.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 constexpr double write_every = 5.0,
@@ -26,17 +26,18 @@ constexpr double write_every = 5.0,
                      20.0;  // least interval of two writes, s; ratio of this interval to the duration of a write
 
 /// Whether an option changes no run.
-bool changes_no_run(const std::string& name, const Study& study) {
+bool changes_no_run(const std::string& name, const options::Study& study) {
   if (name.starts_with("study_") || name.starts_with("sweep_") || name == "scene_name" || name == "output_file" ||
       name == "output_quiet" || name == "options_file")
     return true;
-  return std::any_of(study.dimensions.begin(), study.dimensions.end(), [&](const StudyDimension& d) {
+  return std::any_of(study.dimensions.begin(), study.dimensions.end(), [&](const options::StudyDimension& d) {
     return std::find(d.options.begin(), d.options.end(), name) != d.options.end();
   });
 }
 
 /// Why the file's runs do not belong to this study; empty if they do.
-std::string contradiction(const results::StoredStudy& stored, const Scene& scene, const results::RunModel& model) {
+std::string contradiction(const results::StoredStudy& stored, const scene::Scene& scene,
+                          const results::RunModel& model) {
   std::map<std::string, std::string> now(scene.options.begin(), scene.options.end());
   for (const auto& [name, value] : stored.options) {
     if (changes_no_run(name, *scene.study)) continue;
@@ -46,7 +47,7 @@ std::string contradiction(const results::StoredStudy& stored, const Scene& scene
   for (const auto& [name, value] : now)
     if (!changes_no_run(name, *scene.study) && !stored.options.contains(name))
       return fmt::format("it was computed without {} = {}", name, value);
-  for (const StudyDimension& d : scene.study->dimensions)
+  for (const options::StudyDimension& d : scene.study->dimensions)
     if (!stored.datasets.contains(d.name())) return fmt::format("{} was not varied in it", d.name());
   for (const results::Attribute& attribute : results::attributes_of(model)) {
     const double* number = std::get_if<double>(&attribute.value);
@@ -66,19 +67,19 @@ std::string contradiction(const results::StoredStudy& stored, const Scene& scene
 
 /// Copies the finished runs of a file into the table, by their coordinates.
 void copy_finished(const results::StoredStudy& stored, results::StudyTable& table) {
-  const Study& study = table.study();
+  const options::Study& study = table.study();
   const auto finished = stored.datasets.find("finished");
   if (finished == stored.datasets.end()) return;
   std::map<std::vector<double>, std::size_t> rows;
   for (std::size_t row = 0; row < finished->second.size(); ++row) {
     if (finished->second[row] != 1.0) continue;
     std::vector<double> point;
-    for (const StudyDimension& d : study.dimensions) point.push_back(stored.datasets.at(d.name()).at(row));
+    for (const options::StudyDimension& d : study.dimensions) point.push_back(stored.datasets.at(d.name()).at(row));
     rows.emplace(std::move(point), row);
   }
   for (std::size_t run = 0; run < table.runs(); ++run) {
     std::vector<double> point, numbers;
-    for (const StudyDimension& d : study.dimensions) point.push_back(study.value(run, d));
+    for (const options::StudyDimension& d : study.dimensions) point.push_back(study.value(run, d));
     const auto row = rows.find(point);
     if (row == rows.end()) continue;
     for (const results::StudyTable::Column& column : table.columns()) {
@@ -93,7 +94,7 @@ void copy_finished(const results::StoredStudy& stored, results::StudyTable& tabl
 
 }  // namespace
 
-results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results::RunModel& model) {
+results::StoredStudy stored_of(MPI_Comm comm, const scene::Scene& scene, const results::RunModel& model) {
   results::StoredStudy stored;
   if (!scene.study || !scene.study->resume) return stored;
   int rank = 0;
@@ -145,12 +146,12 @@ results::Recorder::Dataset digests_of(const results::StudyTable& table) {
 
 }  // namespace
 
-StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::RunModel& model,
+StudyFile::StudyFile(MPI_Comm comm, results::Place place, const scene::Scene& scene, const results::RunModel& model,
                      const results::StudyTable& table, const std::vector<std::string>& notes)
     : comm_(comm), table_(table), model_(model), recorder_([&] {
-        results::Recorder made(comm, std::move(place), layout_without_series(scene), attributes(comm, scene),
+        results::Recorder made(comm, std::move(place), run::layout_without_series(scene), run::attributes(comm, scene),
                                scene.options);
-        record_model(scene, notes, made);
+        run::record_model(scene, notes, made);
         results::record_limits(made, table.limits());
         if (!table.study().sweep) made.datasets(table.coordinates());
         made.datasets(results());
@@ -159,11 +160,11 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
   const std::string folder = table.study().sweep ? "/sweep" : "/study";
   if (!table.study().sweep) {
     std::string dimensions, axes;
-    for (const StudyDimension& d : table.study().dimensions) {
+    for (const options::StudyDimension& d : table.study().dimensions) {
       dimensions += (dimensions.empty() ? "" : ",") + d.name();
       recorder_.attributes(folder + "/" + d.name(), {{"axis", static_cast<long>(d.axis)}, {"law", d.law}});
     }
-    for (const Study::Axis& axis : table.study().axes) axes += (axes.empty() ? "" : ",") + axis.name;
+    for (const options::Study::Axis& axis : table.study().axes) axes += (axes.empty() ? "" : ",") + axis.name;
     recorder_.attributes(folder, {{"dimensions", dimensions}, {"axes", axes}});
   }
   recorder_.attributes(folder, results::attributes_of(model));
@@ -195,7 +196,7 @@ void StudyFile::update() {
   try {
     write();
   } catch (const FileError& error) {
-    leave_together(comm_, error);
+    run::leave_together(comm_, error);
   }
 }
 
@@ -229,7 +230,7 @@ void StudyFile::finish(const StudyCourse& course, const std::vector<results::Ver
 
 void print_study_course(const results::StudyTable& table, const results::RunModel& model, const StudyCourse& course,
                         const std::vector<results::Verdict>& verdicts, const SweepFindings* findings,
-                        const Scene& scene) {
+                        const scene::Scene& scene) {
   const bool sweep = table.study().sweep;
   if (table.finished_runs() > 0) {
     sweep ? results::print_sweep(table) : results::print_study(table);
@@ -254,4 +255,4 @@ void print_study_course(const results::StudyTable& table, const results::RunMode
              sweep ? "the sweep" : "the study", course.ended, scene.output.file.empty() ? "none" : scene.output.file);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -15,11 +15,11 @@
 #include "study/sweep_findings.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// Collective. With study_resume: on rank 0 the content of the scene's results file that belongs to this study;
 /// otherwise empty. InputError if the file belongs to another scene or was computed by another model.
-results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results::RunModel& model);
+results::StoredStudy stored_of(MPI_Comm comm, const scene::Scene& scene, const results::RunModel& model);
 
 /// Collective. Copies known finished runs into the table of rank 0. Returns on each rank a flag for each run: 1 if it
 /// is finished.
@@ -39,7 +39,7 @@ struct StudyCourse {
 class StudyFile {
  public:
   /// Collective. Creates the file with the coordinates of all runs and the known results.
-  StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::RunModel& model,
+  StudyFile(MPI_Comm comm, results::Place place, const scene::Scene& scene, const results::RunModel& model,
             const results::StudyTable& table, const std::vector<std::string>& notes);
   /// Writes new rows of the table: the first run at once, later ones every few seconds. Only on rank 0. If the disk is
   /// full, all ranks end with FileError.
@@ -63,6 +63,6 @@ class StudyFile {
 /// Prints the results at the end of the study.
 void print_study_course(const results::StudyTable& table, const results::RunModel& model, const StudyCourse& course,
                         const std::vector<results::Verdict>& verdicts, const SweepFindings* findings,
-                        const Scene& scene);
+                        const scene::Scene& scene);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -9,30 +9,31 @@
 
 #include "error_control/trial_runs.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
-using Choose = std::optional<Choice> (*)(const Scene& scene, std::vector<std::string>& notes);
+using Choose = std::optional<error_control::Choice> (*)(const scene::Scene& scene, std::vector<std::string>& notes);
 
-std::optional<Choice> unbatched(const Scene& scene, std::vector<std::string>& notes) {
-  return choose_unbatched(scene, notes);
+std::optional<error_control::Choice> unbatched(const scene::Scene& scene, std::vector<std::string>& notes) {
+  return error_control::choose_unbatched(scene, notes);
 }
 
 /// The combined choice for the study's extreme scenes; empty if `choose` is not applicable to one of them.
-std::optional<Choice> choose_at_extremes(const StudyScenes& scenes, Choose choose, std::vector<std::string>& notes) {
+std::optional<error_control::Choice> choose_at_extremes(const StudyScenes& scenes, Choose choose,
+                                                        std::vector<std::string>& notes) {
   const std::vector<std::size_t> bases = scenes.bases_of_model();
-  std::optional<Choice> all;
+  std::optional<error_control::Choice> all;
   std::vector<std::vector<std::string>> notes_of_bases;
   for (const std::size_t base : bases) {
     std::vector<std::string> own;
-    const std::optional<Choice> one = choose(scenes.base(base), own);
+    const std::optional<error_control::Choice> one = choose(scenes.base(base), own);
     if (!one) {
       notes.insert(notes.end(), own.begin(), own.end());
       return std::nullopt;
     }
     notes_of_bases.push_back(std::move(own));
     if (all) {
-      all->model = finer(all->model, one->model);
+      all->model = error_control::finer(all->model, one->model);
       all->accuracy.merge(one->accuracy);
     } else {
       all = one;
@@ -49,9 +50,10 @@ std::optional<Choice> choose_at_extremes(const StudyScenes& scenes, Choose choos
 
 }  // namespace
 
-Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes) {
-  if (std::optional<Choice> choice = choose_at_extremes(scenes, choose_batched, notes)) return *choice;
+error_control::Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes) {
+  if (std::optional<error_control::Choice> choice = choose_at_extremes(scenes, error_control::choose_batched, notes))
+    return *choice;
   return *choose_at_extremes(scenes, unbatched, notes);
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

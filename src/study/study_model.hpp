@@ -7,10 +7,10 @@
 #include "error_control/sweep_model.hpp"
 #include "study/study_scenes.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// The finest model that the study's extreme scenes need, each computed as a sweep over all speeds of the study. The
 /// result is the same on every rank.
-Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes);
+error_control::Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

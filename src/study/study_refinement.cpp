@@ -14,7 +14,7 @@
 
 #include "results/sweep.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 using options::Study;
@@ -149,4 +149,4 @@ Study with_values(Study study, std::size_t dimension, const std::vector<double>&
   return study;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

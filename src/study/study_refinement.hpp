@@ -6,7 +6,7 @@
 #include "results/study_table.hpp"
 #include "study/speed_refinement.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// The curves of the peaks at the governing probe, of the greatest wheel force and of the limited quantities, over the
 /// speeds in ascending order, for a study whose speeds are refined. Statistics are computed over some of the other
@@ -28,4 +28,4 @@ options::Study with_values(options::Study study, std::size_t dimension, const st
 /// The values of a dimension, ascending.
 std::vector<double> ascending(const options::Study& study, std::size_t dimension);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -11,14 +11,14 @@
 #include "results/stage.hpp"
 #include "results/sweep.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 using Groups = std::vector<std::vector<std::size_t>>;
 
 /// The results of a run, or the greatest results of several runs with this one, in the order of the table, preceded by
 /// the run's index and the number of runs.
-std::vector<double> row_of(std::size_t run, std::size_t runs, const CaseResult& result,
+std::vector<double> row_of(std::size_t run, std::size_t runs, const ensemble::CaseResult& result,
                            const std::vector<double>& probes, bool wheels) {
   std::vector<double> row = {static_cast<double>(run), static_cast<double>(runs)};
   const auto add = [&](auto get) {
@@ -43,13 +43,13 @@ std::vector<double> row_of(std::size_t run, std::size_t runs, const CaseResult& 
 }
 
 /// Stores why a run does not evaluate quantities of limits.
-void set_reasons(const CaseResult& result, results::StudyTable& table) {
+void set_reasons(const ensemble::CaseResult& result, results::StudyTable& table) {
   for (std::size_t l = 0; l < result.evaluated.size(); ++l)
     if (std::isnan(result.evaluated[l].value)) table.set_reason(l, result.evaluated[l].why);
 }
 
 /// The name of a group of a sweep, as "one of the runs of train A3 at 50 to 60 m/s (180 to 216 km/h)".
-std::string name_in_sweep(const Study& study, const std::vector<std::size_t>& group) {
+std::string name_in_sweep(const options::Study& study, const std::vector<std::size_t>& group) {
   const auto speed = [&](std::size_t run) { return study.value(run, study.dimensions[study.speeds]); };
   const double from = speed(group.front()), to = speed(group.back());
   const std::string name = results::train_name(study, study.place(group.front(), 0));
@@ -59,7 +59,7 @@ std::string name_in_sweep(const Study& study, const std::vector<std::size_t>& gr
                      3.6 * to);
 }
 
-std::string name_of(const Study& study, const std::vector<std::size_t>& group) {
+std::string name_of(const options::Study& study, const std::vector<std::size_t>& group) {
   if (study.sweep) return name_in_sweep(study, group);
   if (group.size() == 1) return fmt::format("the run at {}", results::point_text(study, group.front()));
   return fmt::format("one of the runs from {} to {}", results::point_text(study, group.front()),
@@ -67,7 +67,8 @@ std::string name_of(const Study& study, const std::vector<std::size_t>& group) {
 }
 
 /// Called with the index of a run, the number of runs that the results are of, and the results.
-using Ended = std::function<void(std::size_t run, std::size_t runs, const CaseResult&, const CaseRunner&)>;
+using Ended =
+    std::function<void(std::size_t run, std::size_t runs, const ensemble::CaseResult&, const ensemble::CaseRunner&)>;
 
 /// Computes the runs of a group: compatible ones together, the others separately.
 void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const std::function<void(double)>& reached,
@@ -77,7 +78,7 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
   std::vector<char> done(group.size(), 0);
   for (std::size_t i = 0; i < group.size(); ++i) {
     if (done[i] != 0) continue;
-    std::vector<CaseRunner::Member> members;
+    std::vector<ensemble::CaseRunner::Member> members;
     std::vector<std::size_t> places;
     for (std::size_t j = i; j < group.size(); ++j) {
       if (done[j] != 0 || !StudyScenes::compatible(runners[j], runners[i])) continue;
@@ -85,7 +86,8 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
       places.push_back(j);
       done[j] = 1;
     }
-    const std::vector<CaseResult> results = CaseRunner::run_together(scenes.runs()[group[i]].train, members, reached);
+    const std::vector<ensemble::CaseResult> results =
+        ensemble::CaseRunner::run_together(scenes.runs()[group[i]].train, members, reached);
     for (std::size_t j = 0; j < results.size(); ++j) ended(group[places[j]], 1, results[j], *runners[places[j]].runs);
   }
 }
@@ -96,7 +98,7 @@ void run_greatest(StudyScenes& scenes, const std::vector<std::size_t>& group,
                   const std::function<void(double)>& reached, const Ended& ended) {
   std::vector<StudyScenes::Runner> runners;  // of different scenes
   std::vector<std::size_t> first, count;     // runs of each
-  std::vector<CaseRunner::Member> members;
+  std::vector<ensemble::CaseRunner::Member> members;
   for (const std::size_t run : group) {
     const std::size_t base = scenes.runs()[run].base;
     auto known = std::find_if(runners.begin(), runners.end(), [&](const auto& one) { return one.base == base; });
@@ -112,12 +114,13 @@ void run_greatest(StudyScenes& scenes, const std::vector<std::size_t>& group,
     for (const std::size_t run : group) run_group(scenes, {run}, reached, ended);
     return;
   }
-  const std::vector<CaseResult> results = CaseRunner::greatest(scenes.runs()[group.front()].train, members);
+  const std::vector<ensemble::CaseResult> results =
+      ensemble::CaseRunner::greatest(scenes.runs()[group.front()].train, members);
   for (std::size_t i = 0; i < results.size(); ++i) ended(first[i], count[i], results[i], *runners[i].runs);
 }
 
 /// The runs of each row of the table.
-Groups runs_of_rows(const Study& study) {
+Groups runs_of_rows(const options::Study& study) {
   const std::size_t axis = study.sensitivity->axis;
   Groups rows(study.axes[axis].length);
   for (std::size_t run = 0; run < study.runs(); ++run) rows[study.place(run, axis)].push_back(run);
@@ -140,13 +143,15 @@ Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   return groups;
 }
 
-SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTable& table, ResultGather& gather) {
-  SharedWork work;
+ensemble::SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTable& table,
+                             ensemble::ResultGather& gather) {
+  ensemble::SharedWork work;
   for (const std::vector<std::size_t>& group : groups) work.pieces.push_back({group.size(), scenes.duration(group)});
   const bool wheels = table.find("least_wheel_force") != nullptr;
   const bool greatest = scenes.only_greatest();
   work.compute = [&, wheels, greatest](std::size_t piece, const std::function<void(double)>& reached) {
-    const auto ended = [&](std::size_t run, std::size_t runs, const CaseResult& result, const CaseRunner& runner) {
+    const auto ended = [&](std::size_t run, std::size_t runs, const ensemble::CaseResult& result,
+                           const ensemble::CaseRunner& runner) {
       if (!result.ended) return;
       set_reasons(result, table);
       gather.send(row_of(run, runs, result, runner.probes(), wheels));
@@ -171,23 +176,24 @@ void compute_run(StudyScenes& scenes, std::size_t run, results::StudyTable& tabl
   const bool wheels = table.find("least_wheel_force") != nullptr;
   run_group(
       scenes, {run}, [](double) {},
-      [&](std::size_t, std::size_t runs, const CaseResult& result, const CaseRunner& runner) {
+      [&](std::size_t, std::size_t runs, const ensemble::CaseResult& result, const ensemble::CaseRunner& runner) {
         set_reasons(result, table);
         table.put(run, row_of(run, runs, result, runner.probes(), wheels).data() + 2, runs);
       });
 }
 
-RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,
-                        const std::function<void()>& stored) {
+ensemble::RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known,
+                                  results::StudyTable& table, const std::function<void()>& stored) {
   const results::Stage stage(scenes.study().sweep ? "runs of the sweep" : "runs of the study");
-  ResultGather gather(comm, [&](const std::vector<double>& row) {
+  ensemble::ResultGather gather(comm, [&](const std::vector<double>& row) {
     table.put(static_cast<std::size_t>(row[0]), row.data() + 2, static_cast<std::size_t>(row[1]));
     stored();
   });
   const Groups groups = groups_of(scenes, known);
-  RunFailure failure = run_cases_in_parallel(comm, work_of(scenes, groups, table, gather), scenes.quiet());
+  ensemble::RunFailure failure =
+      ensemble::run_cases_in_parallel(comm, work_of(scenes, groups, table, gather), scenes.quiet());
   gather.finish();
-  return first_of(comm, std::move(failure));
+  return ensemble::first_of(comm, std::move(failure));
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

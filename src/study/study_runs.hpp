@@ -10,14 +10,14 @@
 #include "results/study_table.hpp"
 #include "study/study_scenes.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// Computes one run on this rank and stores its results in the table.
 void compute_run(StudyScenes& scenes, std::size_t run, results::StudyTable& table);
 
 /// Collective. Computes the runs that are not `known` until the end or a failure, and stores their results in the table
 /// of rank 0, where `stored` is called after each row. Returns the failure of the earliest run.
-RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,
-                        const std::function<void()>& stored);
+ensemble::RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known,
+                                  results::StudyTable& table, const std::function<void()>& stored);
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -13,42 +13,42 @@
 #include "results/sweep.hpp"
 #include "traverse/options/input.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 constexpr std::size_t max_runners = 12, max_seeds = 8;
 
-bool names(const StudyDimension& dimension, const char* option) {
+bool names(const options::StudyDimension& dimension, const char* option) {
   return std::find(dimension.options.begin(), dimension.options.end(), option) != dimension.options.end();
 }
-bool is_speed(const StudyDimension& d) {
+bool is_speed(const options::StudyDimension& d) {
   return names(d, "train_speed") || names(d, "load_speed") || names(d, results::speed_of_sweep);
 }
-bool is_seed(const StudyDimension& d) { return names(d, "track_seed"); }
-bool is_of_traffic(const StudyDimension& d) {
+bool is_seed(const options::StudyDimension& d) { return names(d, "track_seed"); }
+bool is_of_traffic(const options::StudyDimension& d) {
   return std::all_of(d.options.begin(), d.options.end(), [](const std::string& option) {
     return option.starts_with("vehicle_") || option.starts_with("load_");
   });
 }
 
-bool is_local(const Study& study) {
+bool is_local(const options::Study& study) {
   return study.sensitivity && study.sensitivity->method == options::Sensitivity::Method::local;
 }
 
-Study study_of_sweep(const Scene& scene) {
+options::Study study_of_sweep(const scene::Scene& scene) {
   std::vector<double> speeds = scene.sweep->speeds;
-  if (speeds.empty()) speeds = {moving_speed(scene)};
-  Study study = results::sweep_study(scene.sweep->trains, std::move(speeds));
+  if (speeds.empty()) speeds = {scene::moving_speed(scene)};
+  options::Study study = results::sweep_study(scene.sweep->trains, std::move(speeds));
   study.refine = scene.sweep->refine;
   return study;
 }
 
 /// A train and forces that move in one scene must have one speed.
-void check_speeds(const Scene& scene) {
+void check_speeds(const scene::Scene& scene) {
   if (scene.vehicles.empty() || scene.load.forces.empty()) return;
   if (!scene.train.courses.empty() || !scene.load.courses.empty()) return;  // each course has its own speed
   if (scene.train.speed == 0.0 || scene.load.speed == 0.0) return;          // what stands is not varied
-  for (const StudyDimension& d : scene.study->dimensions)
+  for (const options::StudyDimension& d : scene.study->dimensions)
     if (is_speed(d) && !(names(d, "train_speed") && names(d, "load_speed")))
       throw InputError(
           fmt::format("study_vary_{}: the train and the additional forces have the same speed; vary also {}", d.name(),
@@ -61,27 +61,27 @@ void check_speeds(const Scene& scene) {
 
 }  // namespace
 
-StudyScenes::StudyScenes(const Scene& scene, Read read) : scene_(scene), read_(std::move(read)) {
+StudyScenes::StudyScenes(const scene::Scene& scene, Read read) : scene_(scene), read_(std::move(read)) {
   if (!read_)
-    read_ = [this](const auto& values) { return read_scene_of_study(options::Options(*scene_.given), values); };
+    read_ = [this](const auto& values) { return scene::read_scene_of_study(options::Options(*scene_.given), values); };
   if (scene.study) check_speeds(scene);
   enumerate(scene.study ? *scene.study : study_of_sweep(scene));
 }
 
-void StudyScenes::enumerate(const Study& study) {
+void StudyScenes::enumerate(const options::Study& study) {
   study_ = study;
   runs_.clear();
   first_run_.clear();
   values_of_bases_.clear();
   first_of_bridge_.clear();
-  const double speed = moving_speed(scene_);
+  const double speed = scene::moving_speed(scene_);
   std::map<std::vector<double>, std::size_t> known,
       bridges;  // indices of bases and bridges by the values that define them
   std::set<double> speeds;
   const bool local = is_local(study);
   enum class Sets { own_speed, own_seed, traffic, bridge };
   std::vector<Sets> sets;  // of each dimension
-  for (const StudyDimension& d : study.dimensions)
+  for (const options::StudyDimension& d : study.dimensions)
     sets.push_back(is_speed(d)        ? Sets::own_speed
                    : is_seed(d)       ? Sets::own_seed
                    : is_of_traffic(d) ? Sets::traffic
@@ -91,7 +91,7 @@ void StudyScenes::enumerate(const Study& study) {
     StudyRun one{0, study.sweep ? study.place(run, 0) : 0, 0, {speed, {}}};
     std::vector<double> of_base, of_bridge;
     for (std::size_t i = 0; i < sets.size(); ++i) {
-      const StudyDimension& d = study.dimensions[i];
+      const options::StudyDimension& d = study.dimensions[i];
       const double value = study.value(run, d);
       if (sets[i] == Sets::own_speed) {
         one.own.speed = value;
@@ -126,9 +126,9 @@ void StudyScenes::enumerate(const Study& study) {
   if (!same_range) runners_.clear();  // their tracks have the range that the fastest run needs
 }
 
-Scene StudyScenes::base(std::size_t base) const {
+scene::Scene StudyScenes::base(std::size_t base) const {
   if (study_.sweep) return scene_;
-  Scene scene = read_(values_of_run(study(), first_run_[base]));
+  scene::Scene scene = read_(scene::values_of_run(study(), first_run_[base]));
   if (scene.output.probes.size() != scene_.output.probes.size())
     throw InputError(fmt::format("output_probes: a run has {} probes, others have {}; name as many for all",
                                  scene.output.probes.size(), scene_.output.probes.size()));
@@ -145,7 +145,7 @@ Scene StudyScenes::base(std::size_t base) const {
 std::vector<std::size_t> StudyScenes::extreme_bases() const {
   std::set<std::size_t> found = {0};
   if (bases() > 1)
-    for (const StudyDimension& d : study().dimensions) {
+    for (const options::StudyDimension& d : study().dimensions) {
       if (is_speed(d) || is_seed(d)) continue;
       const auto less = [&](std::size_t a, std::size_t b) {
         return study().value(first_run_[a], d) < study().value(first_run_[b], d);
@@ -176,7 +176,7 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
   const std::size_t first = first_of_bridge_[runs_[first_run_[wanted]].bridge];
   const std::size_t with = wanted != first ? first : 0;
   const std::optional<Runner> other = wanted != 0 ? std::optional(runner(with)) : std::nullopt;
-  const Scene scene = chosen_ ? completed(base(wanted), *chosen_) : base(wanted);
+  const scene::Scene scene = chosen_ ? error_control::completed(base(wanted), *chosen_) : base(wanted);
   if (runners_.size() == max_runners) {
     const auto oldest = std::find_if(runners_.begin(), runners_.end(), [&](const Runner& one) {
       // The cost of runs is estimated with the first base.
@@ -187,8 +187,8 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
   }
   std::vector<std::string> ignored;
   const bool same_beam = wanted != first && scene.beam->axial == other->runs->axial();
-  auto made = std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored,
-                                           same_beam ? other->runs->beam() : nullptr, notes != nullptr);
+  auto made = std::make_shared<ensemble::CaseRunner>(scene, notes != nullptr ? *notes : ignored,
+                                                     same_beam ? other->runs->beam() : nullptr, notes != nullptr);
   const std::vector<double>& values = values_of_bases_[wanted];
   const bool merged = other && made->merge(*other->runs);
   return runners_.emplace_back(Runner{wanted, std::move(made), values, merged ? other->batch : values});
@@ -201,7 +201,7 @@ long StudyScenes::separate_runs() const {
 }
 
 StudyScenes::Mixing StudyScenes::mixing() {
-  const CaseRunner& any = *runner(0).runs;
+  const ensemble::CaseRunner& any = *runner(0).runs;
   const std::size_t width = any.width(), bridges = first_of_bridge_.size();
   if (!any.has_lanes() || width == 1) return Mixing::nothing;
   if (bridges > 1 && runs_.size() < width * bridges) return Mixing::vehicles_and_bridges;
@@ -230,9 +230,9 @@ std::vector<std::vector<std::size_t>> StudyScenes::groups(const std::vector<char
   }
   std::vector<std::vector<std::size_t>> groups;
   for (const auto& block : blocks) {
-    std::vector<CaseRun> own;
+    std::vector<ensemble::CaseRun> own;
     for (const std::size_t i : block.second) own.push_back(runs_[i].own);
-    for (std::vector<std::size_t>& group : group_runs(own, width)) {
+    for (std::vector<std::size_t>& group : ensemble::group_runs(own, width)) {
       for (std::size_t& i : group) i = block.second[i];
       groups.push_back(std::move(group));
     }
@@ -246,4 +246,4 @@ double StudyScenes::duration(const std::vector<std::size_t>& group) {
   return sum;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -12,44 +12,44 @@
 #include "ensemble/case_runner.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 /// A run of a study.
 struct StudyRun {
   std::size_t base = 0;    // index of its scene
   std::size_t train = 0;   // index of the force train in a sweep
   std::size_t bridge = 0;  // scenes with the same index differ in parameters of vehicles and moving forces only
-  CaseRun own;             // speed and track seed
+  ensemble::CaseRun own;   // speed and track seed
 };
 
 /// A base is a scene of a study. Runs of one base differ in speed and track seed only; bases differ in other options.
 class StudyScenes {
  public:
   /// The scene of a run with these values of the varied options, as texts.
-  using Read = std::function<Scene(const std::vector<std::pair<std::string, std::string>>& values)>;
+  using Read = std::function<scene::Scene(const std::vector<std::pair<std::string, std::string>>& values)>;
   /// The scene must have a study or a sweep and must outlive this object. read: empty: read_scene_of_study. Throws
   /// InputError if speeds contradict each other.
-  explicit StudyScenes(const Scene& scene, Read read = {});
+  explicit StudyScenes(const scene::Scene& scene, Read read = {});
   /// Replaces the study by one with more speeds between its slowest and its fastest, or with other values.
-  void enumerate(const Study& study);
+  void enumerate(const options::Study& study);
 
-  const Study& study() const { return study_; }
+  const options::Study& study() const { return study_; }
   bool quiet() const { return scene_.quiet; }
   const std::vector<StudyRun>& runs() const { return runs_; }
   std::size_t bases() const { return first_run_.size(); }
   /// A base as the user describes it, with all speeds of the study in its sweep.
-  Scene base(std::size_t base) const;
+  scene::Scene base(std::size_t base) const;
   /// The base of the first run, and the bases with the least and the greatest value of each option.
   std::vector<std::size_t> extreme_bases() const;
   /// The bases that may need the finest model: the extreme ones, or the first one if all differ little from it.
   std::vector<std::size_t> bases_of_model() const;
 
   /// Sets the model chosen for the study, for mesh, step, modes and others that a base leaves open.
-  void choose(const NumericalModel& chosen) { chosen_ = chosen; }
+  void choose(const scene::NumericalModel& chosen) { chosen_ = chosen; }
   /// The object that computes the runs of a base.
   struct Runner {
     std::size_t base = 0;
-    std::shared_ptr<CaseRunner> runs;
+    std::shared_ptr<ensemble::CaseRunner> runs;
     std::vector<double> values;  // of its base
     std::vector<double> batch;   // values of the base with which it was merged; its own values if with none
   };
@@ -74,10 +74,10 @@ class StudyScenes {
   long separate_runs() const;  // on this rank, runs computed outside their batch
 
  private:
-  const Scene& scene_;
+  const scene::Scene& scene_;
   Read read_;
-  Study study_;
-  std::optional<NumericalModel> chosen_;
+  options::Study study_;
+  std::optional<scene::NumericalModel> chosen_;
   std::vector<double> speeds_;        // speeds of all runs, ascending, m/s
   std::vector<std::uint64_t> seeds_;  // seeds of random tracks
   std::vector<StudyRun> runs_;
@@ -90,4 +90,4 @@ class StudyScenes {
   long separate_runs_ = 0;                    // separate runs of deleted runners
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -13,17 +13,17 @@
 #include "run/norm_run.hpp"
 #include "study/resonances.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 constexpr double least_width = 0.01;  // relative to the speed: the smallest resonance width that is considered
 
 /// Static effects and the verdict of EN 1991-2, if the scene has a norm.
-std::optional<norm::NormCheck> check_by_norm(const Scene& scene, const CaseRunner& runner,
+std::optional<norm::NormCheck> check_by_norm(const scene::Scene& scene, const ensemble::CaseRunner& runner,
                                              const results::StudyTable& table) {
   if (!scene.norm) return {};
-  norm::NormCheck check = norm_check(scene, static_trains(scene, *runner.beam()));
-  if (!compares_with_lm71(scene)) return check;
+  norm::NormCheck check = run::norm_check(scene, run::static_trains(scene, *runner.beam()));
+  if (!run::compares_with_lm71(scene)) return check;
   const std::vector<double>& speeds = results::speeds_of_sweep(table.study());
   norm::ComputedPeaks computed{speeds, runner.probes(), {}};
   const std::size_t trains = results::trains_of(table.study()), size = speeds.size() * table.probes();
@@ -40,7 +40,7 @@ std::optional<norm::NormCheck> check_by_norm(const Scene& scene, const CaseRunne
 
 }  // namespace
 
-SweepFindings::SweepFindings(const Scene& scene, const CaseRunner& runner)
+SweepFindings::SweepFindings(const scene::Scene& scene, const ensemble::CaseRunner& runner)
     : scene_(scene), runner_(runner), frequencies_(resonant_frequencies(*runner.beam())) {
   const double slowest = runner.speeds().front(), fastest = runner.speeds().back();
   resonances_ = resonances_of(scene, frequencies_, slowest, fastest);
@@ -50,7 +50,7 @@ SweepFindings::SweepFindings(const Scene& scene, const CaseRunner& runner)
 std::vector<double> SweepFindings::unresolved_speeds() const { return unresolved(resonances_, runner_.speeds()); }
 
 double SweepFindings::width_of_resonance() const {
-  const SharedBeam& shared = *runner_.beam();
+  const run::SharedBeam& shared = *runner_.beam();
   const auto ratios = shared.damping_ratios();
   double damping = 0.0;  // ratio
   if (!ratios.empty())
@@ -70,7 +70,7 @@ void SweepFindings::add_to(std::vector<results::Verdict>& verdicts) const {
 }
 
 void SweepFindings::record(results::Recorder& recorder) const {
-  record_modes(*runner_.beam(), recorder);
+  run::record_modes(*runner_.beam(), recorder);
   results::record(scene_.sweep->trains, resonances_, cancellations_, recorder);
   if (check_) check_->record(recorder);
 }
@@ -82,4 +82,4 @@ void SweepFindings::print() const {
   if (check_) check_->print();
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::study

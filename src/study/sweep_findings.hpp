@@ -10,12 +10,12 @@
 #include "results/resonance.hpp"
 #include "results/study_table.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 
 class SweepFindings {
  public:
   /// Scene and runner must outlive this object.
-  SweepFindings(const Scene& scene, const CaseRunner& runner);
+  SweepFindings(const scene::Scene& scene, const ensemble::CaseRunner& runner);
 
   /// Resonance speeds (m/s) whose peaks are not resolved by the runner's speeds.
   std::vector<double> unresolved_speeds() const;
@@ -29,12 +29,12 @@ class SweepFindings {
   void print() const;
 
  private:
-  const Scene& scene_;
-  const CaseRunner& runner_;
+  const scene::Scene& scene_;
+  const ensemble::CaseRunner& runner_;
   std::vector<double> frequencies_;  // Hz
   std::vector<results::Resonance> resonances_;
   std::vector<results::Cancellation> cancellations_;
   std::optional<norm::NormCheck> check_;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::study

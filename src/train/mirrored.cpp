@@ -27,8 +27,8 @@ void mirror(multibody::Spring& spring) {
 void mirror(multibody::TorsionSpring& spring) {
   if (spring.free_angle) spring.free_angle = -*spring.free_angle;
   if (!spring.law) return;
-  using multibody::Side;
-  multibody::ForceLaw& law = *spring.law;
+  using base::Side;
+  base::ForceLaw& law = *spring.law;
   law.elastic = law.elastic.reversed();
   law.damper = law.damper.reversed();
   if (law.side != Side::both) law.side = law.side == Side::tension ? Side::compression : Side::tension;

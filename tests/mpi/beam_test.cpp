@@ -124,11 +124,12 @@ TEST_P(CutBeam, SameReactionsAndResponses) {
 
   std::vector<double> stations;
   for (int i = 0; i <= 40; ++i) stations.push_back(model_.length() * i / 40);
-  const std::vector<beam::ElementLoad> loads{{0, 0.3, 1e3, -1e5, 2e4},
-                                             {whole_.mesh().elements() - 1, 0.8, 0.0, -2e5, 0.0}};
-  std::vector<beam::Response> here, there;
-  beam::Recovery(cut_, stations, 9.81).evaluate(v.data() + first_, w.data() + first_, a.data() + first_, loads, here);
-  beam::Recovery(whole_, stations, 9.81).evaluate(v.data(), w.data(), a.data(), loads, there);
+  const std::vector<recovery::ElementLoad> loads{{0, 0.3, 1e3, -1e5, 2e4},
+                                                 {whole_.mesh().elements() - 1, 0.8, 0.0, -2e5, 0.0}};
+  std::vector<recovery::Response> here, there;
+  recovery::Recovery(cut_, stations, 9.81)
+      .evaluate(v.data() + first_, w.data() + first_, a.data() + first_, loads, here);
+  recovery::Recovery(whole_, stations, 9.81).evaluate(v.data(), w.data(), a.data(), loads, there);
   for (std::size_t i = 0; i < stations.size(); ++i) {  // the same bits: nothing but zeros is added to a value
     EXPECT_EQ(here[i].deflection, there[i].deflection);
     EXPECT_EQ(here[i].velocity, there[i].velocity);

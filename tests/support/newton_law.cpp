@@ -130,7 +130,7 @@ class Balance {
 }  // namespace
 
 Imbalance newton_imbalance(Results& run, int vehicle) {
-  const app::Scene scene = app::read_scene();
+  const scene::Scene scene = scene::read_scene();
   const train::Vehicle& type =
       scene.vehicles.at(static_cast<std::size_t>(scene.train.vehicles.at(static_cast<std::size_t>(vehicle))));
   const bool driven = !type.wheels.empty() && scene.train.drive == train::Drive::constant;

@@ -59,7 +59,7 @@ Results run_words(std::vector<std::string> words, MPI_Comm comm) {
   base::check(PetscOptionsClear(nullptr));
   options::Input input = options::read_input(static_cast<int>(argv.size()), argv.data());
   options::put_into_petsc(input);
-  app::run(comm, app::read_scene());
+  app::run(comm, scene::read_scene());
   MPI_Barrier(comm);
   return Results(file);
 }

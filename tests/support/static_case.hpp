@@ -26,10 +26,10 @@ struct Case {
     v = static_solution(beam, P);
     return *this;
   }
-  beam::Response at(double x) {
+  recovery::Response at(double x) {
     const std::vector<double> zero(v.size(), 0.0);
-    std::vector<beam::Response> out;
-    beam::Recovery(beam, {x}, gravity).evaluate(v.data(), zero.data(), zero.data(), loads, out);
+    std::vector<recovery::Response> out;
+    recovery::Recovery(beam, {x}, gravity).evaluate(v.data(), zero.data(), zero.data(), loads, out);
     return out[0];
   }
   std::vector<std::array<double, 3>> reactions() {
@@ -41,7 +41,7 @@ struct Case {
 
   beam::Beam beam;
   std::vector<double> P, v;
-  std::vector<beam::ElementLoad> loads;
+  std::vector<recovery::ElementLoad> loads;
   double gravity = 0.0;
 };
 

@@ -12,7 +12,7 @@
 namespace traverse::test {
 
 /// Adds a concentrated load at x to this rank's nodal forces (eq. 13), and returns it as an element load.
-inline beam::ElementLoad add_load(const beam::Beam& b, double x, double fy, double moment, double fx, double* P) {
+inline recovery::ElementLoad add_load(const beam::Beam& b, double x, double fy, double moment, double fx, double* P) {
   const beam::Station at = b.mesh().locate(x);
   const beam::Element& e = b.mesh().element(at.element);
   const auto psi = beam::hermite(at.xi, e.length, e.shear).value, turn = beam::rotation(at.xi, e.length, e.shear);

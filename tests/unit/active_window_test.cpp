@@ -40,7 +40,7 @@ struct Moving {
     }
     v = rest;
     w = Vector::Zero(rest.size());
-    Method method = esdirk4();
+    base::Method method = base::esdirk4();
     method.scale_to(h);
     rule = method.stages.front();
     stages = method.stages.size();
@@ -95,7 +95,7 @@ struct Moving {
       window->open(loaded, compliance.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
       motion.set_ranges(window->moving());
     }
-    Method method = esdirk4();
+    base::Method method = base::esdirk4();
     method.scale_to(h);
     for (std::size_t i = 0; i < stages; ++i)
       motion.solve(i, v.data(), w.data(), loads(x + speed * method.stages[i].time));
@@ -119,7 +119,7 @@ struct Moving {
   Vector dead, rest;
   BeamMotion motion;
   Compliance compliance;
-  StageRule rule;
+  base::StageRule rule;
   std::size_t stages = 0;
   Vector v, w;
 };

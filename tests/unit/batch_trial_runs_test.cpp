@@ -13,7 +13,7 @@
 #include "support/paths.hpp"
 #include "support/scene_run.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 // The speed is the lowest of its class, so that places a step apart are instants a step apart.
@@ -24,17 +24,17 @@ const std::string coaches =
     "/options/vehicles/velaro.yml}}\n"
     "train: {vehicles: coach*2, speed: 64.0}\n";
 
-NumericalModel model_with(double step) {
-  NumericalModel model;
+scene::NumericalModel model_with(double step) {
+  scene::NumericalModel model;
   model.elements = 40;
   model.method = "esdirk4";
   model.step = step;
-  model.vehicles = VehicleModel::linear;
+  model.vehicles = scene::VehicleModel::linear;
   return model;
 }
 
 engine::BatchResult trial(bool filtered, double step, double distance) {
-  Scene scene = scene_of(coaches);
+  scene::Scene scene = scene::scene_of(coaches);
   scene.sweep.emplace();
   scene.sweep->speeds = {64.0};
   scene.output.low_pass_requested = filtered;
@@ -78,4 +78,4 @@ TEST(BatchTrialRuns, KeepingAccelerationsChangesNothingElse) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::error_control

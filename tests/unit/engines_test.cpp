@@ -8,14 +8,14 @@
 
 #include "scene_helpers.hpp"
 
-namespace traverse::app {
+namespace traverse::ensemble {
 namespace {
 
 const std::string bridge = "beam: {spans: 20.0, EI: 8.3e9, mass: 2303.0, elements_per_span: 8, damping_ratios: 0.01}\n";
 const std::string force = "load: {forces: 1e5, speed: 30}\n";
 /// The car of scene_helpers, whose body moves at the start, or rests.
 std::string car_with(const std::string& velocity) {
-  std::string yaml = vehicle_yaml;
+  std::string yaml = scene::vehicle_yaml;
   return yaml.replace(yaml.find("[0, 0.1, 0]"), 11, velocity);
 }
 const std::string car = car_with("[0, 0, 0]") + "train: {vehicles: car, speed: 30}\nmodel: {vehicles: linear}\n";
@@ -26,7 +26,7 @@ struct Served {
   std::vector<std::string> why{engines.size()};
 
   explicit Served(const std::string& yaml) {
-    Scene scene = read_scene_of_study(options::Options::from_yaml(yaml), {});
+    scene::Scene scene = scene::read_scene_of_study(options::Options::from_yaml(yaml), {});
     scene.sweep->speeds = {30.0, 40.0};
     std::vector<std::string> notes;
     for (std::size_t row = 0; row < engines.size(); ++row) {
@@ -74,13 +74,13 @@ TEST(Engines, OfLinearVehicles) {
 }
 
 TEST(Engines, OfVehiclesThatMoveAtTheStart) {
-  const Served served(bridge + vehicle_yaml +
+  const Served served(bridge + scene::vehicle_yaml +
                       "train: {vehicles: car, speed: 30}\nmodel: {vehicles: linear}\nts: {dt: 1e-3}\n");
   EXPECT_EQ(served.why[batches], "bodies of vehicles have velocities at the start");
 }
 
 TEST(Engines, OfMechanisms) {
-  const Served served(bridge + vehicle_yaml +
+  const Served served(bridge + scene::vehicle_yaml +
                       "train: {vehicles: car, speed: 30}\nmodel: {vehicles: full}\nts: {dt: 2e-3}\n");
   EXPECT_NE(served.why[batches].find("mechanisms"), std::string::npos);
   EXPECT_EQ(served.results[single].size(), 2u);
@@ -92,4 +92,4 @@ TEST(Engines, OfWhatIsNotAsked) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::ensemble

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 /// The error found with steps h, of a method whose peak is off by c h^order.
@@ -58,4 +58,4 @@ TEST(ErrorModel, WhatDoesNotSettleKeepsItsError) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::error_control

@@ -7,26 +7,26 @@
 #include "error_control/trial_runs.hpp"
 #include "scene_helpers.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 /// A rail on pads that are 0.6 m apart, of which there are `count`.
-Scene rail_on_pads(int count) {
+scene::Scene rail_on_pads(int count) {
   const std::string length = std::to_string(0.6 * count), last = std::to_string(0.6 * count - 0.3);
-  return scene_of("beam: {spans: " + length +
-                  ", EI: 1.32e7, mass: 121.0}\n"
-                  "support: {types: free}\n"
-                  "foundation: {vertical: {x: [0.3, " +
-                  last +
-                  "], spacing: 0.6, k: 2.81e7, c: 1.6e4}}\n"
-                  "load: {forces: 1.0e5, positions: 3.0, speed: 50.0}\n"
-                  "output: {probes: " +
-                  last + "}\n");
+  return scene::scene_of("beam: {spans: " + length +
+                         ", EI: 1.32e7, mass: 121.0}\n"
+                         "support: {types: free}\n"
+                         "foundation: {vertical: {x: [0.3, " +
+                         last +
+                         "], spacing: 0.6, k: 2.81e7, c: 1.6e4}}\n"
+                         "load: {forces: 1.0e5, positions: 3.0, speed: 50.0}\n"
+                         "output: {probes: " +
+                         last + "}\n");
 }
 
 TEST(FirstMesh, MeetsThePads) {
   for (const int count : {20, 100, 300}) {
-    Scene scene = rail_on_pads(count);
+    scene::Scene scene = rail_on_pads(count);
     ASSERT_TRUE(scene.mesh_open);
     set_first_mesh(scene);
     EXPECT_TRUE(aligned(scene, mesh_of(scene))) << count << " pads, " << mesh_of(scene) << " elements";
@@ -36,4 +36,4 @@ TEST(FirstMesh, MeetsThePads) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::error_control

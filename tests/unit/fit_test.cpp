@@ -8,7 +8,7 @@
 #include "fit/spline.hpp"
 #include "support/message.hpp"
 
-namespace traverse::app {
+namespace traverse::fit {
 namespace {
 
 double spline_error(double interval) {
@@ -111,4 +111,4 @@ TEST(Minima, AreDistinctIfTheLinearisedResidualsDoNotExplainThem) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::fit

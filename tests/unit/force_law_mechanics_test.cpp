@@ -11,6 +11,11 @@
 #include "unit/mechanism_helpers.hpp"
 
 namespace traverse::multibody::testing {
+
+using base::ForceLaw;
+using base::Polyline;
+using base::Side;
+
 namespace {
 
 using test::contains;
@@ -69,9 +74,11 @@ TEST(ForceLaw, SlopesMatchDifferences) {
       int compared = 0;
       for (int trial = 0; trial < 400; ++trial) {
         const double e = number(random), rate = number(random);
-        const Tension t = tension(law, e, rate);
-        const Tension ahead = tension(law, e + 2.0 * h, rate), behind = tension(law, e - 2.0 * h, rate);
-        const Tension faster = tension(law, e, rate + 2.0 * h), slower = tension(law, e, rate - 2.0 * h);
+        const base::Tension t = base::tension(law, e, rate);
+        const base::Tension ahead = base::tension(law, e + 2.0 * h, rate),
+                            behind = base::tension(law, e - 2.0 * h, rate);
+        const base::Tension faster = base::tension(law, e, rate + 2.0 * h),
+                            slower = base::tension(law, e, rate - 2.0 * h);
         // a corner in between shows as another slope on either side
         if (ahead.by_elongation != behind.by_elongation || faster.by_rate != slower.by_rate ||
             (ahead.tension == 0.0) != (behind.tension == 0.0))
@@ -79,7 +86,7 @@ TEST(ForceLaw, SlopesMatchDifferences) {
         ++compared;
         EXPECT_NEAR(t.by_elongation, (ahead.tension - behind.tension) / (4.0 * h), 1e-6);
         EXPECT_NEAR(t.by_rate, (faster.tension - slower.tension) / (4.0 * h), 1e-6);
-        const double slope = (stored_energy(law, e + h) - stored_energy(law, e - h)) / (2.0 * h);
+        const double slope = (base::stored_energy(law, e + h) - base::stored_energy(law, e - h)) / (2.0 * h);
         EXPECT_NEAR((t.tension - slope) * rate, t.dissipation, 1e-4);
         EXPECT_GE(t.dissipation, 0.0);
       }
@@ -94,18 +101,18 @@ TEST(ForceLaw, NeverPullsOrPushesWhereItIsLoose) {
       if (!law.can_disengage()) continue;
       for (double e = -1.0; e <= 1.0; e += 0.01)
         for (const double rate : {-5.0, -0.5, 0.0, 0.5, 5.0}) {
-          const double t = tension(law, e, rate).tension;
+          const double t = base::tension(law, e, rate).tension;
           const bool taut = std::abs(e) > gap && (side == Side::both || (e > 0.0) == (side == Side::tension));
           if (taut) {
             EXPECT_GE(t * e, 0.0);
           } else {
             EXPECT_EQ(t, 0.0);
-            EXPECT_EQ(stored_energy(law, e), 0.0);
+            EXPECT_EQ(base::stored_energy(law, e), 0.0);
           }
         }
     }
-  EXPECT_GT(tension(rich_law(0.05, Side::both), 0.3, -0.1).tension, 0.0);
-  EXPECT_EQ(tension(rich_law(0.05, Side::both), 0.06, -5.0).tension, 0.0);
+  EXPECT_GT(base::tension(rich_law(0.05, Side::both), 0.3, -0.1).tension, 0.0);
+  EXPECT_EQ(base::tension(rich_law(0.05, Side::both), 0.06, -5.0).tension, 0.0);
 }
 
 // A rope of k and c: slack at e <= 0; taut but without tension where its ends approach faster than the damper allows.
@@ -116,10 +123,10 @@ TEST(ForceLaw, SlackRope) {
   for (const double e : {-0.02, -1e-6, 1e-3, 0.02})
     for (const double rate : {-2.0, -0.01, 0.0, 0.01, 2.0}) {
       SCOPED_TRACE(std::to_string(e) + " m, " + std::to_string(rate) + " m/s");
-      const Tension t = tension(rope, e, rate);
+      const base::Tension t = base::tension(rope, e, rate);
       const double expected = e > 0.0 ? std::max(0.0, k * e + c * rate) : 0.0;
       EXPECT_NEAR(t.tension, expected, 1e-9 * k);
-      EXPECT_NEAR(stored_energy(rope, e), e > 0.0 ? 0.5 * k * e * e : 0.0, 1e-9);
+      EXPECT_NEAR(base::stored_energy(rope, e), e > 0.0 ? 0.5 * k * e * e : 0.0, 1e-9);
       EXPECT_NEAR(t.dissipation, expected > 0.0 ? c * rate * rate : e > 0.0 ? -k * e * rate : 0.0, 1e-6);
       EXPECT_GE(t.dissipation, 0.0);
       EXPECT_NEAR(t.tension * rate, (e > 0.0 ? k * e * rate : 0.0) + t.dissipation, 1e-6);
@@ -129,16 +136,16 @@ TEST(ForceLaw, SlackRope) {
 TEST(ForceLaw, TheDamperComesOnSteadily) {
   const ForceLaw law = rich_law(0.05, Side::compression);
   const double e = -0.05 - 0.4e-9, h = 1e-11, rate = -0.2;
-  const double slope = (tension(law, e + h, rate).tension - tension(law, e - h, rate).tension) / (2.0 * h);
-  EXPECT_NEAR(tension(law, e, rate).by_elongation / slope, 1.0, 1e-6);
-  EXPECT_NEAR(tension(law, e, rate).tension, -0.4 * 15.0, 1e-6);  // the damper's 15 N, not much of the spring's
+  const double slope = (base::tension(law, e + h, rate).tension - base::tension(law, e - h, rate).tension) / (2.0 * h);
+  EXPECT_NEAR(base::tension(law, e, rate).by_elongation / slope, 1.0, 1e-6);
+  EXPECT_NEAR(base::tension(law, e, rate).tension, -0.4 * 15.0, 1e-6);  // the damper's 15 N, not much of the spring's
 }
 
 TEST(ForceLaw, ElongationAtATension) {
   for (const double gap : {0.0, 0.05})
     for (const double wanted : {-40.0, -3.0, 3.0, 40.0}) {
       const ForceLaw law = rich_law(gap, Side::both);
-      EXPECT_NEAR(tension(law, law.elongation_at(wanted).value(), 0.0).tension, wanted, 1e-12);
+      EXPECT_NEAR(base::tension(law, law.elongation_at(wanted).value(), 0.0).tension, wanted, 1e-12);
     }
   EXPECT_EQ(rich_law(0.05, Side::both).elongation_at(0.0), 0.0);
   EXPECT_FALSE(rich_law(0.05, Side::tension).elongation_at(-1.0));
@@ -254,7 +261,7 @@ TEST(MechanismWithLaws, ReportsItsForces) {
   motion.finish();
   EXPECT_NEAR(motion.mechanism.spring_tension(motion.state, 0), 40.0, 1e-12);
   EXPECT_NEAR(motion.mechanism.torsion_spring_moment(motion.state, 0),
-              -tension(*model.torsion_springs[0].law, -0.2 - 0.3 - 0.1, 0.0).tension, 1e-12);
+              -base::tension(*model.torsion_springs[0].law, -0.2 - 0.3 - 0.1, 0.0).tension, 1e-12);
 }
 
 TEST(MechanismWithLaws, Refusals) {

@@ -20,7 +20,7 @@ using test::contains;
 
 std::vector<std::string> names() {
   std::vector<std::string> list;
-  for (const structure::MethodRow& row : structure::methods()) list.emplace_back(row.name);
+  for (const base::MethodRow& row : base::methods()) list.emplace_back(row.name);
   for (const PetscType& type : petsc_types()) list.emplace_back(type.name);
   return list;
 }
@@ -54,7 +54,7 @@ TEST(Integrators, ControlTheirStepsWhereTheyEstimateErrors) {
     return test::message_of([&] { test::run_scene("r1_moving_force", {{"ts_type", type}, {"ts_adapt_type", adapt}}); });
   };
   for (const std::string& name : names()) {
-    const structure::MethodRow* own = structure::find_method(name);
+    const base::MethodRow* own = base::find_method(name);
     if (own != nullptr) {
       EXPECT_PRED2(contains, message(name, "basic"), "does not fit " + name + "; allowed: none, ladder (with esdirk4");
     }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 struct Searched {
@@ -83,4 +83,4 @@ TEST(IntervalSearch, NoIntervalWhereTheBoundIsExceededEverywhere) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::study

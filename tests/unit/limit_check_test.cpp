@@ -35,7 +35,7 @@ TEST(DeckAcceleration, IsStoredWithItsPeak) {
   double greatest = 0.0;
   for (const std::size_t probe : {0, 1}) {
     std::vector<double> series = run.column("/probes/acceleration", probe);
-    app::LowPass(counts, 1e-3).apply(series);
+    run::LowPass(counts, 1e-3).apply(series);
     EXPECT_LT(relative_difference(run.column("/probes/acceleration_lowpass", probe), series), 1e-12);
     greatest = std::max(greatest, largest(series));
   }

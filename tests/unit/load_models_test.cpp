@@ -20,7 +20,7 @@ output: {probes: [12.5]}
 )";
 
 train::MovingLoad load_of(const std::string& load) {
-  return app::read_scene(options::Options::from_yaml(bridge + ("load: {speed: 20, " + load + "}\n"))).load;
+  return scene::read_scene(options::Options::from_yaml(bridge + ("load: {speed: 20, " + load + "}\n"))).load;
 }
 
 TEST(LoadModels, ReferenceWagons) {
@@ -63,9 +63,9 @@ TEST(LoadModels, SpreadOverSleepers) {
   EXPECT_EQ(load.forces, (std::vector<double>{2.5e4, 5e4, 2.5e4, 5e4, 1e5, 5e4}));
   EXPECT_EQ(load.positions, (std::vector<double>{0.6, 0.0, -0.6, -2.4, -3.0, -3.6}));
   EXPECT_EQ(load_of("hslm_b: [2, 3.5], spread: 0.6").positions.front(), 0.0);
-  const app::Scene sweep =
-      app::read_scene(options::Options::from_yaml(bridge + std::string("load: {speed: 20, spread: 0.6}\n"
-                                                                       "sweep: {hslm_a: [1, 2]}\n")));
+  const scene::Scene sweep =
+      scene::read_scene(options::Options::from_yaml(bridge + std::string("load: {speed: 20, spread: 0.6}\n"
+                                                                         "sweep: {hslm_a: [1, 2]}\n")));
   EXPECT_EQ(sweep.sweep->loads[1].forces.size(), 3 * 48U);  // four and two axles at both ends, 36 between coaches
 }
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
@@ -64,4 +64,4 @@ TEST(LowPass, HasNoStartUp) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::run

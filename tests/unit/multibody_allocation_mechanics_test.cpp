@@ -15,7 +15,7 @@ TEST(Evaluation, TakesNoMemory) {
   model.springs = {make_spring("s", ground, 1, {6.0, 0.0}, model.bodies[1].position.head<2>(), 300.0, 3.0)};
   model.springs.push_back(model.springs[0]);
   model.springs[1].stiffness = model.springs[1].damping = 0.0;
-  model.springs[1].law = ForceLaw{Polyline::line(40.0), Polyline::line(2.0), 0.01, Side::both};
+  model.springs[1].law = base::ForceLaw{base::Polyline::line(40.0), base::Polyline::line(2.0), 0.01, base::Side::both};
   model.joints[1].friction = {0.2, 1.0, 0.01};
   Motion motion(model);
   double pdd = 0.0;

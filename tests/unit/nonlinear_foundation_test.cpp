@@ -182,7 +182,7 @@ class Founded {
     EXPECT_NEAR(foundation.energy(), energy, 10.0 * precision * std::abs(energy));
     EXPECT_NEAR(foundation.dissipation(), dissipation, 10.0 * precision * (std::abs(dissipation) + 1e-3 * energy));
     NonlinearForces reported;
-    std::vector<beam::ElementLoad> loads(1);
+    std::vector<recovery::ElementLoad> loads(1);
     foundation.report(reported, loads);
     EXPECT_EQ(loads.size(), 1 + loaded);  // appended
     for (std::size_t kind = 0; kind < beam::foundation_kind_count; ++kind) {

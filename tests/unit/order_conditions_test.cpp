@@ -11,7 +11,7 @@
 
 #include "base/one_step_methods.hpp"
 
-namespace traverse::structure {
+namespace traverse::base {
 namespace {
 
 constexpr double rounding = 4e-15;
@@ -362,4 +362,4 @@ TEST(OrderConditions, ScaledToALength) {
 }
 
 }  // namespace
-}  // namespace traverse::structure
+}  // namespace traverse::base

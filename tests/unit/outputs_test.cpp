@@ -16,7 +16,7 @@
 #include "support/paths.hpp"
 #include "support/scene_run.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 struct Top {
@@ -203,4 +203,4 @@ TEST(Outputs, OfTorsionSpringsAndOfContactsBetweenBodies) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -8,45 +8,45 @@
 namespace traverse::test {
 namespace {
 
-app::StageWork long_bridge(double unknowns) {
-  app::StageWork work;
+run::StageWork long_bridge(double unknowns) {
+  run::StageWork work;
   work.unknowns = unknowns;
   work.seconds_per_unknown = 7e-9;
   return work;
 }
 
-TEST(RankChoice, SmallBridgesAreForOneRank) { EXPECT_EQ(app::best_ranks(long_bridge(200.0), 64, 1e-6), 1); }
+TEST(RankChoice, SmallBridgesAreForOneRank) { EXPECT_EQ(run::best_ranks(long_bridge(200.0), 64, 1e-6), 1); }
 
 TEST(RankChoice, LongOnesForMany) {
-  EXPECT_EQ(app::best_ranks(long_bridge(1e6), 2, 1e-6), 2);
-  EXPECT_GT(app::best_ranks(long_bridge(1e6), 1024, 1e-6), 32);
-  EXPECT_GT(app::best_ranks(long_bridge(1e7), 1024, 1e-6), app::best_ranks(long_bridge(1e6), 1024, 1e-6));
+  EXPECT_EQ(run::best_ranks(long_bridge(1e6), 2, 1e-6), 2);
+  EXPECT_GT(run::best_ranks(long_bridge(1e6), 1024, 1e-6), 32);
+  EXPECT_GT(run::best_ranks(long_bridge(1e7), 1024, 1e-6), run::best_ranks(long_bridge(1e6), 1024, 1e-6));
 }
 
 // Ranks that share a processor wait long for messages.
 TEST(RankChoice, SlowMessagesAreForFewer) {
-  EXPECT_LT(app::best_ranks(long_bridge(1e6), 1024, 1e-4), app::best_ranks(long_bridge(1e6), 1024, 1e-6));
-  EXPECT_EQ(app::best_ranks(long_bridge(1e6), 1024, 1.0), 1);
+  EXPECT_LT(run::best_ranks(long_bridge(1e6), 1024, 1e-4), run::best_ranks(long_bridge(1e6), 1024, 1e-6));
+  EXPECT_EQ(run::best_ranks(long_bridge(1e6), 1024, 1.0), 1);
 }
 
 // Never a number that the model itself finds slower than one rank.
 TEST(RankChoice, IsNeverSlowerThanOneRankByTheModel) {
   for (double unknowns = 10.0; unknowns < 1e8; unknowns *= 3.0)
     for (double latency = 1e-7; latency < 1e-2; latency *= 3.0) {
-      app::StageWork work = long_bridge(unknowns);
+      run::StageWork work = long_bridge(unknowns);
       work.vehicles = 16.0;
       for (const bool cut : {false, true}) {
         work.cut = cut;
-        const int best = app::best_ranks(work, 16, latency);
-        EXPECT_LE(app::stage_seconds(work, best, latency), app::stage_seconds(work, 1, latency));
+        const int best = run::best_ranks(work, 16, latency);
+        EXPECT_LE(run::stage_seconds(work, best, latency), run::stage_seconds(work, 1, latency));
       }
     }
 }
 
 TEST(RankChoice, WhatIsForOneRankAlone) {
-  app::StageWork work = long_bridge(1e9);
+  run::StageWork work = long_bridge(1e9);
   work.single_rank_reason = "its steps are short";
-  EXPECT_EQ(app::best_ranks(work, 1024, 1e-9), 1);
+  EXPECT_EQ(run::best_ranks(work, 1024, 1e-9), 1);
 }
 
 }  // namespace

@@ -7,16 +7,16 @@
 #include <cmath>
 #include <limits>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 /// Passages of the only probe, at ascending times.
 struct Passages {
   std::vector<double> times;
-  std::vector<beam::StationPassage> now{};
+  std::vector<recovery::StationPassage> now{};
   std::size_t next = 0;
   /// Those since the last call.
-  const std::vector<beam::StationPassage>& until(double t) {
+  const std::vector<recovery::StationPassage>& until(double t) {
     now.clear();
     for (; next < times.size() && times[next] <= t; ++next) now.push_back({0, times[next]});
     return now;
@@ -32,7 +32,7 @@ ResponseExtremes peaks_of_curve(ExtremumTracker f, double dt, const std::vector<
   std::sort(times.begin(), times.end());
   Passages passed{passages};
   for (const double t : times) {
-    beam::Response response;
+    recovery::Response response;
     response.relative_deflection = response.acceleration = response.moment = f(t);
     peaks.add(t, {&response, 1}, {{f(t)}}, passed.until(t));
   }
@@ -136,7 +136,7 @@ TEST(ResponseExtremes, BehindAKinkThatRelaxes) {
       std::sort(times.begin(), times.end());
       for (const double t : times) {
         const double s = t - kink, roof = 1.0 - std::abs(s);
-        beam::Response response;
+        recovery::Response response;
         response.moment = s < 0.0 ? roof - b : roof + b - 2.0 * b * std::exp(-s / b);
         response.moment_rate = (roof - response.moment) / b;
         peaks.add(t, {&response, 1}, {});
@@ -149,8 +149,8 @@ TEST(ResponseExtremes, BehindAKinkThatRelaxes) {
 }
 
 /// A shear that falls by 1 a second, jumps by 3 at 0.4321 s and, with b, relaxes behind that.
-beam::Response jumping(double t, double jump, double b) {
-  beam::Response r;
+recovery::Response jumping(double t, double jump, double b) {
+  recovery::Response r;
   const double s = t - jump;
   r.moment_rate = b > 0.0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
   if (b > 0.0 && s >= 0.0) r.unrelaxed_shear = -3.0 * std::exp(-s / b);
@@ -172,7 +172,7 @@ TEST(ResponseExtremes, BesideAJump) {
       std::sort(times.begin(), times.end());
       Passages passed{std::vector<double>(1, jump)};
       for (const double t : times) {
-        const beam::Response response = jumping(t, jump, b);
+        const recovery::Response response = jumping(t, jump, b);
         peaks.add(t, {&response, 1}, {}, passed.until(t));
       }
       peaks.finish();
@@ -223,4 +223,4 @@ TEST(ResponseExtremes, DifferenceComparesExtremesThatAreEachOthersNearest) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::run

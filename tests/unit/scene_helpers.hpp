@@ -11,7 +11,7 @@
 #include "support/message.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 using options::Options;
 using test::contains;
@@ -50,4 +50,4 @@ inline std::string refused_with(const std::string& name, const std::string& valu
   return message;
 }
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -7,7 +7,7 @@
 #include "support/paths.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using test::any_contains;
@@ -379,4 +379,4 @@ INSTANTIATE_TEST_SUITE_P(Options, SceneFile, testing::ValuesIn(files_in_options(
 // A coach as its source describes it: ten degrees of freedom besides x, and the axle loads of its masses.
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -2,7 +2,7 @@
 #include "scene_helpers.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 using test::any_contains;
@@ -81,4 +81,4 @@ TEST(SceneTrains, WhatIsRefused) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::scene

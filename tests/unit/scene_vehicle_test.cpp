@@ -6,7 +6,7 @@
 #include "support/paths.hpp"
 #include "support/temporary_folder.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 namespace {
 
 TEST(SceneVehicle, Parts) {
@@ -152,4 +152,4 @@ TEST(Coach, VelaroMasses) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::scene

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "support/scene_run.hpp"
@@ -86,6 +87,19 @@ TEST(Simulate, IsFollowedAndEndedByObservers) {
   EXPECT_EQ(some.samples, 20);
 }
 
+TEST(Simulate, PassesOnWhatAnObserverThrows) {
+  class Thrower : public Observer {
+   public:
+    bool sample(Instant& now) override { return now.read("/probes/deflections").empty(); }
+  } unknown_name;
+  const Problem problem = force_over_bridge().set("output_interval", 0.1).set("ts_max_time", 0.5);
+  EXPECT_THROW((void)simulate(problem, {&unknown_name}), RunsFailed);
+  class Own : public Observer {
+    bool sample(Instant& /*now*/) override { throw std::out_of_range("own"); }
+  } own;
+  EXPECT_THROW((void)simulate(problem, {&own}), std::out_of_range);
+}
+
 /// An actuator under midspan that carries a part of what the force weighs.
 class Prop : public Observer {
  public:
@@ -131,7 +145,7 @@ TEST(Simulate, HasLawsOfTheProgramInManyRuns) {
       "     wheel: {body: axle, radius: 0.46, law: linear, stiffness: 8e5}}\n"
       "train: {vehicles: wheel, speed: 30.0}\nts: {dt: 2e-3}\n";
   Problem with_law = Problem::from_yaml(wheel);
-  with_law.change([](app::Scene& scene) {
+  with_law.change([](scene::Scene& scene) {
     scene.vehicles[0].wheels[0].law.kind = contact::LawKind::other;
     scene.vehicles[0].wheels[0].law.elastic = std::make_shared<Half>();
   });
@@ -161,7 +175,9 @@ TEST(Simulate, RefusesWhatIsNoRunBeforeItComputes) {
   EXPECT_NE(message({Problem(good).set("beam_IE", 1.0)}).find("beam_IE"), std::string::npos);
   EXPECT_NE(message({Problem(good).set("study_vary_load_speed", {20.0, 30.0})}).find("one run"), std::string::npos);
   EXPECT_THROW(Problem(good).table("t", {{0.0, 1.0}, {2.0}}), InputError);
-  EXPECT_THROW(Problem(good).table("t", [](double x) { return x; }, 0.0, 1.0, 0.3), InputError);
+  EXPECT_THROW(Problem(good).table(
+                   "t", [](double x) { return x; }, 0.0, 1.0, 0.3),
+               InputError);
 }
 
 TEST(Simulate, StopsWhereProgressSaysSo) {

@@ -9,17 +9,17 @@
 #include "scene_helpers.hpp"
 #include "support/scene_run.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 const std::string bridge =
     "beam: {spans: [25.0, 30.0, 25.0], EI: 8.33e9, mass: 2303.0, elements_per_span: 8, damping_ratios: 0.02}\n" +
-    vehicle_yaml + "train: {vehicles: car, speed: 30}\noutput: {probes: [12.5, 40.0], interval: 0.01}\n" +
+    scene::vehicle_yaml + "train: {vehicles: car, speed: 30}\noutput: {probes: [12.5, 40.0], interval: 0.01}\n" +
     "ts: {dt: 0.002, max_time: 1.0}\nmodel: {vehicles: full}\n";
 
 /// A simulation with the objects that must outlive it.
 struct OneRun {
-  Scene scene = scene_of(bridge);
+  scene::Scene scene = scene::scene_of(bridge);
   std::vector<std::string> notes;
   SharedBeam shared{PETSC_COMM_SELF, scene, notes};
   Simulation simulation;
@@ -74,4 +74,4 @@ TEST(Simulation, GoesOnWhereAnObserverStoppedIt) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -96,7 +96,7 @@ TEST(Reversed, ProfilesAndTablesAreSeenFromTheOtherSide) {
     EXPECT_EQ(from.along(x, 0.5, 3)[2].value, from.at(x + 1.0).value);
   }
   EXPECT_EQ(back.kinks(), (std::vector<double>{-5.0, -3.0}));
-  const multibody::Polyline table({-1.0, 0.0, 2.0}, {-3.0, 0.0, 1.0}), turned = table.reversed();
+  const base::Polyline table({-1.0, 0.0, 2.0}, {-3.0, 0.0, 1.0}), turned = table.reversed();
   for (const double x : {-4.0, -2.0, -0.3, 0.0, 0.7, 5.0}) EXPECT_DOUBLE_EQ(turned.value(x), -table.value(-x));
 }
 

@@ -11,7 +11,7 @@
 #include "study/resonances.hpp"
 #include "traverse/scene/scene.hpp"
 
-namespace traverse::app {
+namespace traverse::study {
 namespace {
 
 /// Of a slightly damped oscillator about its resonance at v = 61.3.
@@ -104,10 +104,10 @@ TEST(RegularDistance, IsTheCoachOfEveryTrainOfHslmA) {
   const std::vector<double> coach = {18.0, 19.0, 20.0, 21.0, 22.0,
                                      23.0, 24.0, 25.0, 26.0, 27.0};  // EN 1991-2, 6.4.6.1.1
   for (int train = 1; train <= 10; ++train) {
-    const AxleList axles = hslm_a(train);
+    const scene::AxleList axles = scene::hslm_a(train);
     EXPECT_NEAR(regular_distance(axles.offsets, axles.forces), coach[static_cast<std::size_t>(train - 1)], 1e-9);
   }
-  EXPECT_NEAR(regular_distance(hslm_b(10, 3.5).offsets, hslm_b(10, 3.5).forces), 3.5, 1e-9);
+  EXPECT_NEAR(regular_distance(scene::hslm_b(10, 3.5).offsets, scene::hslm_b(10, 3.5).forces), 3.5, 1e-9);
 }
 
 TEST(RegularDistance, OfWhatDoesNotRepeatItselfIsNone) {
@@ -137,4 +137,4 @@ TEST(Cancellations, AreThoseOfUniformSimpleSpansAlone) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::study

@@ -57,14 +57,14 @@ Words coaches_on_a_continuous_bridge() {
           "2.0"};
 }
 
-app::Scene scene_of(Words words) {
+scene::Scene scene_of(Words words) {
   words.insert(words.begin(), "traverse");
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   base::check(PetscOptionsClear(nullptr));
   options::Input input = options::read_input(static_cast<int>(argv.size()), argv.data());
   options::put_into_petsc(input);
-  return app::read_scene();
+  return scene::read_scene();
 }
 
 /// Modes that a damper couples.
@@ -79,17 +79,17 @@ Words coaches_on_a_damped_bridge() {
 long allocations_of_steps(const Words& scene_words, const std::string& type, const std::string& adapt = "none") {
   Words words = {"-ts_max_time", "0.1", "-ts_type", type, "-ts_adapt_type", adapt};
   words.insert(words.end(), scene_words.begin(), scene_words.end());
-  const app::Scene scene = scene_of(words);
+  const scene::Scene scene = scene_of(words);
   std::vector<std::string> notes;
-  app::SharedBeam shared(PETSC_COMM_SELF, scene, notes);
+  run::SharedBeam shared(PETSC_COMM_SELF, scene, notes);
   shared.beam->set_rayleigh({0.5, 5e-4});
   shared.prepare(scene, notes);
-  const coupling::SystemInput input = app::system_input(scene, false);
-  coupling::System system(PETSC_COMM_SELF, app::carrier(scene, shared, input), input);
+  const coupling::SystemInput input = run::system_input(scene, false);
+  coupling::System system(PETSC_COMM_SELF, run::carrier(scene, shared, input), input);
   Stepper stepper(system, {0.1, 1e-3, 0.1, {}, 1e-6});
   double* y = stepper.state();
   (void)system.start(true, y);
-  if (scene.model.vehicles == app::VehicleModel::linear) (void)system.linearise_vehicles(y);
+  if (scene.model.vehicles == scene::VehicleModel::linear) (void)system.linearise_vehicles(y);
   stepper.restore_state(&y);
   long before = 0, after = 0;
   stepper.run([](const Instant&) {},
@@ -144,15 +144,15 @@ TEST(Steps, OverModesTakeNoMemory) {
 
 // All that a results file holds of a train on a bridge, at one instant.
 TEST(Outputs, TakeNoMemoryOnceTheirSampleIsThere) {
-  const app::Scene scene = scene_of(coaches_on_a_continuous_bridge());
+  const scene::Scene scene = scene_of(coaches_on_a_continuous_bridge());
   std::vector<std::string> notes;
-  app::SharedBeam shared(PETSC_COMM_SELF, scene, notes);
+  run::SharedBeam shared(PETSC_COMM_SELF, scene, notes);
   shared.damp(scene, false, notes);
   shared.prepare(scene, notes);
-  app::Passage passage(scene, shared, notes);
+  run::Passage passage(scene, shared, notes);
   passage.start(notes);
-  const app::Outputs outputs = app::outputs_of({scene, passage.system().fleet(), shared.bridge()});
-  app::Observed now;
+  const run::Outputs outputs = run::outputs_of({scene, passage.system().fleet(), shared.bridge()});
+  run::Observed now;
   now.probes.resize(scene.output.probes.size());
   now.supports.resize(scene.beam->spans.size() + 1);
   now.ground.emplace(*shared.beam);

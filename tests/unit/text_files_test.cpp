@@ -29,7 +29,7 @@ const std::vector<Kind> kinds = {
     {"s.yml", "gravity: 9.81\nscene: {tail: 1}\n", [](const std::string& path) { read_options_file(path); }},
     {"s.opts", "-gravity 9.81\n-scene_tail 1\n", [](const std::string& path) { read_options_file(path); }},
     {"l.yml", limits + limits, [](const std::string& path) { read_verdict_limits(path); }},
-    {"m.csv", modes, [](const std::string& path) { app::read_given_modes(path, 1); }}};
+    {"m.csv", modes, [](const std::string& path) { scene::read_given_modes(path, 1); }}};
 
 TEST(TextFiles, HoldNoControlCharactersAndNoOtherEncoding) {
   const test::TemporaryFolder folder;

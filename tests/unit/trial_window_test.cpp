@@ -7,23 +7,25 @@
 #include "results/run_model.hpp"
 #include "traverse/options/options.hpp"
 
-namespace traverse::app {
+namespace traverse::error_control {
 namespace {
 
 // Four spans of 30 m, a force of 1 N at 50 m/s that starts at their beginning.
-Scene scene_of(const std::string& more, const std::string& spans = "30.0*4",
-               const std::string& types = "[pinned, roller, roller, roller, roller]") {
-  return read_scene(options::Options::from_yaml("beam: {spans: " + spans +
-                                                ", EI: 1.0e10, mass: 1.0e4}\nsupport: {types: " + types +
-                                                "}\nload: {forces: 1.0, speed: 50.0}\n" + more));
+scene::Scene scene_of(const std::string& more, const std::string& spans = "30.0*4",
+                      const std::string& types = "[pinned, roller, roller, roller, roller]") {
+  return scene::read_scene(options::Options::from_yaml("beam: {spans: " + spans +
+                                                       ", EI: 1.0e10, mass: 1.0e4}\nsupport: {types: " + types +
+                                                       "}\nload: {forces: 1.0, speed: 50.0}\n" + more));
 }
 
 constexpr double end = 10.0;  // s
 
-std::vector<LaterEvent> later(const Scene& scene) { return later_events(scene, initial_window(scene, end), end); }
+std::vector<LaterEvent> later(const scene::Scene& scene) {
+  return later_events(scene, initial_window(scene, end), end);
+}
 
 TEST(TrialWindow, EqualSpansHoldNothingNew) {
-  const Scene scene = scene_of("");
+  const scene::Scene scene = scene_of("");
   EXPECT_NEAR(initial_window(scene, end), 1.1 * 30.0 / 50.0, 1e-12);
   EXPECT_TRUE(later(scene).empty());
   EXPECT_TRUE(later(scene_of("foundation: {vertical: {x: [30, 60, 90], k: 1.0e7}}\n", "30.0*3", "roller")).empty());
@@ -72,7 +74,7 @@ TEST(Accuracy, IsWithdrawnWhereContactsWereLostUnseen) {
   seen.lost_contact = true;
   seen.covered_until = 1.0;
   EXPECT_EQ(seen.invalidate_by_contact_loss(losses), "");
-  EXPECT_EQ(seen.expected().size(), static_cast<std::size_t>(quantities));
+  EXPECT_EQ(seen.expected().size(), static_cast<std::size_t>(run::quantities));
   seen.covered_until = 0.7;
   EXPECT_NE(seen.invalidate_by_contact_loss(losses).find("lost contact 1 times after 0.7 s, which happened in no"),
             std::string::npos);
@@ -89,12 +91,12 @@ TEST(Accuracy, IsWithdrawnWhereMoreComesThanTrialsSaw) {
   accuracy.measured = true;
   accuracy.covered_until = 0.7;
   for (ErrorEstimate& promise : accuracy.estimates) promise = {true, true, 1e-4, ""};
-  accuracy.estimates[moment].expected = 5e-4;
+  accuracy.estimates[run::moment].expected = 5e-4;
   EXPECT_EQ(accuracy.invalidate_if_rougher(1.9, 1e-3), "");
   const std::string said = accuracy.invalidate_if_rougher(2.5, 1e-3);
   EXPECT_NE(said.find("error estimates withdrawn: moment: after 0.7 s"), std::string::npos) << said;
-  EXPECT_NEAR(accuracy.estimates[deflection].expected, 6.25e-4, 1e-15);
-  EXPECT_EQ(accuracy.expected().size(), quantities - 1U);
+  EXPECT_NEAR(accuracy.estimates[run::deflection].expected, 6.25e-4, 1e-15);
+  EXPECT_EQ(accuracy.expected().size(), run::quantities - 1U);
   EXPECT_EQ(accuracy.invalidate_by_new_event(""), "");
   EXPECT_NE(accuracy.invalidate_by_new_event("a stop touches at 2 s").find("a stop touches at 2 s"), std::string::npos);
   EXPECT_TRUE(accuracy.expected().empty());
@@ -110,4 +112,4 @@ TEST(RunModel, PromisesNothingOfRunsThatMeetWhatNoTrialHasSeen) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::error_control

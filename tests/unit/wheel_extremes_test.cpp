@@ -7,7 +7,7 @@
 
 #include "support/scene_run.hpp"
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 // The error falls with the sixth power of the step.
@@ -70,4 +70,4 @@ ts: {max_time: 0.2, dt: 0.013}
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::run

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace traverse::app {
+namespace traverse::run {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
@@ -47,4 +47,4 @@ TEST(WheelUnloading, NeverAboveTheLevel) {
 }
 
 }  // namespace
-}  // namespace traverse::app
+}  // namespace traverse::run

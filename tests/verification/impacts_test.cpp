@@ -193,7 +193,7 @@ TEST_P(Restitution, ByLankaraniAndNikravesh) {
 
 double stiffness_read(const std::string& scene) {
   run_yaml(scene, {{"ts_max_time", "1e-3"}});
-  return app::read_scene().vehicles.at(0).contacts.at(0).law.stiffness;
+  return scene::read_scene().vehicles.at(0).contacts.at(0).law.stiffness;
 }
 
 TEST(ContactStiffness, FromModuliAndRadii) {

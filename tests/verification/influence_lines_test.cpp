@@ -35,7 +35,7 @@ TEST(InfluenceLines, OfAHaunchedGirder) {
   const std::string girder = "beam: {spans: [35.0, 50.0, 35.0], EI: " + folder + "EI.csv, mass: " + folder +
                              "mass.csv}\nscene: {analysis: static}\nload: {forces: 1.0e6}\n" +
                              "output: {probes: 11.3}\n";
-  const app::Scene scene = app::read_scene(options::Options::from_yaml(girder));
+  const scene::Scene scene = scene::read_scene(options::Options::from_yaml(girder));
   norm::StaticBridge bridge(*scene.beam);
   const auto lines = bridge.lines_at(11.3);
   double deflection_error = 0.0, moment_error = 0.0;

@@ -52,9 +52,9 @@ TEST(RecoveryOnFoundation, AHeavingBeamStaysStraight) {
     w[i] = rate;
     a[i] = -(bed_k * lift + 1e4 * rate) / rail_mass;
   }
-  std::vector<beam::Response> out;
-  beam::Recovery(beam, {30.0, 31.0, 33.0, 35.7}, 0.0).evaluate(v.data(), w.data(), a.data(), {}, out);
-  for (const beam::Response& r : out) EXPECT_NEAR(r.deflection, lift, 1e-9 * lift);
+  std::vector<recovery::Response> out;
+  recovery::Recovery(beam, {30.0, 31.0, 33.0, 35.7}, 0.0).evaluate(v.data(), w.data(), a.data(), {}, out);
+  for (const recovery::Response& r : out) EXPECT_NEAR(r.deflection, lift, 1e-9 * lift);
 }
 
 /// Clamped at both ends: one element knows all of its deflection, whatever stands inside.

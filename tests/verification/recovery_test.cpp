@@ -49,8 +49,8 @@ std::pair<double, double> errors_of_mode(int elements, int n, beam::Rayleigh ab,
     }
   }
   for (int i = 0; i <= 200; ++i) stations.push_back(L * i / 200);
-  std::vector<beam::Response> out;
-  beam::Recovery(b, stations, 0.0).evaluate(v.data(), w.data(), a.data(), {}, out);
+  std::vector<recovery::Response> out;
+  recovery::Recovery(b, stations, 0.0).evaluate(v.data(), w.data(), a.data(), {}, out);
   double moment = 0.0, shear = 0.0;
   for (std::size_t i = 0; i < stations.size(); ++i) {
     moment = std::max(moment, std::abs(out[i].moment + EI * k * k * std::sin(k * stations[i])) / (EI * k * k));
@@ -135,7 +135,7 @@ struct Wild {
 
   std::optional<Beam> b;
   std::vector<double> P, v, w, a;
-  std::vector<beam::ElementLoad> loads;
+  std::vector<recovery::ElementLoad> loads;
 };
 
 // Whatever stands inside the elements, moment, shear and axial force of two neighbours agree at their node when the
@@ -148,8 +148,8 @@ TEST(Recovery, SectionForcesPassThroughNodes) {
     stations.push_back(s.b->mesh().x(node));
   }
   stations.push_back(L);
-  std::vector<beam::Response> r;
-  beam::Recovery(*s.b, stations, 9.81).evaluate(s.v.data(), s.w.data(), s.a.data(), s.loads, r);
+  std::vector<recovery::Response> r;
+  recovery::Recovery(*s.b, stations, 9.81).evaluate(s.v.data(), s.w.data(), s.a.data(), s.loads, r);
   for (std::size_t i = 1; i + 1 < r.size(); i += 2) {
     EXPECT_NEAR(r[i].moment, r[i + 1].moment, 0.1) << "of some 1e6";
     EXPECT_NEAR(r[i].axial_force, r[i + 1].axial_force, 0.1);
@@ -169,9 +169,9 @@ TEST(Recovery, SectionForcesPassThroughNodes) {
 
 TEST(Recovery, StationsOutsideTheBeamAreRefused) {
   const Beam b(PETSC_COMM_SELF, span(4));
-  EXPECT_THROW(beam::Recovery(b, {20.1}, 0.0), InputError);
-  EXPECT_THROW(beam::Recovery(b, {5.0, -0.1}, 0.0), InputError);
-  EXPECT_THROW(beam::Recovery(b, {std::nan("")}, 0.0), InputError);
+  EXPECT_THROW(recovery::Recovery(b, {20.1}, 0.0), InputError);
+  EXPECT_THROW(recovery::Recovery(b, {5.0, -0.1}, 0.0), InputError);
+  EXPECT_THROW(recovery::Recovery(b, {std::nan("")}, 0.0), InputError);
 }
 
 // Statically determinate: the moment follows from statics alone, whatever EI does inside the one element.
@@ -181,11 +181,11 @@ TEST(Recovery, MomentOfAnUnevenBeam) {
   Beam b(PETSC_COMM_SELF, m);
   b.set_rayleigh({});
   std::vector<double> P(b.local_unknowns(), 0.0);
-  const std::vector<beam::ElementLoad> loads{test::add_load(b, 13.0, -1e5, 0.0, 0.0, P.data())};
+  const std::vector<recovery::ElementLoad> loads{test::add_load(b, 13.0, -1e5, 0.0, 0.0, P.data())};
   const auto v = test::static_solution(b, P);
   const std::vector<double> zero(v.size(), 0.0);
-  std::vector<beam::Response> r;
-  beam::Recovery(b, {5.0, 13.0, 18.0}, 0.0).evaluate(v.data(), zero.data(), zero.data(), loads, r);
+  std::vector<recovery::Response> r;
+  recovery::Recovery(b, {5.0, 13.0, 18.0}, 0.0).evaluate(v.data(), zero.data(), zero.data(), loads, r);
   EXPECT_NEAR(r[0].moment, 1e5 * 7 / 20 * 5, 1e-2);
   EXPECT_NEAR(r[1].moment, 1e5 * 7 / 20 * 13, 1e-2);
   EXPECT_NEAR(r[2].moment, 1e5 * 13 / 20 * 2, 1e-2);

@@ -100,7 +100,7 @@ TEST(Timoshenko, GreatShearStiffnessIsBernoulliEuler) {
   Case sheared(model);
   sheared.load(7.3, -1e5).load(38.0, -2e5, 3e4).weight(9.81).solve();
   for (const double x : {2.0, 7.3, 11.0, 19.9, 37.0, 38.5, 44.0}) {
-    const beam::Response a = plain.at(x), b = sheared.at(x);
+    const recovery::Response a = plain.at(x), b = sheared.at(x);
     EXPECT_NEAR(b.deflection, a.deflection, 1e-9 * 0.05) << x;
     EXPECT_NEAR(b.moment, a.moment, 1e-9 * 1e6) << x;
     EXPECT_NEAR(b.shear, a.shear, 1e-9 * 1e5) << x;

@@ -58,7 +58,7 @@ TEST(ViscousLag, MomentUnderAPassingForce) {
   }
 }
 
-beam::Recovery middle_of(const beam::Beam& beam) { return {beam, {0.5 * L}, 0.0}; }
+recovery::Recovery middle_of(const beam::Beam& beam) { return {beam, {0.5 * L}, 0.0}; }
 
 beam::Beam simple_span(int elements) {
   beam::BeamModel model;
@@ -74,10 +74,10 @@ beam::Beam simple_span(int elements) {
 // m + b dm/dt = c for c that rises and falls along straight lines, with any intervals, is followed exactly.
 TEST(ViscousLag, FollowsStraightLines) {
   const beam::Beam beam = simple_span(4);
-  const beam::Recovery recovery = middle_of(beam);
-  beam::LoadMovement movement(recovery);
-  beam::ViscousLag lag(recovery, movement, 0.3);
-  std::vector<beam::Response> response(1);
+  const recovery::Recovery recovery = middle_of(beam);
+  recovery::LoadMovement movement(recovery);
+  recovery::ViscousLag lag(recovery, movement, 0.3);
+  std::vector<recovery::Response> response(1);
   const auto c = [](double t) { return t < 1.0 ? 2.0 * t : 3.0 - t; };
   const auto m = [](double t) {
     const double at_one = 2.0 - 0.6 + 0.6 * std::exp(-1.0 / 0.3);
@@ -100,16 +100,16 @@ TEST(ViscousLag, FollowsStraightLines) {
 // A force that passes the station's element within an interval is followed as with intervals a hundred times shorter.
 TEST(ViscousLag, FollowsAForceWithinAnInterval) {
   const beam::Beam beam = simple_span(4);
-  const beam::Recovery recovery = middle_of(beam);
+  const recovery::Recovery recovery = middle_of(beam);
   const auto moment_at = [&](int intervals) {
-    beam::LoadMovement movement(recovery);
-    beam::ViscousLag lag(recovery, movement, 0.01);
-    std::vector<beam::Response> response(1);
+    recovery::LoadMovement movement(recovery);
+    recovery::ViscousLag lag(recovery, movement, 0.01);
+    std::vector<recovery::Response> response(1);
     const double from = 0.5 * L - 2.0, to = 0.5 * L + 4.0;
     for (int i = 0; i <= intervals; ++i) {
       const double t = 0.1 * i / intervals, x = from + (to - from) * i / intervals;
       const beam::Station s = beam.mesh().locate(x);
-      const beam::ElementLoad load{s.element, s.xi, 0.0, -F, 0.0, 60.0, 0.0, 0};
+      const recovery::ElementLoad load{s.element, s.xi, 0.0, -F, 0.0, 60.0, 0.0, 0};
       response[0] = {};
       response[0].moment = recovery.inside(0, x, load)[0];
       movement.advance(t, {load});
@@ -128,13 +128,13 @@ TEST(ViscousLag, FollowsAForceWithinAnInterval) {
 TEST(ViscousLag, AForceThatStoodOnTheStation) {
   constexpr double lag_b = 1e-4, h = 3e-4;
   const beam::Beam beam = simple_span(4);
-  const beam::Recovery recovery = middle_of(beam);
+  const recovery::Recovery recovery = middle_of(beam);
   for (const double speed : {60.0, -60.0})
     for (const bool left : {true, false}) {
-      beam::LoadMovement movement(recovery);
-      beam::ViscousLag lag(recovery, movement, lag_b);
-      std::vector<beam::Response> response(1);
-      const auto shear_with = [&](double t, const beam::ElementLoad& load) {
+      recovery::LoadMovement movement(recovery);
+      recovery::ViscousLag lag(recovery, movement, lag_b);
+      std::vector<recovery::Response> response(1);
+      const auto shear_with = [&](double t, const recovery::ElementLoad& load) {
         response[0] = recovery.inside_response(0, load);
         movement.advance(t, {load});
         lag.apply(response);
@@ -142,7 +142,7 @@ TEST(ViscousLag, AForceThatStoodOnTheStation) {
       };
       const auto at = [&](double x) {
         const beam::Station s = beam.mesh().locate(x);
-        return beam::ElementLoad{s.element, s.xi, 0.0, -F, 0.0, speed, 0.0, 0};
+        return recovery::ElementLoad{s.element, s.xi, 0.0, -F, 0.0, speed, 0.0, 0};
       };
       shear_with(0.0, at(0.5 * L - speed * h));
       const double before = shear_with(h, {left ? 1 : 2, left ? 1.0 : 0.0, 0.0, -F, 0.0, speed, 0.0, 0});
@@ -157,18 +157,19 @@ TEST(ViscousLag, AForceThatStoodOnTheStation) {
 // errors, and one at an edge, about which its wheel turns before it leaves the beam.
 TEST(ViscousLag, ALoadThatStandsOrTurnsAboutAnEdge) {
   const beam::Beam beam = simple_span(4);
-  const beam::Recovery recovery = middle_of(beam);
+  const recovery::Recovery recovery = middle_of(beam);
   for (const auto& [x, speed] : {std::pair{0.2 * L, 1e-13}, std::pair{0.7 * L, -1e-13}, std::pair{L, 60.0}}) {
-    beam::LoadMovement movement(recovery);
-    beam::ViscousLag lag(recovery, movement, 1e-3);
-    std::vector<beam::Response> response(1);
+    recovery::LoadMovement movement(recovery);
+    recovery::ViscousLag lag(recovery, movement, 1e-3);
+    std::vector<recovery::Response> response(1);
     double first = 0.0;
     for (int i = 0; i < 40; ++i) {
       const double sign = i % 2 == 0 ? 1.0 : -1.0;
       const beam::Station s = beam.mesh().locate(x + (x < L ? sign * 1e-14 : 0.0));
-      std::vector<beam::ElementLoad> loads = {{s.element, s.xi, 0.0, -F, 0.0, x < L ? sign * speed : speed, 0.0, 0}};
+      std::vector<recovery::ElementLoad> loads = {
+          {s.element, s.xi, 0.0, -F, 0.0, x < L ? sign * speed : speed, 0.0, 0}};
       if (x == L && i > 30) loads.clear();
-      response[0] = loads.empty() ? beam::Response() : recovery.inside_response(0, loads[0]);
+      response[0] = loads.empty() ? recovery::Response() : recovery.inside_response(0, loads[0]);
       movement.advance(1e-4 * i, loads);
       lag.apply(response);
       if (i == 0) first = response[0].shear;
@@ -182,11 +183,11 @@ TEST(ViscousLag, ALoadThatStandsOrTurnsAboutAnEdge) {
 // was there, also if it enters, leaves or turns back.
 TEST(LoadMovement, FindsPassages) {
   const beam::Beam beam = simple_span(4);
-  const beam::Recovery recovery(beam, {0.75 * L, 0.25 * L, 0.5 * L}, 0.0);
-  beam::LoadMovement movement(recovery);
+  const recovery::Recovery recovery(beam, {0.75 * L, 0.25 * L, 0.5 * L}, 0.0);
+  recovery::LoadMovement movement(recovery);
   const auto load_at = [&](double x, double speed, int source) {
     const beam::Station s = beam.mesh().locate(x);
-    return beam::ElementLoad{s.element, s.xi, 0.0, -F, 0.0, speed, 0.0, source};
+    return recovery::ElementLoad{s.element, s.xi, 0.0, -F, 0.0, speed, 0.0, source};
   };
   movement.advance(0.0, {load_at(0.2 * L, v, 1)});
   EXPECT_EQ(movement.interval(), 0.0);

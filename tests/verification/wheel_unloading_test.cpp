@@ -37,7 +37,7 @@ TEST(WheelUnloadingOfARun, IsThatOfItsStoredForces) {
             run.column(std::string("/vehicles/") + vehicle + "/wheel_" + wheel + "/normal_force");
         const double at_rest = force.front();
         raw = std::max(raw, lost(force, at_rest));
-        app::LowPass(20.0, 1e-3).apply(force);
+        run::LowPass(20.0, 1e-3).apply(force);
         filtered = std::max(filtered, lost(force, at_rest));
         double since = 0.0;
         for (const double f : force) {

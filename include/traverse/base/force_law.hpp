@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace traverse::multibody {
+namespace traverse::base {
 
 /// A piecewise linear function through points. Its first and last segments continue outside the points.
 class Polyline {
@@ -70,4 +70,4 @@ Tension tension(const ForceLaw& law, double elongation, double rate);
 /// Stored energy, J: the integral of the tension without the damper from 0 to the elongation.
 double stored_energy(const ForceLaw& law, double elongation);
 
-}  // namespace traverse::multibody
+}  // namespace traverse::base

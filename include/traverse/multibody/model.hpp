@@ -68,7 +68,7 @@ struct Spring {
   double damping = 0.0;                            // N s/m
   std::optional<double> free_length;               // m
   std::optional<double> preload;                   // N
-  std::optional<ForceLaw> law;                     // instead of stiffness and damping, over the elongation
+  std::optional<base::ForceLaw> law;               // instead of stiffness and damping, over the elongation
   std::optional<base::TimeFunction> winding;       // m, added to the free length over time: a rope on a winch
 };
 
@@ -77,10 +77,10 @@ struct Spring {
 struct TorsionSpring {
   std::string name;
   std::array<int, 2> bodies = {ground, ground};
-  double stiffness = 0.0;                      // N m/rad
-  double damping = 0.0;                        // N m s/rad
-  std::optional<double> free_angle;            // rad; empty: the angle at t = 0
-  std::optional<ForceLaw> law = std::nullopt;  // instead of stiffness and damping, over the twist
+  double stiffness = 0.0;                            // N m/rad
+  double damping = 0.0;                              // N m s/rad
+  std::optional<double> free_angle;                  // rad; empty: the angle at t = 0
+  std::optional<base::ForceLaw> law = std::nullopt;  // instead of stiffness and damping, over the twist
 };
 
 /// A force at the centre of mass of `body` and a moment on it over time. The opposite force acts at the centre of mass
@@ -103,5 +103,13 @@ struct MechanismModel {
   double gravity = 9.81;  // m/s2, along -y
   double gradient = 0.0;  // tan of the angle of the x axis: gravity has the component -gradient*gravity along x
 };
+
+// Names that were in this namespace before their folder had one, for programs that use them.
+using base::ForceLaw;
+using base::Polyline;
+using base::Side;
+using base::stored_energy;
+using base::Tension;
+using base::tension;
 
 }  // namespace traverse::multibody

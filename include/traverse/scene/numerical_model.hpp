@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace traverse::app {
+namespace traverse::scene {
 
 /// Vehicles as mechanisms (full), or linear where possible. automatic: linear if the search for the accuracy finds the
 /// difference negligible, until then mechanisms.
@@ -32,4 +32,4 @@ struct NumericalModel {
   bool operator==(const NumericalModel&) const = default;
 };
 
-}  // namespace traverse::app
+}  // namespace traverse::scene

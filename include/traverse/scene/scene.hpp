@@ -25,7 +25,7 @@
 #include "traverse/track/profile.hpp"
 #include "traverse/train/vehicle.hpp"
 
-namespace traverse::app {
+namespace traverse::scene {
 
 enum class Start { equilibrium, given };
 
@@ -206,4 +206,4 @@ std::vector<std::string> not_varied(options::Options given, const std::vector<st
 Scene read_scene_of_fit(const options::Options& given, const options::Fit& fit, const std::vector<double>& values,
                         bool modes);
 
-}  // namespace traverse::app
+}  // namespace traverse::scene
