@@ -1,8 +1,9 @@
 // A bridge and a train in a program, and the largest deflection. Over the installed library:
 //
-//   cmake --install build --prefix PREFIX
-//   cmake -S examples/simulate -B build-simulate -DCMAKE_PREFIX_PATH=PREFIX && cmake --build build-simulate
-//   build-simulate/bridge_and_train
+//   cmake --install build --prefix "$PWD/build/installed"
+//   cmake -S examples/simulate -B build/simulate -DCMAKE_PREFIX_PATH="$PWD/build/installed"
+//   cmake --build build/simulate
+//   build/simulate/bridge_and_train
 #include <cstdio>
 
 #include "traverse/simulate.hpp"

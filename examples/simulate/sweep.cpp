@@ -1,4 +1,4 @@
-// A thousand problems on the ranks of a communicator: mpirun -n 2 build-simulate/sweep. The resonance curve of a bridge
+// A thousand problems on the ranks of a communicator: mpirun -n 2 build/simulate/sweep. The resonance curve of a bridge
 // under ten axles. As bridge_and_train.cpp, which says how it is built.
 #include <cstdio>
 #include <vector>
