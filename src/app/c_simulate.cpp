@@ -32,7 +32,6 @@ struct Row {
   Number number;
 };
 
-using traverse::ProbeResult;
 using traverse::Result;
 
 constexpr Row rows[] = {

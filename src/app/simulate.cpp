@@ -138,7 +138,7 @@ Result run_alone(const Scene& scene, const std::vector<Observer*>& observers) {
         run.advance(observers.empty() ? run.end() : std::min(run.time() + run.interval(), run.end()));
         for (Observer* observer : observers) goes_on = observer->sample(run) && goes_on;
       }
-      const Result result = run.result();
+      Result result = run.result();
       if (!(result.linearisation_residual > chosen.scene.model.residual_limit)) {
         for (Observer* observer : observers) observer->end(result);
         return result;
