@@ -3,7 +3,6 @@
 #include <slepceps.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -11,12 +10,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
+#include "applications.hpp"
 #include "fast_mpi_init.hpp"
 #include "help.hpp"
 #include "results/origin.hpp"
@@ -51,43 +50,49 @@ int print_error(const traverse::Error& error) {
   return error.status();
 }
 
-/// A first word of the command line that starts a script in place of the program.
-struct Verb {
-  std::string_view name;
-  const char* script;  // beside the installed program, or in the folder scripts beside the build folder
-};
-constexpr Verb verbs[] = {{"check", "traverse-check"}};
-
-/// `traverse check ...` becomes traverse-check. Throws FileError if the script of a verb cannot be started; returns for
-/// all other words.
-void start_verb(int argc, char** argv) {
-  const auto* verb = argc < 2 ? std::end(verbs) : std::ranges::find(verbs, std::string_view(argv[1]), &Verb::name);
-  if (verb == std::end(verbs)) return;
+/// `traverse check ...` becomes the script traverse-check, beside the installed program, or in the folder scripts
+/// beside the build folder. Throws FileError if it cannot be started; returns for all other words.
+void start_check(int argc, char** argv) {
+  constexpr const char* check = "traverse-check";
+  if (argc < 2 || std::string_view(argv[1]) != "check") return;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe"), folder = program.parent_path();
   std::vector<char*> words(argv + 1, argv + argc);
   words.push_back(nullptr);
   setenv("TRAVERSE_BINARY", program.c_str(), 1);
-  for (const std::filesystem::path& script : {folder / verb->script, folder / "../scripts" / verb->script}) {
+  for (const std::filesystem::path& script : {folder / check, folder / "../scripts" / check}) {
     words.front() = const_cast<char*>(script.c_str());
     execv(script.c_str(), words.data());
   }
-  throw traverse::FileError(std::string(verb->script) +
+  throw traverse::FileError(std::string(check) +
                             ", which is installed beside the program, cannot be started: " + std::strerror(errno));
 }
 
-/// `traverse RESULTS.h5 ...` repeats the run that wrote the results file.
+/// The verb of `traverse VERB SCENE.yml ...`; empty: none.
+std::string verb_of(int argc, char** argv) { return argc > 1 && traverse::app::is_verb(argv[1]) ? argv[1] : ""; }
+
+/// `traverse VERB SCENE.yml ...` reads the scene file; `traverse RESULTS.h5 ...` repeats the run that wrote the results
+/// file.
 traverse::options::Input read_input(int argc, char** argv) {
-  if (argc < 2 || !traverse::results::is_hdf5(argv[1])) return traverse::options::read_input(argc, argv);
-  const std::vector<traverse::options::Entry> before = traverse::results::origin_of(argv[1]);
-  std::vector<char*> rest(argv, argv + argc);
-  rest.erase(rest.begin() + 1);
-  return traverse::options::read_input(argc - 1, rest.data(), before);
+  std::vector<std::string> words(argv, argv + argc);
+  std::vector<traverse::options::Entry> before;
+  if (const std::string verb = verb_of(argc, argv); !verb.empty()) {
+    words.erase(words.begin() + 1);
+    if (words.size() > 1 && !words[1].starts_with("-")) words.insert(words.begin() + 1, "-options_file");
+    if (verb == "describe") words.emplace_back("-describe");
+  } else if (argc > 1 && traverse::results::is_hdf5(argv[1])) {
+    before = traverse::results::origin_of(argv[1]);
+    words.erase(words.begin() + 1);
+  }
+  traverse::options::Arguments arguments(std::move(words));
+  return traverse::options::read_input(*arguments.argc(), *arguments.argv(), before);
 }
 
-int run(traverse::options::Input& input) {
+int run(traverse::options::Input& input, const std::string& verb) {
   try {
     traverse::options::put_into_petsc(input);
-    return traverse::app::run(PETSC_COMM_WORLD, traverse::scene::read_scene());
+    const traverse::scene::Scene scene = traverse::scene::read_scene();
+    traverse::app::check_verb(verb, scene);
+    return traverse::app::run(PETSC_COMM_WORLD, scene);
   } catch (const traverse::Error& error) {
     return print_error(error);
   } catch (const std::exception& failure) {  // the failure may be on this rank only, and other ranks wait for it
@@ -114,7 +119,7 @@ int main(int argc, char** argv) {
   traverse::run::print_signals(first_rank());
   traverse::app::start_lightly();
   try {
-    start_verb(argc, argv);
+    start_check(argc, argv);
     traverse::options::Input input = read_input(argc, argv);
     if (input.help) {
       const std::string text = traverse::app::help_about(input.help_about);
@@ -127,7 +132,7 @@ int main(int argc, char** argv) {
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
     traverse::run::install_handlers();  // replaces the handlers of PETSc
     traverse::run::print_signals(first_rank());
-    const int status = run(input);
+    const int status = run(input, verb_of(argc, argv));
     (void)SlepcFinalize();
     return after_output(status);
   } catch (const traverse::Error& error) {  // before MPI_Init

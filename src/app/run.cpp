@@ -1,10 +1,15 @@
-// Entry point of the program's analyses: claims the output files, chooses the numerical model and the number of MPI
-// ranks, and calls the analysis that the scene asks for, the check of the scene, or the study.
+// Entry point of the program: claims the output files and calls the application that the scene asks for, or describes
+// the scene. For one run it chooses the numerical model and the number of MPI ranks.
 #include "traverse/app/run.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "analyses.hpp"
+#include "applications.hpp"
 #include "base/notes.hpp"
 #include "check/check.hpp"
 #include "check/unusual.hpp"
@@ -60,26 +65,13 @@ void say_unusual(scene::Scene& scene) {
   results::print_unusual(scene.unusual);
 }
 
-}  // namespace
-
-int run(MPI_Comm comm, const scene::Scene& given) {
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  const results::Heartbeat heartbeat(given.quiet || rank != 0);
-  if (given.describe) return given.screen ? check_screen(comm, given) : check::run_check(comm, given);
-  if ((given.study || given.fit) && scene::has_own_contact_law(given))
-    throw InputError(fmt::format("{}: its scenes are read from the options, without contact laws of the program",
-                                 given.study ? "study_vary" : "fit_vary"));
-  scene::Scene asked = given;
-  const std::optional<results::Checkpoint> earlier = run::earlier_of(comm, asked);
-  results::Place place = run::claim_outputs(comm, asked);
-  if (!earlier) say_unusual(asked);
-  if (asked.fit) return fit::run_fit(comm, asked, std::move(place));
-  if (asked.study || asked.sweep) return study::run_study(comm, asked, std::move(place));
-  // The number is selected before the trial runs, and again for the model that they select.
-  const run::RankChoice at_first = ranks_for(comm, given, earlier);
-  return run::run_on_first(comm, at_first.ranks, [&](MPI_Comm some) {
-    scene::Scene scene = asked;
+/// One run, or another analysis of one scene. The number of ranks is selected before the trial runs, and again for the
+/// model that they select.
+int run_one(Request request) {
+  const std::optional<results::Checkpoint>& earlier = request.earlier;
+  const run::RankChoice at_first = ranks_for(request.comm, request.scene, earlier);
+  return run::run_on_first(request.comm, at_first.ranks, [&](MPI_Comm some) {
+    scene::Scene scene = request.scene;
     std::vector<std::string> notes;
     const error_control::Accuracy accuracy = choose_model(some, scene, notes);
     take_linear_vehicles(scene, notes);
@@ -89,9 +81,57 @@ int run(MPI_Comm comm, const scene::Scene& given) {
       run::SharedBeam shared(fewer, scene, notes);
       notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
       return run_of(scene.analysis)
-          ->run({fewer, scene, std::move(place), accuracy, shared, std::move(notes), earlier ? &*earlier : nullptr});
+          ->run({fewer, scene, std::move(request.place), accuracy, shared, std::move(notes),
+                 earlier ? &*earlier : nullptr});
     });
   });
+}
+
+constexpr Application applications[] = {
+    {"screen", "a screen (scene_analysis screen)", [](const scene::Scene& scene) { return scene.screen.has_value(); },
+     run_one, check_screen},
+    {"fit", "a fit (fit_vary)", [](const scene::Scene& scene) { return scene.fit.has_value(); },
+     [](Request request) { return fit::run_fit(request.comm, request.scene, std::move(request.place)); },
+     check::run_check},
+    {"study", "a study or a sweep (study_vary, find_option, sweep_speed)",
+     [](const scene::Scene& scene) { return scene.study || scene.sweep; },
+     [](Request request) { return study::run_study(request.comm, request.scene, std::move(request.place)); },
+     check::run_check},
+    {"run", "one run", [](const scene::Scene&) { return true; }, run_one, check::run_check},
+};
+
+}  // namespace
+
+const Application& application_of(const scene::Scene& scene) {
+  return *std::ranges::find_if(applications, [&](const Application& one) { return one.is_asked(scene); });
+}
+
+bool is_verb(std::string_view word) {
+  return word == "describe" || std::ranges::find(applications, word, &Application::verb) != std::end(applications);
+}
+
+void check_verb(std::string_view verb, const scene::Scene& scene) {
+  const auto* wanted = std::ranges::find(applications, verb, &Application::verb);
+  const Application& own = application_of(scene);
+  if (wanted != std::end(applications) && wanted->verb != own.verb)
+    throw InputError(fmt::format("traverse {}: {} is not {} but {}; traverse {} computes it", verb, scene.name,
+                                 wanted->what, own.what, own.verb));
+}
+
+int run(MPI_Comm comm, const scene::Scene& given) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  const results::Heartbeat heartbeat(given.quiet || rank != 0);
+  const Application& application = application_of(given);
+  if (given.describe) return application.describe(comm, given);
+  if ((given.study || given.fit) && scene::has_own_contact_law(given))
+    throw InputError(fmt::format("{}: its scenes are read from the options, without contact laws of the program",
+                                 given.study ? "study_vary" : "fit_vary"));
+  scene::Scene asked = given;
+  const std::optional<results::Checkpoint> earlier = run::earlier_of(comm, asked);
+  results::Place place = run::claim_outputs(comm, asked);
+  if (!earlier) say_unusual(asked);
+  return application.run({comm, asked, std::move(place), earlier});
 }
 
 }  // namespace traverse::app

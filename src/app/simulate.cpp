@@ -231,7 +231,8 @@ class Runs {
 
   Scene scene_of(std::size_t i) const {
     try {
-      for (const char* prefix : {"study_", "sweep_", "find_", "fit_", "screen_"})
+      for (const char* prefix :
+           {"study_", "sweep_", "find_", "fit_", "screen_", "describe", "restart", "help", "version"})
         for (const options::Entry& entry : cases_[i].problem.entries())
           if (entry.name.starts_with(prefix))
             throw InputError(fmt::format("{}: a problem is one run; simulate has lists of problems", entry.given()));

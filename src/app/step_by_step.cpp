@@ -21,10 +21,10 @@ void check_goes_in_time(const scene::Scene& scene) {
   const char* other = scene.study                                      ? "a study"
                       : scene.fit                                      ? "a fit"
                       : scene.sweep                                    ? "a sweep"
-                      : scene.describe                                 ? "-describe"
-                      : scene.find_option("restart") != nullptr        ? "-restart"
                       : scene.analysis != options::Analysis::transient ? "scene_analysis"
                                                                        : nullptr;
+  for (const char* option : {"-describe", "-restart", "-help", "-version"})
+    if (scene.find_option(option + 1) != nullptr) other = option;
   if (other != nullptr) throw InputError(fmt::format("a problem is one run in time; remove {}", other));
 }
 

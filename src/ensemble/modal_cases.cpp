@@ -6,9 +6,9 @@
 
 #include "engine/processor.hpp"
 #include "ensemble/engines.hpp"
-#include "ensemble/greatest_peaks.hpp"
 #include "ensemble/moving_force_limits.hpp"
 #include "integrate/modal_peaks.hpp"
+#include "modal_engine/greatest_peaks.hpp"
 #include "modal_engine/moving_force_batch.hpp"
 #include "run/signals.hpp"
 
@@ -90,7 +90,7 @@ std::vector<CaseResult> ModalEngine::run(std::size_t train, std::span<const Memb
 std::vector<CaseResult> ModalEngine::greatest(std::size_t train, std::span<const Member> members) {
   std::vector<ModalEngine*> all;
   std::vector<const modal_engine::MovingForcePassages*> passages;
-  std::vector<ForceRun> runs;
+  std::vector<modal_engine::ForceRun> runs;
   for (const Member& member : members) {
     auto* one = static_cast<ModalEngine*>(member.engine);
     const auto place = static_cast<std::size_t>(std::find(all.begin(), all.end(), one) - all.begin());
@@ -100,7 +100,7 @@ std::vector<CaseResult> ModalEngine::greatest(std::size_t train, std::span<const
     }
     runs.push_back({place, member.run.speed, one->cases_.duration(train, member.run.speed)});
   }
-  const auto peaks = greatest_peaks(passages, runs, scene().sweep->instants, width(), no_signal);
+  const auto peaks = modal_engine::greatest_peaks(passages, runs, scene().sweep->instants, width(), no_signal);
   std::vector<CaseResult> results(all.size());
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     results[i].peaks = peaks[i];

@@ -76,7 +76,8 @@ void append(const HelpGroup& group, std::string& out) {
 std::string everything() {
   std::string out =
       "traverse computes the motion of trains, vehicles and bridges.\n\n"
-      "  [mpirun -n N] traverse -options_file scene.yml [-options_file more.yml] [-option value ...]\n\n"
+      "  [mpirun -n N] traverse -options_file scene.yml [-options_file more.yml] [-option value ...]\n"
+      "  traverse run|study|fit|screen|describe scene.yml [-option value ...]    the same, if the scene asks for it\n\n"
       "In a YAML file nested keys join with underscores (beam: {spans: [25.0, 30.0]} is -beam_spans 25.0,30.0). SI "
       "units;\n"
       "x along the track from the bridge's left end, y upward. In lists value*count repeats. Later options override "

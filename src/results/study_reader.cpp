@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 #include <hdf5.h>
 
+#include <exception>
 #include <filesystem>
 #include <span>
+#include <utility>
 
+#include "base/broadcast.hpp"
 #include "base/digest.hpp"
 #include "hdf5.hpp"
 #include "isolated_read.hpp"
@@ -160,6 +163,22 @@ StoredStudy read_study(const std::string& path) {
 
 StoredStudy read_group(const std::string& path, const std::string& group) {
   return is_empty(path) ? StoredStudy() : isolated_read(path, [&] { return group_of(path, group); });
+}
+
+void read_to_resume(MPI_Comm comm, const std::string& option, const std::string& file, const std::string& others,
+                    const std::string& all, const std::function<std::string()>& read) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  std::string why;
+  try {
+    if (rank == 0) why = read();
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  why = base::broadcast(comm, std::move(why));
+  if (!why.empty())
+    throw InputError(
+        fmt::format("{}: {} contains {}: {}; without {} {} computed again", option, file, others, why, option, all));
 }
 
 }  // namespace traverse::results

@@ -1,6 +1,9 @@
 // Reads what an interrupted study or screen has stored in its results file.
 #pragma once
 
+#include <mpi.h>
+
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -30,5 +33,11 @@ inline constexpr const char* row_digest = "row_digest";  // the name of its data
 StoredStudy read_study(const std::string& path);
 /// Options, datasets and attributes of another group, such as "/screen", in the same form.
 StoredStudy read_group(const std::string& path, const std::string& group);
+
+/// Collective. Rank 0 reads the stored rows of what `option` continues (study_resume). `read` returns the reason why
+/// the file contains others ("other runs"), or an empty text. For a reason, or an error, InputError on all ranks; `all`
+/// is what is computed without the option: "all runs are".
+void read_to_resume(MPI_Comm comm, const std::string& option, const std::string& file, const std::string& others,
+                    const std::string& all, const std::function<std::string()>& read);
 
 }  // namespace traverse::results

@@ -5,7 +5,6 @@
 
 #include <numbers>
 
-#include "base/broadcast.hpp"
 #include "results/study_reader.hpp"
 #include "run/model_record.hpp"
 #include "run/process.hpp"
@@ -95,21 +94,11 @@ Problem read_problem(const scene::Scene& scene) {
 std::map<std::size_t, std::vector<double>> stored_rows(MPI_Comm comm, const Problem& problem) {
   std::map<std::size_t, std::vector<double>> rows;
   if (!problem.scene.screen->resume) return rows;
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  std::string why;
-  if (rank == 0) {
-    try {
-      rows = rows_in(problem, why);
-    } catch (const std::exception& error) {
-      why = error.what();
-    }
-  }
-  why = base::broadcast(comm, std::move(why));
-  if (!why.empty())
-    throw InputError(fmt::format(
-        "screen_resume: {} contains another screen: {}; without screen_resume all bridges are computed again",
-        problem.scene.output.file, why));
+  results::read_to_resume(comm, "screen_resume", problem.scene.output.file, "another screen", "all bridges are", [&] {
+    std::string why;
+    rows = rows_in(problem, why);
+    return why;
+  });
   return rows;
 }
 

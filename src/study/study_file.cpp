@@ -9,7 +9,6 @@
 #include <map>
 #include <string_view>
 
-#include "base/broadcast.hpp"
 #include "results/sensitivity.hpp"
 #include "results/study_statistics.hpp"
 #include "results/sweep.hpp"
@@ -97,22 +96,10 @@ void copy_finished(const results::StoredStudy& stored, results::StudyTable& tabl
 results::StoredStudy stored_of(MPI_Comm comm, const scene::Scene& scene, const results::RunModel& model) {
   results::StoredStudy stored;
   if (!scene.study || !scene.study->resume) return stored;
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  std::string why;
-  if (rank == 0) {
-    try {
-      stored = results::read_study(scene.output.file);
-      if (!stored.datasets.empty()) why = contradiction(stored, scene, model);
-    } catch (const std::exception& error) {
-      why = error.what();
-    }
-  }
-  why = base::broadcast(comm, std::move(why));
-  if (!why.empty())
-    throw InputError(
-        fmt::format("study_resume: {} contains other runs: {}; without study_resume all runs are computed again",
-                    scene.output.file, why));
+  results::read_to_resume(comm, "study_resume", scene.output.file, "other runs", "all runs are", [&] {
+    stored = results::read_study(scene.output.file);
+    return stored.datasets.empty() ? "" : contradiction(stored, scene, model);
+  });
   return stored;
 }
 

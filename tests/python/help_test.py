@@ -19,6 +19,11 @@ def asked(*words):
     return run.stdout
 
 
+def refused(*words):
+    run = subprocess.run([BINARY, *words, "-output_file", "none"], capture_output=True, text=True, cwd=SOURCE)
+    return run.returncode, run.stderr.strip()
+
+
 def options_in(text):
     return re.findall(r"^  -(\w+)", text, re.MULTILINE)
 
@@ -37,6 +42,27 @@ def completed(line):
     if run.returncode != 0 or run.stderr:
         raise AssertionError(run.stderr)
     return run.stdout.split()
+
+
+class Verbs(unittest.TestCase):
+    """traverse VERB SCENE.yml."""
+
+    def test_describe_and_run(self):
+        scene = "options/scenes/r3_sprung_mass.yml"
+        words = [BINARY, "describe", scene, "-output_file", "none"]
+        described = subprocess.run(words, capture_output=True, text=True, cwd=SOURCE, check=True).stdout
+        self.assertIn("r3_sprung_mass: no time steps are computed", described)
+        old = [BINARY, "-options_file", scene, "-check", "-output_file", "none"]
+        self.assertEqual(subprocess.run(old, capture_output=True, text=True, cwd=SOURCE, check=True).stdout, described)
+        self.assertEqual(refused("run", scene, "-ts_max_steps", "2"), (0, ""))
+
+    def test_what_a_scene_does_not_ask_for(self):
+        status, said = refused("study", "options/scenes/r3_sprung_mass.yml")
+        self.assertEqual(status, 2)
+        self.assertIn("is not a study or a sweep (study_vary, find_option, sweep_speed) but one run; traverse run computes it", said)
+        self.assertEqual(refused("run", "options/scenes/hslm_sweep.yml")[0], 2)
+        self.assertEqual(refused("fit")[0], 2)
+        self.assertIn("there is no such file", refused("run", "not_there.yml")[1])
 
 
 class Help(unittest.TestCase):

@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"YieldingEnd", {"-support_stiffness", "0,1.0e8"}, "a step of up to 1.8"},
         Case{"OnTheMoon", {"-gravity", "1.62"}, "on earth it is 9.81"},
         Case{"WithoutEffect", {"-load_speed", "30"}, "load_speed has no effect"}),
-    [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });
+    [](const testing::TestParamInfo<Case>& one) { return std::string(one.param.name); });
 
 /// A bridge under a force, without damping.
 constexpr const char* under_a_force = R"(

@@ -113,7 +113,7 @@ double deflection(double t) {
 /// A fit of EI, from 0.8 of its true value, to the record factor*deflection(t) + offset at the times t + shift.
 struct Measured {
   double factor = 1.0, shift = 0.0, offset = 0.0;
-  std::string words;
+  std::string words = {};
   std::string bounds = "1.0e11, 3.0e11";
   std::vector<std::string> options = {};
 };

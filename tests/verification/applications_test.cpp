@@ -215,7 +215,8 @@ TEST(Applications, OverheadCrane) {
   const double h = 1.0e-3;
   long steps = 0;
   for (std::size_t i = 0; i < time.size(); ++i) {
-    for (; steps * h < time[i] - 1e-9; ++steps) s = stepped(rate, static_cast<double>(steps) * h, s, h);
+    for (; static_cast<double>(steps) * h < time[i] - 1e-9; ++steps)
+      s = stepped(rate, static_cast<double>(steps) * h, s, h);
     (void)rate(time[i], s);
     const double sway = hook[3 * i] - carriage[3 * i];
     sway_error = std::max(sway_error, std::abs(sway - (s[0] - trolley(time[i]).first)));
@@ -245,7 +246,8 @@ TEST(Applications, PrecisionStage) {
   long steps = 0;
   const double h = 1.0e-5;
   for (std::size_t i = 0; i < time.size(); ++i) {
-    for (; steps * h < time[i] - 1e-9; ++steps) s = stepped(rate, static_cast<double>(steps) * h, s, h);
+    for (; static_cast<double>(steps) * h < time[i] - 1e-9; ++steps)
+      s = stepped(rate, static_cast<double>(steps) * h, s, h);
     const double error = carriage[3 * i] - carriage[0] - motion.value(time[i]);
     worst = std::max(worst, std::abs(error - (s[0] - motion.value(time[i]))));
     greatest = std::max(greatest, std::abs(error));

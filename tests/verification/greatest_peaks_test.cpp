@@ -1,6 +1,6 @@
-// The greatest peaks of many runs of several trains (ensemble/greatest_peaks.hpp) against the greatest of all runs,
+// The greatest peaks of many runs of several trains (modal_engine/greatest_peaks.hpp) against the greatest of all runs,
 // each computed by itself.
-#include "ensemble/greatest_peaks.hpp"
+#include "modal_engine/greatest_peaks.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,8 +56,8 @@ class GreatestPeaks : public testing::Test {
     }
     return found;
   }
-  std::vector<Peaks> found(const std::vector<ensemble::ForceRun>& runs) const {
-    return ensemble::greatest_peaks(passages_, runs, 20.0, 8, [] { return true; });
+  std::vector<Peaks> found(const std::vector<modal_engine::ForceRun>& runs) const {
+    return modal_engine::greatest_peaks(passages_, runs, 20.0, 8, [] { return true; });
   }
 
   std::unique_ptr<beam::Beam> beam_;
@@ -66,12 +66,12 @@ class GreatestPeaks : public testing::Test {
   std::vector<std::unique_ptr<MovingForcePassages>> trains_;
   std::vector<const MovingForcePassages*> passages_;
   std::vector<double> ends_;
-  std::vector<ensemble::ForceRun> runs_;
+  std::vector<modal_engine::ForceRun> runs_;
 };
 
 TEST_F(GreatestPeaks, AreThoseOfAllRuns) {
   std::vector<Peaks> all;
-  for (const ensemble::ForceRun& run : runs_)
+  for (const modal_engine::ForceRun& run : runs_)
     all.push_back(
         passages_[run.train]->peaks(std::vector{run.speed}, std::vector{run.end}, 20.0, [] { return true; })[0]);
   const std::vector<Peaks> some = found(runs_);
@@ -95,7 +95,7 @@ TEST_F(GreatestPeaks, AreThoseOfAllRuns) {
 
 TEST_F(GreatestPeaks, DoNotDependOnTheOrder) {
   const std::vector<Peaks> forward = found(runs_);
-  std::vector<ensemble::ForceRun> runs = runs_;
+  std::vector<modal_engine::ForceRun> runs = runs_;
   std::reverse(runs.begin(), runs.end());
   std::swap(runs[3], runs[50]);
   const std::vector<Peaks> other = found(runs);
@@ -108,9 +108,9 @@ TEST_F(GreatestPeaks, DoNotDependOnTheOrder) {
 
 // Of two equal trains both have the greatest peaks.
 TEST_F(GreatestPeaks, EqualOnesAreAllFound) {
-  std::vector<ensemble::ForceRun> runs = runs_;
+  std::vector<modal_engine::ForceRun> runs = runs_;
   passages_.push_back(passages_[1]);
-  for (const ensemble::ForceRun& run : runs_)
+  for (const modal_engine::ForceRun& run : runs_)
     if (run.train == 1) runs.push_back({3, run.speed, run.end});
   const std::vector<Peaks> peaks = found(runs);
   bool one_is_greatest = false;

@@ -99,7 +99,9 @@ TEST(Sensors, AccelerationIsThatOfThePath) {
       const double before = off;
       off = relative_difference(integral(integral(run(group + "acceleration_y"), interval), interval), path);
       testing::Test::RecordProperty(sensor + ("_" + text(interval)), text(off));
-      if (before > 0.0) EXPECT_LT(off, 0.5 * before) << sensor;
+      if (before > 0.0) {
+        EXPECT_LT(off, 0.5 * before) << sensor;
+      }
     }
     EXPECT_LT(off, 1e-5) << sensor;
   }

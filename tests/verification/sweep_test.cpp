@@ -122,13 +122,13 @@ TEST(SweepLowPassed, IsPromisedOfEveryRun) {
   const std::string train = bridge + "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
                                      "/options/vehicles/velaro.yml}}\n"
                                      "train: {vehicles: coach*2}\nsweep: {speed: [60.0, 84.0, 6.0]}\n";
-  for (const std::string& scene : {forces, train}) {
+  for (const std::string& yaml : {forces, train}) {
     Results fine = run_yaml(
-        scene,
+        yaml,
         limited +
             Values{{"ts_dt", "5e-4"}, {"beam_elements_per_span", "60"}, {"model_modes", "0"}, {"step_probes", "true"}});
     for (const char* modes : {"0", "auto"}) {
-      Results run = run_yaml(scene, limited + Values{{"accuracy", "1e-2"}, {"model_modes", modes}});
+      Results run = run_yaml(yaml, limited + Values{{"accuracy", "1e-2"}, {"model_modes", modes}});
       EXPECT_LT(run.attribute("/summary", "expected_error_acceleration_lowpass"), 1.25e-2) << modes;
       EXPECT_TRUE(std::isnan(run.attribute("/summary", "expected_error_acceleration"))) << modes;
       EXPECT_TRUE(std::string(modes) == "auto" || run.attribute("/sweep", "modes") == 0.0);
@@ -136,7 +136,7 @@ TEST(SweepLowPassed, IsPromisedOfEveryRun) {
       ASSERT_EQ(found.size(), exact.size());
       double worst = 0.0;
       for (std::size_t i = 0; i < found.size(); ++i) worst = std::max(worst, std::abs(found[i] / exact[i] - 1.0));
-      RecordProperty((scene == forces ? "forces_by_" : "train_by_") + std::string(modes), text(worst));
+      RecordProperty((yaml == forces ? "forces_by_" : "train_by_") + std::string(modes), text(worst));
       EXPECT_LT(worst, 1e-2) << modes;
     }
   }

@@ -8,7 +8,7 @@
 #include "base/passage_peaks.hpp"
 #include "modal_engine/moving_force_batch.hpp"
 
-namespace traverse::ensemble {
+namespace traverse::modal_engine {
 
 /// A run of one of several trains.
 struct ForceRun {
@@ -20,8 +20,8 @@ struct ForceRun {
 /// the greatest of all trains, and the greatest ratios of deflections to the static ones, are those of all runs. They
 /// do not depend on the order of the runs. samples: in a period of the fastest mode; width: runs in a batch, at most
 /// `engine::widest`. Empty if `proceed` returned false.
-std::vector<std::vector<base::ProbePeaks>> greatest_peaks(
-    const std::vector<const modal_engine::MovingForcePassages*>& trains, std::span<const ForceRun> runs, double samples,
-    std::size_t width, const std::function<bool()>& proceed);
+std::vector<std::vector<base::ProbePeaks>> greatest_peaks(const std::vector<const MovingForcePassages*>& trains,
+                                                          std::span<const ForceRun> runs, double samples,
+                                                          std::size_t width, const std::function<bool()>& proceed);
 
-}  // namespace traverse::ensemble
+}  // namespace traverse::modal_engine

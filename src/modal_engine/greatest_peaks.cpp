@@ -1,6 +1,6 @@
 // Bounds of all runs first. Then the runs with the largest bounds, which probably have the greatest peaks, and at last
 // all runs whose bounds exceed these peaks.
-#include "ensemble/greatest_peaks.hpp"
+#include "modal_engine/greatest_peaks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,12 @@
 
 #include "engine/speed_class.hpp"
 
-namespace traverse::ensemble {
+namespace traverse::modal_engine {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 // Peaks that equal the greatest one are found, so that the earliest of them is the same in any order of the runs.
 constexpr double not_quite = 1.0 - 1e-12;
-
-using modal_engine::responses;
 
 /// Replaces a peak by a greater one, or by the earlier one of two that are equal.
 void take_greater(base::Extreme& peak, const base::Extreme& other) {
@@ -26,8 +24,8 @@ void take_greater(base::Extreme& peak, const base::Extreme& other) {
 
 class GreatestPeaks {
  public:
-  GreatestPeaks(const std::vector<const modal_engine::MovingForcePassages*>& trains, std::span<const ForceRun> runs,
-                double samples, std::size_t width, const std::function<bool()>& proceed)
+  GreatestPeaks(const std::vector<const MovingForcePassages*>& trains, std::span<const ForceRun> runs, double samples,
+                std::size_t width, const std::function<bool()>& proceed)
       : trains_(trains),
         runs_(runs),
         samples_(samples),
@@ -156,7 +154,7 @@ class GreatestPeaks {
     }
   }
 
-  const std::vector<const modal_engine::MovingForcePassages*>& trains_;
+  const std::vector<const MovingForcePassages*>& trains_;
   std::span<const ForceRun> runs_;
   double samples_;
   std::size_t width_;
@@ -171,10 +169,10 @@ class GreatestPeaks {
 
 }  // namespace
 
-std::vector<std::vector<base::ProbePeaks>> greatest_peaks(
-    const std::vector<const modal_engine::MovingForcePassages*>& trains, std::span<const ForceRun> runs, double samples,
-    std::size_t width, const std::function<bool()>& proceed) {
+std::vector<std::vector<base::ProbePeaks>> greatest_peaks(const std::vector<const MovingForcePassages*>& trains,
+                                                          std::span<const ForceRun> runs, double samples,
+                                                          std::size_t width, const std::function<bool()>& proceed) {
   return GreatestPeaks(trains, runs, samples, width, proceed).find();
 }
 
-}  // namespace traverse::ensemble
+}  // namespace traverse::modal_engine
