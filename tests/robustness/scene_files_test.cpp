@@ -109,8 +109,9 @@ TEST_P(StudyFile, RunsToItsEnd) {
     return;
   }
   for (const double done : results("/study/finished")) EXPECT_EQ(done, 1.0);
-  if (outcome.out.find("statistics over") != std::string::npos)
+  if (outcome.out.find("statistics over") != std::string::npos) {
     EXPECT_GT(results("/study/statistics/peak_deflection_mean").size(), 0u);
+  }
 }
 INSTANTIATE_TEST_SUITE_P(Options, StudyFile, testing::ValuesIn(files_in("studies")), stem);
 
