@@ -26,9 +26,10 @@ from .program import environment, number_of_ranks
 def simulate(problems, observers=(), *, ranks=1, progress=None):
     """Computes problems in this process, and returns the greatest results of each run as an xarray.Dataset.
 
-    problems: one Problem, or a list. Problems that differ in the values of options only are computed together, with one
-        numerical model and in the lanes of the processor. If they differ in one number, it is their dimension and
-        coordinate; otherwise the dimension is `case`, with a coordinate for each option that differs.
+    problems: one Problem (or a scene: a path, a dictionary), or a list. Problems that differ in the values of options
+        only are computed together, with one numerical model and in the lanes of the processor. If they differ in one
+        number, it is their dimension and coordinate; otherwise the dimension is `case`, with a coordinate for each
+        option that differs.
     observers: functions of a `Passage`, called at t = 0 and at each sample (output_interval); they may read it and set
         forces. A function that returns False ends the run. Then problems are computed one after another, their vehicles
         as mechanisms.
@@ -40,17 +41,28 @@ def simulate(problems, observers=(), *, ranks=1, progress=None):
     problems, and diagnostics of runs by themselves: energy_residual, linearisation_residual, steps. attrs["model"]: how
     the first run was computed. Warns with UnusualInput. Raises Error, whose `results` are those computed before.
     """
-    single = isinstance(problems, Problem)
-    given = [problems] if single else list(problems)
+    single = isinstance(problems, (Problem, dict, str, os.PathLike))
+    given = [_problem(one) for one in ([problems] if single else problems)]
+    if not given:
+        raise places.Error("there is no problem to simulate", 2)
     if observers:
         functions = [observers] if callable(observers) else list(observers)
         results = [_observed(problem, functions) for problem in given]
-        results = xarray.concat(results, "run") if results else results
+        results = xarray.concat(results, "run")
     elif number_of_ranks(ranks) > 1:
         results = _on_ranks(given, ranks)
     else:
         results = _together(given, progress)
     return results.isel(run=0) if single else _with_options(results, given)
+
+
+def _problem(one):
+    """A Problem, or the problem of a scene: a path or a dictionary."""
+    if isinstance(one, Problem):
+        return one
+    if isinstance(one, (dict, str, os.PathLike)):
+        return Problem(one)
+    raise places.Error(f"{one!r} is not a problem; wanted: a Problem, the path of a scene file, or a dictionary", 2)
 
 
 def _together(problems, progress):

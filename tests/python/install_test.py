@@ -106,6 +106,9 @@ class Install(unittest.TestCase):
                         PKG_CONFIG_PATH=f"{path}:{os.environ.get('PKG_CONFIG_PATH', '')}")
         program = self.folder / "by_pkg_config_embed"
         succeed("c++", SOURCE / "examples/embed/embed.cpp", "-o", program, *shlex.split(flags))
+        sweep = self.folder / "by_pkg_config_sweep"
+        succeed("c++", "-std=c++20", SOURCE / "examples/simulate/sweep.cpp", "-o", sweep, *shlex.split(flags))
+        self.assertIn("1000 runs", succeed(sweep))
         self.runs_scenes(program, self.folder / "by_pkg_config")
 
     def test_the_program_and_its_scenes(self):

@@ -98,6 +98,8 @@ class Simulate(InFolder):
         self.refused(2, "a problem is one run", traverse.simulate, good.with_options(sweep_speed=[20.0, 30.0, 5.0]))
         self.refused(2, "finite", traverse.simulate, good.with_options(load_table=np.array([[0.0, 1.0], [1.0, np.nan]])))
         self.refused(2, "ranks", traverse.simulate, good, ranks=0)
+        self.refused(2, "no problem", traverse.simulate, [])
+        self.refused(2, "5 is not a problem", traverse.simulate, [good, 5])
 
     def test_the_other_results_of_a_failed_run(self):
         steps = {"ts_dt": 0.02, "ts_type": "rk", "beam": BRIDGE}  # unstable, but for the softest beam
