@@ -8,7 +8,7 @@ import xarray
 
 from . import places
 from .dataset import name_of, with_coordinates
-from .library import NUMBERS, Quantity, check, library, results_of
+from .shared_library import NUMBERS, Quantity, check, library, results_of
 from .problem import Problem, within
 
 _MOST_C_INT = 2**31 - 1

@@ -7,7 +7,7 @@ import os
 import numpy as np
 
 from . import words
-from .library import NUMBERS, check, library
+from .shared_library import NUMBERS, check, library
 
 
 class Problem:

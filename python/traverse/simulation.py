@@ -17,7 +17,7 @@ import xarray
 
 from . import places
 from .dataset import in_km_per_hour
-from .library import GO_ON, check, library, results_of
+from .shared_library import GO_ON, check, library, results_of
 from .passage import Passage
 from .problem import Problem, within
 from .program import environment, number_of_ranks
