@@ -12,6 +12,8 @@
 
 namespace traverse::app {
 
+inline constexpr int most_halvings = 4;  // of a selected time step that was too long
+
 /// Collective. Selects the parts of the numerical model that the scene does not prescribe, for the wanted accuracy.
 error_control::Accuracy choose_model(MPI_Comm comm, scene::Scene& scene, std::vector<std::string>& notes);
 

@@ -30,8 +30,6 @@
 namespace traverse::app {
 namespace {
 
-constexpr int most_halvings = 4;  // limit of halvings of a selected time step
-
 /// Whether a run must be repeated, and how. mechanisms: the residual of linear vehicles exceeded
 /// NumericalModel::residual_limit; shorter_steps: StepTooLong was thrown.
 enum class Retry { none, mechanisms, shorter_steps };

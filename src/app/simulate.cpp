@@ -13,13 +13,10 @@
 #include "base/bytes.hpp"
 #include "check/unusual.hpp"
 #include "ensemble/parallel_cases.hpp"
-#include "error_control/sweep_model.hpp"
 #include "options/data_file.hpp"
-#include "run/process.hpp"
 #include "run/signals.hpp"
 #include "step_by_step.hpp"
 #include "study/prepared_study.hpp"
-#include "study/study_runs.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse {
@@ -28,8 +25,6 @@ namespace {
 using app::StepByStep;
 using scene::Scene;
 using Indices = std::vector<std::size_t>;
-
-constexpr int most_halvings = 4;  // of a selected time step that was too long
 
 /// Cases that are computed together: the runs of a study, or one alone if no value differs.
 struct Group {
@@ -129,7 +124,7 @@ Result result_of(const results::StudyTable& table, std::size_t run, const std::s
 /// enough.
 Result run_alone(const Scene& scene, const std::vector<Observer*>& observers) {
   app::ChosenScene chosen = app::choose_for_one_run(scene);
-  for (int halvings = scene.step_open ? most_halvings : 0;;) {
+  for (int halvings = scene.step_open ? app::most_halvings : 0;;) {
     StepByStep run(chosen);
     try {
       for (Observer* observer : observers) observer->begin(run);
