@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "error_control/accuracy.hpp"
+#include "prepare.hpp"
 #include "results/checkpoint_file.hpp"
 #include "results/place.hpp"
 #include "run/shared_beam.hpp"
@@ -24,6 +25,7 @@ struct Job {
   const scene::Scene& scene;  // with all selected values
   results::Place place;
   const error_control::Accuracy& accuracy;
+  OpenChoice* open = nullptr;  // the choice of mesh and step, if the run is its last one
   run::SharedBeam& beam;
   std::vector<std::string> notes;
   const results::Checkpoint* earlier = nullptr;  // checkpoint that the run continues; null: none

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "error_control/choice_cache.hpp"
 #include "error_control/mode_mesh.hpp"
 #include "error_control/trial_runs.hpp"
 #include "run/deck_acceleration.hpp"
@@ -14,23 +13,43 @@
 namespace traverse::app {
 namespace {
 
-error_control::Choice try_models(MPI_Comm comm, scene::Scene scene, std::vector<std::string>& notes) {
+error_control::Choice try_models(MPI_Comm comm, scene::Scene scene, std::vector<std::string>& notes,
+                                 std::shared_ptr<error_control::ModelSearch>* open) {
   if (error_control::chooses_mode_mesh(scene)) return error_control::choose_mode_mesh(comm, scene, notes);
   if (error_control::chooses(scene)) error_control::set_low_pass(comm, scene, notes);
-  error_control::Choice choice = error_control::choose(comm, scene, notes);
+  error_control::Choice choice = error_control::choose(comm, scene, notes, open);
   choice.low_pass = scene.output.low_pass;
   return choice;
 }
 
 }  // namespace
 
-error_control::Accuracy choose_model(MPI_Comm comm, scene::Scene& scene, std::vector<std::string>& notes) {
+bool OpenChoice::add(const scene::NumericalModel& model, error_control::RunPeaks run) {
+  search_->add_last(model, std::move(run));
+  const double seconds = choice_.accuracy.seconds;
+  error_control::Choice now = search_->choice();
+  choice_.accuracy = std::move(now.accuracy);
+  choice_.accuracy.seconds = seconds;
+  choice_.model.elements = now.model.elements;
+  choice_.model.step = now.model.step;
+  if (search_->open()) return false;
+  for (const std::string& line : choice_.accuracy.lines()) notes_.push_back(line);
+  cache_.write(notes_, choice_);
+  return true;
+}
+
+error_control::Accuracy choose_model(MPI_Comm comm, scene::Scene& scene, std::vector<std::string>& notes,
+                                     std::optional<OpenChoice>* open) {
   error_control::ChoiceCache kept(comm, scene);
   error_control::Choice choice;
   std::vector<std::string> own;
   if (!kept.read(scene, own, choice)) {
-    choice = try_models(comm, scene, own);
-    if (choice.accuracy.measured) kept.write(own, choice);
+    std::shared_ptr<error_control::ModelSearch> search;
+    choice = try_models(comm, scene, own, open != nullptr ? &search : nullptr);
+    if (search)
+      open->emplace(std::move(search), std::move(kept), choice, own);
+    else if (choice.accuracy.measured)
+      kept.write(own, choice);
   }
   notes.insert(notes.end(), own.begin(), own.end());
   scene = error_control::with(scene, choice.model);

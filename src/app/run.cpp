@@ -73,7 +73,8 @@ int run_one(Request request) {
   return run::run_on_first(request.comm, at_first.ranks, [&](MPI_Comm some) {
     scene::Scene scene = request.scene;
     std::vector<std::string> notes;
-    const error_control::Accuracy accuracy = choose_model(some, scene, notes);
+    std::optional<OpenChoice> open;
+    const error_control::Accuracy accuracy = choose_model(some, scene, notes, &open);
     take_linear_vehicles(scene, notes);
     const run::RankChoice ranks = ranks_for(some, scene, earlier);
     if (const std::string& said = ranks.note.empty() ? at_first.note : ranks.note; !said.empty()) notes.push_back(said);
@@ -81,7 +82,7 @@ int run_one(Request request) {
       run::SharedBeam shared(fewer, scene, notes);
       notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
       return run_of(scene.analysis)
-          ->run({fewer, scene, std::move(request.place), accuracy, shared, std::move(notes),
+          ->run({fewer, scene, std::move(request.place), accuracy, open ? &*open : nullptr, shared, std::move(notes),
                  earlier ? &*earlier : nullptr});
     });
   });

@@ -31,8 +31,9 @@ namespace traverse::app {
 namespace {
 
 /// Whether a run must be repeated, and how. mechanisms: the residual of linear vehicles exceeded
-/// NumericalModel::residual_limit; shorter_steps: StepTooLong was thrown.
-enum class Retry { none, mechanisms, shorter_steps };
+/// NumericalModel::residual_limit; shorter_steps: StepTooLong was thrown; finer: the errors were not within the
+/// accuracy.
+enum class Retry { none, mechanisms, shorter_steps, finer };
 
 struct RunEnd {
   int status = 0;  // exit status of the program if the run is not repeated
@@ -52,6 +53,9 @@ struct ReadyRun {
   explicit ReadyRun(Job& given);
 
   bool is_continued() const { return job.earlier != nullptr; }
+  void reject_unfiltered() {
+    if (counting > 0.0 && !simulation.evaluation().filters_deck()) accuracy.estimates[run::low_passed].accepted = false;
+  }
 
   Job& job;
   int rank = 0;
@@ -73,15 +77,18 @@ ReadyRun::ReadyRun(Job& given)
                   .limits = !scene.limits.empty(),
                   .wheel_filter = true,
                   .deck_cutoff = counting,
-                  .trials_until = accuracy.covered_until},
+                  .filter_on_all = given.open != nullptr},
                  given.notes, earlier ? &*earlier : nullptr) {
   MPI_Comm_rank(job.comm, &rank);
-  if (earlier && scene.model.step && earlier->time_step < *scene.model.step) accuracy.reject_all();
+  if (earlier && scene.model.step && earlier->time_step < *scene.model.step) {
+    accuracy.reject_all();
+    job.open = nullptr;
+  }
   if (is_continued() && !(simulation.plan().end_time > job.earlier->time))
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  simulation.plan().end_time));
   for (const std::string& note : options::notes_on_unused(*scene.given)) job.notes.push_back(note);
-  if (counting > 0.0 && !simulation.evaluation().filters_deck()) accuracy.estimates[run::low_passed].accepted = false;
+  reject_unfiltered();
   if (is_continued()) {
     base::Archive archive(job.comm, job.earlier->of_ranks);
     simulation.keep(archive);
@@ -134,7 +141,7 @@ results::Recorder recorder_of(ReadyRun& ready, const run::Outputs& outputs) {
   results::Recorder recorder(job.comm, std::move(job.place), layout, run::attributes(job.comm, ready.scene),
                              ready.scene.options);
   recorder.of_scene(run::digest_of(ready.scene));
-  run::record_model(ready.scene, job.notes, recorder);
+  run::record_model(ready.scene, job.open == nullptr ? job.notes : std::vector<std::string>(), recorder);
   run::record_modes(job.beam, recorder);
   return recorder;
 }
@@ -161,7 +168,7 @@ class RecordedRun : private run::Observer {
   bool step(double t, long steps) override;
   void before_step(double t) override;
   void summarise(const std::string& ended);
-  std::vector<std::string> invalidate();
+  void find_errors();
   std::optional<norm::NormCheck> judge_by_norm(std::vector<results::Verdict>& verdicts);
   void print_notes_of_run(bool has_checkpoint) const;
   double wall_seconds() const { return before_ + std::chrono::duration<double>(Clock::now() - begin_).count(); }
@@ -183,7 +190,9 @@ class RecordedRun : private run::Observer {
   Clock::time_point begin_ = Clock::now();
   run::Requests asked_;
   bool reaches_end_ = false;
-  bool repeated_ = false;  // the run is repeated
+  bool repeated_ = false;            // the run is repeated with shorter steps
+  bool finer_ = false;               // the run is repeated with a finer model
+  std::vector<std::string> errors_;  // in words, if the run is the last one of its search
   run::Result result_;
 };
 
@@ -235,10 +244,12 @@ void RecordedRun::summarise(const std::string& ended) {
   results::Summary& summary = result_.summary;
   summary.end_time = reached_;
   summary.wall_seconds = wall;
-  const std::vector<std::string> invalid = invalidate();
+  if (ready_.job.open != nullptr) find_errors();
+  const std::string unsettled = ready_.accuracy.invalidate_at_end(result_.filter_unsettled);
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
-  const bool counts = !repeated_ && (!reaches_end_ || summary.linearisation_residual <= scene_.model.residual_limit);
+  const bool counts =
+      !repeated_ && !finer_ && (!reaches_end_ || summary.linearisation_residual <= scene_.model.residual_limit);
   std::vector<results::Verdict> verdicts;
   std::optional<norm::NormCheck> check;
   if (reaches_end_ && counts) {
@@ -251,18 +262,26 @@ void RecordedRun::summarise(const std::string& ended) {
   recorder_.finish(summary);
   progress_.done();
   if (prints() && counts) results::print_summary(summary, scene_.output.file);
-  for (const std::string& note : invalid)
-    if (prints() && counts && !note.empty()) fmt::print("  note: {}\n", note);
+  for (const std::string& line : errors_)
+    if (prints() && counts && !scene_.quiet) fmt::print("  {}\n", line);
+  if (prints() && counts && !unsettled.empty()) fmt::print("  note: {}\n", unsettled);
   if (prints() && check) check->print();
   if (prints()) results::print_verdicts(verdicts, scene_.unusual);
 }
 
-/// The error estimates that are invalid, in words.
-std::vector<std::string> RecordedRun::invalidate() {
-  error_control::Accuracy& accuracy = ready_.accuracy;
-  return {accuracy.invalidate_by_contact_loss(result_.losses), accuracy.invalidate_by_new_event(result_.new_event),
-          accuracy.invalidate_if_rougher(result_.roughness, scene_.accuracy),
-          accuracy.invalidate_at_end(result_.filter_unsettled)};
+/// Determines the errors of a run that is the last one of its search, and records them with the other notes.
+void RecordedRun::find_errors() {
+  Job& job = ready_.job;
+  if (reaches_end_ && result_.summary.linearisation_residual <= scene_.model.residual_limit) {
+    scene::NumericalModel model = scene_.model;
+    model.step = simulation_.plan().time_step;
+    finer_ = !job.open->add(model, {result_.peaks, result_.lost_contact, result_.summary.linearisation_residual, 0.0});
+    ready_.accuracy = job.open->choice().accuracy;
+    ready_.reject_unfiltered();
+    if (!finer_) errors_ = ready_.accuracy.lines();
+  }
+  job.notes.insert(job.notes.end(), errors_.begin(), errors_.end());
+  run::record_notes(job.notes, recorder_);
 }
 
 /// The comparison with EN 1991-2 if the scene requests it; its verdicts are appended to `verdicts`.
@@ -331,6 +350,7 @@ RunEnd RecordedRun::run() {
   noted_.reset();
   if (reaches_end_ && result_.summary.linearisation_residual > scene_.model.residual_limit)
     return {0, Retry::mechanisms, {}, 0.0};
+  if (finer_) return {0, Retry::finer, {}, 0.0};
   run::check_deflection(comm, scene_, result_.summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, result_.peaks))
@@ -349,6 +369,14 @@ RunEnd run_once(Job& job, results::Repeated repeated, bool may_shorten) {
   return run.run();
 }
 
+/// Gives the scene the mesh and the step of a repeated run.
+void refine(scene::Scene& scene, const results::Repeated& repeated) {
+  scene::NumericalModel model = scene.model;
+  model.elements = repeated.elements;
+  model.step = repeated.step;
+  scene = error_control::with(std::move(scene), model);
+}
+
 }  // namespace
 
 int run_in_time(Job job) {
@@ -357,14 +385,16 @@ int run_in_time(Job job) {
   error_control::Accuracy accuracy = job.accuracy;
   results::Repeated repeated = is_continued ? job.earlier->repeated : results::Repeated();
   int halvings = is_continued || !scene.step_open ? 0 : most_halvings;
-  std::optional<run::SharedBeam> own;  // of a run that is repeated
-  if (repeated.with_mechanisms) {
+  std::optional<run::SharedBeam> own;                                              // of a run that is repeated
+  if (repeated.with_mechanisms) scene.model.vehicles = scene::VehicleModel::full;  // instead of linear vehicles
+  if (repeated.step > 0.0) refine(scene, repeated);
+  if (repeated.with_mechanisms || repeated.step > 0.0) {
     std::vector<std::string> ignored;
-    scene.model.vehicles = scene::VehicleModel::full;  // instead of linear vehicles
     own.emplace(job.comm, scene, ignored);
   }
   while (true) {
-    Job one{job.comm, scene, std::move(job.place), accuracy, own ? *own : job.beam, std::move(job.notes), job.earlier};
+    Job one{job.comm,   scene, std::move(job.place), accuracy, job.open, own ? *own : job.beam, std::move(job.notes),
+            job.earlier};
     const RunEnd end = run_once(one, repeated, halvings > 0);
     if (end.again == Retry::none) return end.status;
     if (end.again == Retry::mechanisms) {
@@ -374,10 +404,20 @@ int run_in_time(Job job) {
           "the residual of the linearised vehicles exceeded {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
           scene.model.residual_limit)};
+    } else if (end.again == Retry::finer) {
+      const scene::NumericalModel& finer = job.open->choice().model;
+      repeated.elements = finer.elements;
+      repeated.step = *finer.step;
+      refine(scene, repeated);
+      job.notes = {fmt::format(
+          "the run is repeated with {}steps of {:g} s: its errors were not within the "
+          "accuracy of {:g}",
+          finer.elements > 0 ? fmt::format("{} elements and ", finer.elements) : "", *finer.step, scene.accuracy)};
     } else {
       --halvings;
       scene.model.step = 0.5 * end.step;
       accuracy.reject_all();
+      job.open = nullptr;
       job.notes = {fmt::format("the run is repeated with steps of {:g} s, without error estimates: {}",
                                *scene.model.step, end.why)};
     }

@@ -40,13 +40,10 @@ ChosenScene choose_for_one_run(scene::Scene scene) {
 
 StepByStep::StepByStep(ChosenScene chosen) : scene_(std::move(chosen.scene)), shared_(PETSC_COMM_SELF, scene_, notes_) {
   const double cutoff = prepare(scene_, chosen.accuracy, shared_, notes_);
-  simulation_.emplace(scene_, shared_,
-                      run::Wants{.stored = true,
-                                 .limits = scene_.has_run_limits(),
-                                 .wheel_filter = true,
-                                 .deck_cutoff = cutoff,
-                                 .trials_until = chosen.accuracy.covered_until},
-                      notes_);
+  simulation_.emplace(
+      scene_, shared_,
+      run::Wants{.stored = true, .limits = scene_.has_run_limits(), .wheel_filter = true, .deck_cutoff = cutoff},
+      notes_);
   outputs_.emplace(run::outputs_of({scene_, simulation_->system().fleet(), shared_.bridge()}));
   if (shared_.beam) shared_.beam->release_matrices();
   simulation_->begin({this});

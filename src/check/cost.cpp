@@ -92,7 +92,7 @@ StepSeconds step_seconds(const FirstRun& run) {
 
 /// Of trial runs with the first step.
 integrate::StepCount trial_steps(const FirstRun& run) {
-  return run.simulation->passage().count_steps(run.trial_window, run.first_step,
+  return run.simulation->passage().count_steps(run.simulation->plan().end_time, run.first_step,
                                                error_control::trial_steps_per_sample * run.first_step);
 }
 

@@ -13,7 +13,6 @@
 #include "error_control/multibody_step_search.hpp"
 #include "error_control/sweep_model.hpp"
 #include "error_control/trial_runs.hpp"
-#include "error_control/trial_window.hpp"
 #include "modes/modes.hpp"
 #include "scene_at_rest.hpp"
 #include "study/study_scenes.hpp"
@@ -81,9 +80,8 @@ void FirstRun::choose_mesh_and_step() {
   }
   std::vector<std::string> ignored;
   const double end = run::Passage(scene, *shared, ignored).plan().end_time;
-  trial_window = error_control::initial_window(scene, end);
   const error_control::FirstSteps steps =
-      error_control::first_steps(scene, shared->omega ? shared->omega->first : 0.0, trial_window);
+      error_control::first_steps(scene, shared->omega ? shared->omega->first : 0.0, end);
   const std::string mesh = scene.by_given_modes() ? "given modes"
                                                   : fmt::format("{} elements a {}", error_control::mesh_of(scene),
                                                                 scene.beam->track ? "sleeper bay" : "span");
@@ -94,10 +92,10 @@ void FirstRun::choose_mesh_and_step() {
                                scene.model.step
                                    ? fmt::format("steps of {:g} s, as given", *scene.model.step)
                                    : fmt::format("initial steps of {:.3g} s: {}", steps.first, steps.why)));
-  choice.push_back(
-      fmt::format("trial runs of the first {:.3g} s refine or coarsen them until the errors of the peaks are within "
-                  "accuracy {:g}",
-                  trial_window, scene.accuracy));
+  choice.push_back(fmt::format(
+      "trial runs begin with longer steps and elements, and refine them until the errors of the peaks are within "
+      "accuracy {:g}",
+      scene.accuracy));
   first_step = scene.model.step.value_or(steps.first);
   longest_step = scene.model.step.value_or(steps.longest);
   scene.model.step = first_step;

@@ -41,13 +41,9 @@ CaseResult SingleEngine::run(const scene::Scene& scene, std::size_t train, const
   // Stored factorisations of other runs have shifts that are equal except for rounding: results would depend on the
   // earlier runs of this rank.
   cases_.shared().statics->delete_step_factors();
-  const double covered_until = run.speed > 0.0 ? scene.model.trial_distance / run.speed : scene.model.trial_distance;
-  run::Simulation simulation(scene, cases_.shared(),
-                             {.limits = scene.has_run_limits(),
-                              .wheel_filter = true,
-                              .deck_cutoff = cases_.cutoff_frequency(),
-                              .trials_until = covered_until},
-                             ignored);
+  run::Simulation simulation(
+      scene, cases_.shared(),
+      {.limits = scene.has_run_limits(), .wheel_filter = true, .deck_cutoff = cases_.cutoff_frequency()}, ignored);
   run::ObserverBy until_signal({}, [&](double t, long) {
     if (reached) reached(t);
     return run::caught_signal() == 0;
@@ -65,7 +61,7 @@ CaseResult SingleEngine::run(const scene::Scene& scene, std::size_t train, const
   const run::Result found = simulation.result();
   static_cast<base::PassagePeaks&>(result) = found.passage_peaks();
   for (const results::Verdict& verdict : found.verdicts) result.evaluated.push_back(verdict.found);
-  result.outside_trials = found.has_uncovered_event(scene.model.trials_lost_contact ? covered_until : 0.0);
+  result.outside_trials = found.lost_contact && !scene.model.trials_lost_contact;
   // Trains whose wheels keep their distances have the same static deflections in all runs.
   std::vector<double>& statics = static_deflection_[train];
   if (statics.empty() || !simulation.system().weights().pass_together(simulation.evaluation().paths()))

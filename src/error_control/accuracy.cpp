@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
+#include <cmath>
+#include <numbers>
 
 #include "error_control/initial_guess.hpp"
 #include "error_control/model_search.hpp"
@@ -16,7 +17,6 @@
 #include "error_control/trial_runs.hpp"
 #include "results/stage.hpp"
 #include "run/deck_acceleration.hpp"
-#include "run/extrapolation_check.hpp"
 #include "run/passage.hpp"
 #include "traverse/options/input.hpp"
 
@@ -40,22 +40,13 @@ void limit_to_active_window(const Scene& scene, scene::NumericalModel& model) {
 }
 
 void describe(const Scene& scene, const ModelSearch& search, const Choice& choice, std::vector<std::string>& notes) {
-  const Accuracy& result = choice.accuracy;
-  const std::string mesh = scene.by_given_modes() ? ""
-                                                  : fmt::format("{} elements a {}, ", choice.model.elements,
-                                                                scene.beam->track ? "sleeper bay" : "span");
-  notes.push_back(fmt::format("accuracy {:g}: {}{}steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
-                              scene.accuracy, mesh, choice.model.method.empty() ? "" : choice.model.method + " with ",
-                              *choice.model.step, search.trials(), search.window(), result.seconds));
-  std::string expected;
-  for (std::size_t q = 0; q < quantities; ++q)
-    if (result.estimates[q].present && result.estimates[q].accepted)
-      expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", run::quantity_names[q],
-                              result.estimates[q].expected);
-  if (!expected.empty()) notes.push_back("estimated errors of the peaks: " + expected);
-  for (std::size_t q = 0; q < quantities; ++q)
-    if (result.estimates[q].present && !result.estimates[q].accepted)
-      notes.push_back(not_estimated(static_cast<run::Quantity>(q), result.estimates[q]));
+  const std::string mesh =
+      scene.by_given_modes() ? "" : fmt::format("{} elements a {}, ", choice.model.elements, unit_of_mesh(scene));
+  notes.push_back(fmt::format("accuracy {:g}: {}steps of {:g} s; {} trial runs took {:.2g} s", scene.accuracy, mesh,
+                              *choice.model.step, search.trials(), choice.accuracy.seconds));
+  if (search.open()) return;
+  std::vector<std::string> lines = choice.accuracy.lines();
+  std::ranges::move(lines, std::back_inserter(notes));
 }
 
 }  // namespace
@@ -135,7 +126,7 @@ bool damps_all_modes(const Scene& scene) {
          (damping.rayleigh && std::max(damping.rayleigh->first, damping.rayleigh->second) > 0.0);
 }
 
-Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
+Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<ModelSearch>* open) {
   Choice none{scene.model, {}, {}};
   if (takes_modes_for_damping(scene))
     if (Choice by_modes = modes_for_damping(comm, scene, notes); by_modes.model.modes > 0) return by_modes;
@@ -160,24 +151,21 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
   set_low_pass(comm, known, ignored);
   const double end = run::Passage(known, shared, ignored).plan().end_time;
-  std::optional<ModelSearch> search(std::in_place, comm, known, shared, end);
+  auto search = std::make_shared<ModelSearch>(comm, known, shared, end);
   try {
-    search->run();
+    search->run(open != nullptr);
   } catch (const ResidualTooLarge& linear) {
     notes.push_back(
         fmt::format("vehicles are not linearised: the residual would be {:.1g} of their weights", linear.residual));
     known.model.vehicles = scene::VehicleModel::full;
-    search.emplace(comm, known, shared, end);
-    search->run();
+    search = std::make_shared<ModelSearch>(comm, known, shared, end);
+    search->run(open != nullptr);
   }
   Choice choice = search->choice();
-  if (choice.model.vehicles == scene::VehicleModel::automatic) {
-    choice.model.vehicles = scene::VehicleModel::linear;
-    choice.model.residual_limit = search->residual_limit();
-  }
   limit_to_active_window(scene, choice.model);
   choice.accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   describe(scene, *search, choice, notes);
+  if (search->open()) *open = std::move(search);
   return choice;
 }
 

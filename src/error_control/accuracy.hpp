@@ -1,10 +1,11 @@
 // Chooses mesh and step for the option `accuracy` as far as the user left them open.
 //
-// Trial runs compute the first part of the scene, until its first vehicle has crossed the first spans, with several
-// meshes and steps. Each is halved until the changes determine the errors of deflection, acceleration, moment and wheel
-// force and their orders. A quantity whose error does not converge is reported without an estimate.
+// Trial runs compute the whole scene with meshes and steps that are refined until the changes of deflection,
+// acceleration, moment and wheel force from one run to the next are small enough. A quantity whose error does not
+// converge is reported without an estimate.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::error_control {
+
+class ModelSearch;
 
 /// Whether mesh and step are chosen for this quantity: accuracy_of contains it, or accuracy_of is not given; then shear
 /// is excluded, and axial quantities are included only if trains push the beam along x. Low-passed accelerations are
@@ -47,8 +50,10 @@ void set_low_pass(MPI_Comm comm, scene::Scene& scene, std::vector<std::string>& 
 const options::Entry* adaptive_step_option(const scene::Scene& scene);
 
 /// Collective. Chooses mesh, step and tolerances that the scene does not prescribe, and returns the model. Appends the
-/// choice to `notes`. Throws the InputError that the scene's own run would throw.
-Choice choose(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes);
+/// choice to `notes`. Throws the InputError that the scene's own run would throw. open: if it is given, the last run of
+/// the search may be left to the caller, with the search in it.
+Choice choose(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes,
+              std::shared_ptr<ModelSearch>* open = nullptr);
 
 /// The scene with twice the elements in every span (or sleeper bay) and half the step.
 scene::Scene refined(const scene::Scene& scene);

@@ -1,26 +1,37 @@
-// Selects the speeds of trial passages, and repeats the search with half the accuracy if the errors of the first search
-// were too large.
+// Searches mesh and step on whole passages at the slowest, a middle and the fastest speeds, side by side, then a method
+// with fewer solves in each step.
 #include "error_control/batch_model.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
-#include "engine/processor.hpp"
+#include "base/one_step_methods.hpp"
 #include "engine/speed_class.hpp"
 #include "error_control/accuracy.hpp"
-#include "error_control/batch_choice.hpp"
-#include "error_control/trial_runs.hpp"
+#include "error_control/batch_trial_runs.hpp"
+#include "error_control/companion_search.hpp"
+#include "error_control/initial_guess.hpp"
+#include "error_control/linearisation_error.hpp"
+#include "error_control/search_constants.hpp"
+#include "error_control/sweep_model.hpp"
 #include "results/stage.hpp"
+#include "run/step_cost.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::error_control {
+
+using scene::NumericalModel;
+
 namespace {
 
 constexpr std::size_t min_runs = 4, trial_lanes = 4;
-// Share of the accuracy in the first and the second search.
-constexpr std::array shares = {1.0, 0.5};
+
+/// The reason why nothing was chosen.
+struct NotChosen {
+  std::string why;
+};
 
 bool open(const scene::Scene& scene) {
   return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.model.step && scene.model.modes == 0 &&
@@ -28,18 +39,16 @@ bool open(const scene::Scene& scene) {
          scene.find_option("ts_type") == nullptr;
 }
 
-/// Groups of at most `most` neighbouring speeds of one step group, around each of the given relative positions in
-/// `speeds`.
-std::vector<std::vector<double>> speeds_around(const std::vector<double>& speeds, std::initializer_list<double> places,
-                                               std::size_t most) {
+/// Groups of neighbouring speeds of one step group, around the slowest, a middle and the fastest speed.
+std::vector<std::vector<double>> trial_speeds(const std::vector<double>& speeds) {
   std::vector<std::vector<double>> groups;
-  for (const double place : places) {
+  for (const double place : {0.0, 0.5, 1.0}) {
     const auto at = static_cast<std::size_t>(place * static_cast<double>(speeds.size() - 1));
     const int number = engine::speed_class(speeds[at]);
     std::vector<double> group;
-    for (std::size_t i = at; i < speeds.size() && group.size() < most; ++i)
+    for (std::size_t i = at; i < speeds.size() && group.size() < trial_lanes; ++i)
       if (engine::speed_class(speeds[i]) == number) group.push_back(speeds[i]);
-    for (std::size_t i = at; i > 0 && group.size() < most; --i)
+    for (std::size_t i = at; i > 0 && group.size() < trial_lanes; --i)
       if (engine::speed_class(speeds[i - 1]) == number) group.push_back(speeds[i - 1]);
     std::sort(group.begin(), group.end());
     if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
@@ -47,54 +56,166 @@ std::vector<std::vector<double>> speeds_around(const std::vector<double>& speeds
   return groups;
 }
 
-std::string text_of(const scene::Scene& scene, const std::array<ErrorEstimate, run::quantities>& estimates) {
-  PeakErrors errors{};
-  for (std::size_t q = 0; q < run::quantities; ++q) errors[q] = estimates[q].expected;
-  return error_control::text_of(scene, errors);
+/// The sweep's scene at its fastest speed.
+scene::Scene fastest(const scene::Scene& sweep) {
+  scene::Scene scene = at_speed(sweep, sweep.sweep->speeds.back());
+  scene.sweep.reset();
+  return scene;
 }
 
-TrialSpeeds trial_speeds(const std::vector<double>& speeds) {
-  const std::size_t n = speeds.size() - 1;
-  TrialSpeeds trials = {
-      speeds_around(speeds, {0.0, 1.0}, trial_lanes), {}, speeds_around(speeds, {0.5}, engine::widest)};
-  if (n > 0) trials.mixed = {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}};
-  return trials;
+/// The length of a passage, m: to the last wheel's exit at the fastest speed, and the tail.
+double length_of_passage(const scene::Scene& scene) {
+  double length = 0.0;
+  for (const double x : scene::wheels_at_start(scene)) length = std::max(length, scene.beam->length() - x);
+  return scene.end_time ? *scene.end_time * scene.train.speed : length + scene.tail.value_or(0.0) * scene.train.speed;
+}
+
+class BatchCompanions : public Companions {
+ public:
+  explicit BatchCompanions(const scene::Scene& scene)
+      : fastest_(fastest(scene)),
+        duration_(length_of_passage(fastest_) / fastest_.train.speed),
+        trials_(scene, trial_speeds(scene.sweep->speeds), length_of_passage(fastest_)) {}
+
+  bool run(const Discretisation& model) override {
+    return std::ranges::all_of(results(model),
+                               [](const engine::BatchResult& one) { return one.failure == engine::none; });
+  }
+  PeakErrors change(const Discretisation& coarse, const Discretisation& fine) override {
+    return difference(trials_.scene(), results(coarse), results(fine));
+  }
+  double weight(std::size_t q) const override {
+    // Without damping a moment is a sum of 1/n^2 over all modes, of which a step resolves those below a frequency.
+    return q == run::moment && !damps_high_modes(trials_.scene()) ? search::weight_of_undamped_sum : 1.0;
+  }
+  double seconds(const Discretisation& model) const override {
+    return duration_ / model.step * run::step_seconds(fastest_, {}, model.elements);
+  }
+  int mesh_of_at_least(int elements) const override { return aligned_mesh(fastest_, 2 * ((elements + 1) / 2)); }
+
+  NumericalModel model_of(const Discretisation& one, const char* method = base::methods().front().name) const {
+    NumericalModel model = trials_.scene().model;
+    model.elements = one.elements;
+    model.step = one.step;
+    model.modes = 0;
+    model.method = method;
+    model.vehicles = scene::VehicleModel::linear;
+    return model;
+  }
+  BatchTrialRuns& trials() { return trials_; }
+  const scene::Scene& fastest_scene() const { return fastest_; }
+  double duration() const { return duration_; }  // s, of the fastest passage
+
+ private:
+  const std::vector<engine::BatchResult>& results(const Discretisation& model) { return trials_.run(model_of(model)); }
+
+  scene::Scene fastest_;
+  double duration_;
+  BatchTrialRuns trials_;
+};
+
+SearchTask task_of(const scene::Scene& scene, BatchCompanions& runs) {
+  SearchTask task;
+  task.accuracy = scene.accuracy;
+  for (std::size_t q = 0; q < run::quantities; ++q) task.wanted[q] = is_controlled(scene, q);
+  scene::Scene first = runs.fastest_scene();
+  set_first_mesh(first);
+  task.fine.elements = mesh_of(first);
+  task.coarse.elements = task.fine.elements / 2;
+  const double omega = runs.trials().first_omega(runs.model_of({task.fine.elements, 1.0}));
+  const FirstSteps steps = first_steps(runs.fastest_scene(), omega, runs.duration());
+  task.coarse.step = std::min(search::first_ratio * steps.first, 2.0 * steps.longest);
+  task.fine.step = 0.5 * task.coarse.step;
+  task.most_elements = search::max_in_a_span;
+  return task;
+}
+
+/// The cheapest method with fewer solves in each step, and its step, whose peaks are within the accuracy too; their
+/// errors are returned in `errors`.
+NumericalModel with_cheaper_method(BatchCompanions& runs, const Discretisation& found, PeakErrors& errors) {
+  const scene::Scene& scene = runs.trials().scene();
+  const NumericalModel exact = runs.model_of(found);
+  const auto solves = [](const base::MethodRow& method, double step) { return method.solves() / step; };
+  NumericalModel best = exact;
+  double least = solves(base::methods().front(), found.step);
+  for (const base::MethodRow& method : base::methods().subspan(1)) {
+    // With one solve in each step wheel forces have errors where the step length changes.
+    if (method.solves() == 1.0 && controls_forces_only(scene)) continue;
+    for (const double factor : search::batch_steps) {
+      const NumericalModel other = runs.model_of({found.elements, factor * found.step}, method.name);
+      if (solves(method, *other.step) >= least) break;
+      PeakErrors changes = difference(scene, runs.trials().run(other), runs.trials().run(exact));
+      const double one_solve = method.solves() > 1.0 ? 1.0 : search::one_solve;
+      for (std::size_t q = 0; q < run::quantities; ++q)
+        changes[q] = errors[q] + one_solve *
+                                     (q == run::wheel_force && one_solve > 1.0 ? search::one_solve_force : 1.0) *
+                                     changes[q];
+      if (greatest(changes) > scene.accuracy) continue;
+      best = other;
+      least = solves(method, *other.step);
+      errors = changes;
+      break;
+    }
+  }
+  return best;
+}
+
+Choice search_batches(const scene::Scene& scene) {
+  BatchCompanions runs(scene);
+  const SearchTask task = task_of(scene, runs);
+  CompanionSearch search(runs, task);
+  search.run();
+  for (std::size_t q = 0; q < run::quantities; ++q)
+    if (task.wanted[q] && !search.why_not(q).empty())
+      throw NotChosen{fmt::format("{}: {}", run::quantity_names[q], search.why_not(q))};
+  PeakErrors errors = search.errors();
+  Choice choice{with_cheaper_method(runs, search.model(), errors), {}, {}};
+  if (any_contact_loss(runs.trials().run(choice.model))) throw NotChosen{"wheels lose contact"};
+  if (scene.model.vehicles == scene::VehicleModel::automatic) {
+    const double residual = runs.trials().residual(choice.model);
+    choice.model.residual_limit =
+        may_exceed(residual, scene)
+            ? measured_residual_limit(PETSC_COMM_SELF, with(runs.fastest_scene(), runs.model_of(search.model())))
+            : default_residual_limit(scene);
+    if (residual > choice.model.residual_limit)
+      throw NotChosen{fmt::format("the residual of linearised vehicles is {:.1g} of their weights", residual)};
+    for (double& error : errors) error += std::min(residual, default_residual_limit(scene));
+  }
+  choice.model.step_probes = true;
+  choice.model.local_compliance = true;
+  choice.accuracy.measured = true;
+  for (std::size_t q = 0; q < run::quantities; ++q) {
+    const bool present = !run::by_elements_only(q) || q == run::shear_force;
+    choice.accuracy.estimates[q] = {present, task.wanted[q], errors[q],
+                                    task.wanted[q] ? "" : why_not_controlled(scene, q)};
+  }
+  return choice;
 }
 
 }  // namespace
 
-std::optional<Choice> choose_batch_model(const scene::Scene& given, std::vector<std::string>& notes) {
-  const std::vector<double>& speeds = given.sweep->speeds;
-  if (!open(given) || given.sweep->lanes == 0 || std::max(given.sweep->runs, speeds.size()) < min_runs)
+std::optional<Choice> choose_batch_model(const scene::Scene& scene, std::vector<std::string>& notes) {
+  if (!open(scene) || scene.sweep->lanes == 0 || std::max(scene.sweep->runs, scene.sweep->speeds.size()) < min_runs)
     return std::nullopt;
   const results::Stage stage("batched trial runs");
   const options::WithoutMonitors without_monitors;
   const auto reject = [&](const std::string& why) {
     notes.push_back("batched trial runs found no common mesh and step: " + why);
+    return std::nullopt;
   };
-  scene::Scene scene = given;
-  for (const double share : shares) {
-    scene.accuracy = share * given.accuracy;
-    if (share < 1.0) notes.push_back(fmt::format("second search, with an accuracy of {:g}:", scene.accuracy));
-    try {
-      BatchChoice chooser(scene, trial_speeds(speeds));
-      Choice choice = chooser.choose();
-      notes.push_back(fmt::format("batched runs: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
-                                  choice.model.elements, choice.model.method, *choice.model.step));
-      notes.push_back("estimated errors of the peaks: " + text_of(given, choice.accuracy.estimates));
-      return choice;
-    } catch (const BatchChoice::NotChosen& none) {
-      reject(none.why);
-      if (!none.not_converged) return std::nullopt;
-    } catch (const BatchTrialRuns::Refused& refused) {
-      reject(refused.why);
-      return std::nullopt;
-    } catch (const Error& failed) {
-      reject(failed.what());  // the single runs will report this error too, if it is their own
-      return std::nullopt;
-    }
+  try {
+    Choice choice = search_batches(scene);
+    notes.push_back(fmt::format("batched runs: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
+                                choice.model.elements, choice.model.method, *choice.model.step));
+    notes.push_back(choice.accuracy.lines().front());
+    return choice;
+  } catch (const NotChosen& none) {
+    return reject(none.why);
+  } catch (const BatchTrialRuns::Refused& refused) {
+    return reject(refused.why);
+  } catch (const Error& failed) {
+    return reject(failed.what());  // the single runs will report this error too, if it is their own
   }
-  return std::nullopt;
 }
 
 }  // namespace traverse::error_control

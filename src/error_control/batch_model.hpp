@@ -11,9 +11,9 @@
 
 namespace traverse::error_control {
 
-/// Varies open meshes, steps and methods on the first part of passages at slow and at fast speeds until a finer one
-/// changes the peaks by a part of the accuracy only, and checks the choice on whole passages. Appends the choice, or
-/// the reason against it, to `notes`. The result is the same on every rank.
+/// Refines mesh and step of passages at slow, middle and fast speeds until the errors are within the accuracy, and
+/// tries methods with fewer solves. Appends the choice, or the reason against it, to `notes`. The result is the same on
+/// every rank.
 std::optional<Choice> choose_batch_model(const scene::Scene& given, std::vector<std::string>& notes);
 
 }  // namespace traverse::error_control

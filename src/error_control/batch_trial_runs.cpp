@@ -51,10 +51,8 @@ bool any_contact_loss(const std::vector<BatchResult>& runs) {
   return std::any_of(runs.begin(), runs.end(), [](const BatchResult& run) { return run.contact_losses > 0.0; });
 }
 
-BatchTrialRuns::BatchTrialRuns(scene::Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
-                               const BatchTrialRuns* previous)
-    : scene_(std::move(scene)),
-      previous_(previous != nullptr && previous->scene_.beam->spans == scene_.beam->spans ? previous : nullptr) {
+BatchTrialRuns::BatchTrialRuns(scene::Scene scene, const std::vector<std::vector<double>>& speeds, double distance)
+    : scene_(std::move(scene)) {
   for (const std::vector<double>& group : speeds) {
     std::vector<ensemble::LaneRun>& runs = groups_.emplace_back();
     for (const std::uint64_t seed : scene_.sweep->seeds)
@@ -65,31 +63,20 @@ BatchTrialRuns::BatchTrialRuns(scene::Scene scene, const std::vector<std::vector
 }
 
 const std::vector<BatchResult>& BatchTrialRuns::run(const NumericalModel& model) {
-  run_at_once({&model, 1});
-  return find(model)->results;
-}
-
-void BatchTrialRuns::run_at_once(std::span<const NumericalModel> models) {
-  std::vector<std::vector<CaseBatch::Ready>> ready;
-  std::vector<NumericalModel> new_models;
-  for (const NumericalModel& model : models) {
-    if (find(model) != nullptr || std::find(new_models.begin(), new_models.end(), model) != new_models.end()) continue;
-    new_models.push_back(model);
-    check_memory(model);
-    std::vector<CaseBatch::Ready>& groups = ready.emplace_back();
-    for (const std::vector<ensemble::LaneRun>& runs : groups_)
-      groups.push_back(setup(model).lanes->ready(runs, steps_of(model)));
-  }
-  const auto results_of = [&](std::size_t i) { return run_all(ready[i], steps_of(new_models[i])); };
-  std::vector<std::future<std::vector<BatchResult>>> others;
-  for (std::size_t i = 1; i < new_models.size(); ++i) others.push_back(std::async(std::launch::async, results_of, i));
-  for (std::size_t i = 0; i < new_models.size(); ++i) {
-    StoredRuns stored{new_models[i], i == 0 ? results_of(i) : others[i - 1].get(), 0.0};
-    for (const BatchResult& result : stored.results)
-      if (result.failure == engine::none)
-        stored.residual = std::max(stored.residual, setup(new_models[i]).lanes->residual(result));
-    stored_.push_back(std::move(stored));
-  }
+  if (const StoredRuns* known = find(model)) return known->results;
+  check_memory(model);
+  CaseBatch& lanes = *setup(model).lanes;
+  const CaseBatch::Steps steps = steps_of(model);
+  std::vector<std::future<std::vector<BatchResult>>> groups;
+  for (const std::vector<ensemble::LaneRun>& runs : groups_)
+    groups.push_back(std::async(std::launch::async,
+                                [&, ready = lanes.ready(runs, steps)] { return run_group(ready, runs, steps); }));
+  StoredRuns stored{model, {}, 0.0};
+  for (std::future<std::vector<BatchResult>>& group : groups)
+    std::ranges::move(group.get(), std::back_inserter(stored.results));
+  for (const BatchResult& result : stored.results)
+    if (result.failure == engine::none) stored.residual = std::max(stored.residual, lanes.residual(result));
+  return stored_.emplace_back(std::move(stored)).results;
 }
 
 void BatchTrialRuns::check_memory(const NumericalModel& model) const {
@@ -110,19 +97,15 @@ CaseBatch::Steps BatchTrialRuns::steps_of(const NumericalModel& model) const {
   return steps;
 }
 
-/// Runs the batches of one model. Its accelerations are filtered run by run, because one place per step is a different
-/// time interval in each run.
-std::vector<BatchResult> BatchTrialRuns::run_all(const std::vector<CaseBatch::Ready>& groups,
-                                                 const CaseBatch::Steps& steps) const {
-  std::vector<BatchResult> results;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const std::vector<ensemble::LaneRun>& runs = groups_[g];
-    const double spacing = CaseBatch::spacing(steps, runs.front().speed);
-    std::vector<BatchResult> group_results = groups[g].run();
-    for (std::size_t i = 0; i < group_results.size() && !steps.stored.empty(); ++i)
-      filter_stored(group_results[i], scene_.output.probes.size(), *scene_.output.low_pass, spacing / runs[i].speed);
-    std::move(group_results.begin(), group_results.end(), std::back_inserter(results));
-  }
+/// Runs a batch. Its accelerations are filtered run by run, because one place per step is a different time interval in
+/// each run.
+std::vector<BatchResult> BatchTrialRuns::run_group(const CaseBatch::Ready& ready,
+                                                   const std::vector<ensemble::LaneRun>& runs,
+                                                   const CaseBatch::Steps& steps) const {
+  std::vector<BatchResult> results = ready.run();
+  const double spacing = CaseBatch::spacing(steps, runs.front().speed);
+  for (std::size_t i = 0; i < results.size() && !steps.stored.empty(); ++i)
+    filter_stored(results[i], scene_.output.probes.size(), *scene_.output.low_pass, spacing / runs[i].speed);
   return results;
 }
 
@@ -139,8 +122,7 @@ BatchTrialRuns::Setup& BatchTrialRuns::setup(const NumericalModel& model) {
   if (slot) return *slot;
   slot = std::make_unique<Setup>();
   slot->scene = with(scene_, model);
-  if (const std::optional<beam::Rayleigh> rayleigh = damping())
-    slot->scene.damping = {{{rayleigh->a, rayleigh->b}}, {}, {}};
+  if (damping_) slot->scene.damping = {{{damping_->a, damping_->b}}, {}, {}};
   std::vector<std::string> ignored;
   slot->shared.emplace(PETSC_COMM_SELF, slot->scene, ignored);
   slot->shared->damp(slot->scene, first_omega_ == 0.0, ignored);

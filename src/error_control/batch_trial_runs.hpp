@@ -1,12 +1,10 @@
 // Batched trial runs of a train over the bridge (passages) with several numerical models.
 #pragma once
 
-#include <array>
 #include <deque>
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,14 +27,11 @@ class BatchTrialRuns {
   /// speeds: groups of runs; the speeds of a group are in one step group, or the slowest is first. distance: length of
   /// every passage, m. A group of one speed also runs over the tracks of the scene's sweep, as many as there are lanes,
   /// with its own track last.
-  /// previous: trial runs whose damping is used here too if the bridge is the same; they must outlive this object.
-  BatchTrialRuns(scene::Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
-                 const BatchTrialRuns* previous = nullptr);
+  BatchTrialRuns(scene::Scene scene, const std::vector<std::vector<double>>& speeds, double distance);
 
-  /// The results of a model's runs, which are stored. Throws Refused if the runs cannot be computed in batches.
+  /// The results of a model's runs, which are stored. Each group has its own thread. Throws Refused if the runs cannot
+  /// be computed in batches.
   const std::vector<engine::BatchResult>& run(const scene::NumericalModel& model);
-  /// Computes the models that are not stored yet, each in its own thread.
-  void run_at_once(std::span<const scene::NumericalModel> models);
   /// The first frequency of the bridge, rad/s, with the mesh of this model or an earlier one.
   double first_omega(const scene::NumericalModel& model) {
     setup(model);
@@ -64,20 +59,16 @@ class BatchTrialRuns {
   const StoredRuns* find(const scene::NumericalModel& model) const;
   void check_memory(const scene::NumericalModel& model) const;
   ensemble::CaseBatch::Steps steps_of(const scene::NumericalModel& model) const;
-  std::vector<engine::BatchResult> run_all(const std::vector<ensemble::CaseBatch::Ready>& groups,
-                                           const ensemble::CaseBatch::Steps& steps) const;
+  std::vector<engine::BatchResult> run_group(const ensemble::CaseBatch::Ready& ready,
+                                             const std::vector<ensemble::LaneRun>& runs,
+                                             const ensemble::CaseBatch::Steps& steps) const;
   Setup& setup(const scene::NumericalModel& model);
-  /// The damping of the first mesh, used for all meshes.
-  std::optional<beam::Rayleigh> damping() const {
-    return !damping_ && previous_ != nullptr ? previous_->damping_ : damping_;
-  }
 
   scene::Scene scene_;
-  const BatchTrialRuns* previous_;
   std::vector<std::vector<ensemble::LaneRun>> groups_;
   std::map<int, std::unique_ptr<Setup>> setups_;  // the key is the number of elements
   std::deque<StoredRuns> stored_;                 // a deque, because references to entries must remain valid
-  std::optional<beam::Rayleigh> damping_;
+  std::optional<beam::Rayleigh> damping_;         // of the first mesh, used for all meshes
   double first_omega_ = 0.0;
 };
 

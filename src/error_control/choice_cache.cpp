@@ -71,8 +71,8 @@ bool is_possible(const Choice& choice, const scene::Scene& scene) {
   return within(model.elements, scene.beam ? 1.0 : 0.0, most) && within(model.modes, 0, scene::most_elements) &&
          (!model.step || within(*model.step, options::least_quantity, scene.end_time.value_or(largest))) &&
          is_integrator(model.method) && model.vehicles <= scene::VehicleModel::automatic &&
-         within(model.residual_limit, 0.0, endless) && within(model.trial_distance, 0.0, endless) &&
-         within(model.window_tolerance, -1.0, largest) && within(choice.low_pass.value_or(0.0), 0.0, largest);
+         within(model.residual_limit, 0.0, endless) && within(model.window_tolerance, -1.0, largest) &&
+         within(choice.low_pass.value_or(0.0), 0.0, largest);
 }
 
 bool ChoiceCache::read(const scene::Scene& scene, std::vector<std::string>& notes, Choice& choice) const {

@@ -5,13 +5,8 @@
 
 #include <algorithm>
 
-#include "run/extrapolation_check.hpp"
-
 namespace traverse::error_control {
 namespace {
-
-constexpr const char* what_to_do =
-    "-accuracy_whole makes trial runs as long as the run, -accuracy_report shows the errors";
 
 std::string with_underscores(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
@@ -52,51 +47,27 @@ void Accuracy::merge(const Accuracy& other) {
   }
 }
 
-bool Accuracy::has_estimates() const {
-  return measured && std::any_of(estimates.begin(), estimates.end(),
-                                 [](const ErrorEstimate& p) { return p.present && p.accepted; });
-}
-
-std::string Accuracy::invalidate_by_contact_loss(const std::vector<double>& losses) {
-  const auto new_losses =
-      std::count_if(losses.begin(), losses.end(), [&](double t) { return !lost_contact || t > covered_until; });
-  if (new_losses == 0 || !has_estimates()) return {};
-  reject_all();
-  return fmt::format("error estimates withdrawn: wheels lost contact {} times{}, which happened in no trial run; {}",
-                     new_losses, lost_contact ? fmt::format(" after {:.3g} s", covered_until) : "", what_to_do);
-}
-
-std::string Accuracy::invalidate_by_new_event(const std::string& what) {
-  if (what.empty() || !has_estimates()) return {};
-  reject_all();
-  return fmt::format("error estimates withdrawn: {}, which happened in no trial run, as these ended at {:.3g} s; {}",
-                     what, covered_until, what_to_do);
-}
-
-// Within a step a curve of frequency omega changes its slope by (omega h)^2, and its error is (omega h)^4.
-std::string Accuracy::invalidate_if_rougher(double times, double wanted) {
-  if (!measured || !(times > run::ExtrapolationCheck::smooth)) return {};
-  std::string names;
-  for (std::size_t q = 0; q < run::quantities; ++q) {
-    ErrorEstimate& estimate = estimates[q];
-    if (!estimate.present || !estimate.accepted) continue;
-    estimate.expected *= times * times;
-    estimate.accepted = estimate.expected <= wanted;
-    if (!estimate.accepted) names += fmt::format("{}{}", names.empty() ? "" : ", ", run::quantity_names[q]);
-  }
-  if (names.empty()) return {};
-  return fmt::format(
-      "error estimates withdrawn: {}: after {:.3g} s, where trial runs ended, accelerations or wheel forces change "
-      "within steps {:.2g} times as much as before; {}",
-      names, covered_until, times, what_to_do);
-}
-
 std::string Accuracy::invalidate_at_end(bool unsettled) {
   ErrorEstimate& estimate = estimates[run::low_passed];
   if (!unsettled || !measured || !estimate.present || !estimate.accepted) return {};
   estimate.accepted = false;
   return "error estimate withdrawn: low-passed acceleration: its peak is at the end of the run, where the filter "
          "lacks the later signal; a longer scene_tail may resolve it";
+}
+
+std::vector<std::string> Accuracy::lines() const {
+  std::vector<std::string> list;
+  std::string expected;
+  for (std::size_t q = 0; q < run::quantities; ++q) {
+    if (!estimates[q].present) continue;
+    if (estimates[q].accepted)
+      expected +=
+          fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", run::quantity_names[q], estimates[q].expected);
+    else
+      list.push_back(not_estimated(static_cast<run::Quantity>(q), estimates[q]));
+  }
+  if (!expected.empty()) list.insert(list.begin(), "estimated errors of the peaks: " + expected);
+  return list;
 }
 
 std::vector<std::pair<std::string, double>> Accuracy::expected() const {

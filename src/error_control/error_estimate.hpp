@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,31 +42,19 @@ struct Accuracy {
   std::array<ErrorEstimate, multibody_quantities> multibody;  // without a bridge
   ErrorEstimate frequencies;                                  // estimate for natural frequencies
   bool lost_contact = false;                                  // wheels lost contact in trial runs
-  static constexpr double end_of_run = std::numeric_limits<double>::infinity();
-  double covered_until = end_of_run;  // s of the run, covered by trial runs
-  /// After a run with contact losses at these times, s: rejects all estimates if trial runs did not cover some of them.
-  /// Returns the note, or "".
-  std::string invalidate_by_contact_loss(const std::vector<double>& losses);
-  /// After a run with a contact event that trial runs did not cover, in words: rejects all estimates. Returns the note,
-  /// or "".
-  std::string invalidate_by_new_event(const std::string& what);
-  /// After a run whose curves change within steps `times` as much as in trial runs: multiplies the errors by times^2
-  /// and rejects estimates that exceed `wanted`. Returns the note, or "".
-  std::string invalidate_if_rougher(double times, double wanted);
   /// After a complete run: rejects the estimate of low-passed accelerations if their peak is within the unsettled end.
   /// Returns the note, or "".
   std::string invalidate_at_end(bool unsettled);
   void reject_all();
   /// Accepts an estimate only if both do, with the larger error.
   void merge(const Accuracy& other);
-  bool has_estimates() const;  // for a scene with a bridge
+  /// The expected errors in words, and the quantities of a scene with a bridge that have none, a line each.
+  std::vector<std::string> lines() const;
   /// Name in the results file and expected error of each accepted estimate.
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time of the choice
 
-  void keep(base::Bytes& bytes) {
-    bytes(measured, estimates, multibody, frequencies, lost_contact, covered_until, seconds);
-  }
+  void keep(base::Bytes& bytes) { bytes(measured, estimates, multibody, frequencies, lost_contact, seconds); }
 };
 
 }  // namespace traverse::error_control

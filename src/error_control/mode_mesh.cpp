@@ -10,7 +10,6 @@
 #include <map>
 #include <numeric>
 
-#include "error_control/error_model.hpp"
 #include "error_control/search_constants.hpp"
 #include "error_control/trial_runs.hpp"
 #include "modes/modes.hpp"

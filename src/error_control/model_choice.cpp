@@ -31,8 +31,8 @@ bool is_node(const beam::BeamModel& beam, double x) {
 
 void Choice::keep(base::Bytes& bytes) {
   bytes(model.modes, model.elements, model.step, model.method, model.vehicles, model.residual_limit,
-        model.trial_distance, model.trials_lost_contact, model.window_tolerance, model.local_compliance,
-        model.step_kinks, model.step_probes, accuracy, low_pass);
+        model.trials_lost_contact, model.window_tolerance, model.local_compliance, model.step_kinks, model.step_probes,
+        accuracy, low_pass);
 }
 
 Scene with(Scene scene, const scene::NumericalModel& model) {
@@ -58,7 +58,6 @@ scene::NumericalModel finer(const scene::NumericalModel& one, const scene::Numer
   if (other.method != one.method) model.method = base::methods().front().name;
   if (other.vehicles == scene::VehicleModel::full) model.vehicles = scene::VehicleModel::full;
   model.residual_limit = std::min(one.residual_limit, other.residual_limit);
-  model.trial_distance = std::min(one.trial_distance, other.trial_distance);
   model.trials_lost_contact |= other.trials_lost_contact;
   model.local_compliance |= other.local_compliance;
   model.step_probes |= other.step_probes;

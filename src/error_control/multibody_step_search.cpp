@@ -1,5 +1,5 @@
-// Chooses the time step of a mechanism without a bridge: the whole run is repeated with halved steps, and positions,
-// joint reactions and contact forces are compared at equal instants.
+// Chooses the time step of a mechanism without a bridge: positions, joint reactions and contact forces of whole runs
+// are compared at equal instants.
 #include "error_control/multibody_step_search.hpp"
 
 #include <fmt/format.h>
@@ -10,8 +10,7 @@
 #include <map>
 #include <optional>
 
-#include "error_control/error_model.hpp"
-#include "error_control/search_constants.hpp"
+#include "error_control/companion_search.hpp"
 #include "results/stage.hpp"
 #include "run/simulation.hpp"
 #include "run/step_cost.hpp"
@@ -52,19 +51,28 @@ double size_of(const Curves& curves, std::size_t kind) {
   return size;
 }
 
-/// Runs of a whole scene with several steps.
-class Runs {
+/// Runs of a whole scene with several steps. The first numbers of PeakErrors are those of the MultibodyQuantity.
+class Runs : public Companions {
  public:
   Runs(MPI_Comm comm, const scene::Scene& scene) : scene_(scene), shared_(comm, scene, ignored_) {
     scene_.quiet = true;
     scene_.output.interval = first_multibody_step(scene);
   }
 
-  double seconds(double step) const { return *scene_.end_time / step * run::step_seconds(scene_); }
+  bool run(const Discretisation& model) override { return curves_of(model.step).has_value(); }
+  PeakErrors change(const Discretisation& coarse, const Discretisation& fine) override {
+    PeakErrors changes{};
+    for (std::size_t q = 0; q < multibody_quantities; ++q)
+      changes[q] = difference(coarse.step, fine.step, static_cast<MultibodyQuantity>(q));
+    return changes;
+  }
+  double seconds(const Discretisation& model) const override {
+    return *scene_.end_time / model.step * run::step_seconds(scene_);
+  }
   std::size_t count() const { return curves_.size(); }
 
   /// Collective. Returns the curves of a run with this step; empty if the run failed.
-  const std::optional<Curves>& run(double step) {
+  const std::optional<Curves>& curves_of(double step) {
     const auto [place, is_new] = curves_.try_emplace(step);
     if (!is_new) return place->second;
     scene_.model.step = step;
@@ -84,7 +92,7 @@ class Runs {
 
   bool lost_contact() const { return lost_contact_; }  // in one of the runs
   bool has(MultibodyQuantity q, double step) {
-    const std::optional<Curves>& curves = run(step);
+    const std::optional<Curves>& curves = curves_of(step);
     for (std::size_t kind = 0; curves && kind < kinds; ++kind)
       if (quantity_of[kind] == q && size_of(*curves, kind) > 0.0) return true;
     return false;
@@ -92,7 +100,7 @@ class Runs {
 
   /// The largest difference of a quantity at any instant, relative to its largest value; 1 if one of the runs failed.
   double difference(double rough, double fine, MultibodyQuantity q) {
-    const std::optional<Curves>&a = run(rough), &b = run(fine);
+    const std::optional<Curves>&a = curves_of(rough), &b = curves_of(fine);
     if (!a || !b) return 1.0;
     double worst = 0.0;
     for (std::size_t kind = 0; kind < kinds; ++kind) {
@@ -111,18 +119,6 @@ class Runs {
   bool lost_contact_ = false;
 };
 
-/// The error of one quantity as steps are halved.
-struct Search {
-  ErrorModel error;
-  int stalls = 0;  // successive halvings with little change
-
-  void add(double change, double step, bool both_ended) {
-    error = error_from(change, step, error);
-    stalls = both_ended && error.known && error.order < search::stall_order ? stalls + 1 : 0;
-  }
-  bool done(double wanted) const { return stalls >= search::max_stalls || (error.known && error.value <= wanted); }
-};
-
 }  // namespace
 
 bool chooses_multibody_step(const scene::Scene& scene) {
@@ -137,48 +133,41 @@ Choice choose_multibody_step(MPI_Comm comm, const scene::Scene& scene, std::vect
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
   Runs runs(comm, scene);
-  std::array<Search, multibody_quantities> searches;
-  const double wanted = search::share * scene.accuracy;
-  const auto rejected = [&](std::size_t q) { return q == contact_force && runs.lost_contact(); };
-  const auto done = [&](std::size_t q) { return rejected(q) || searches[q].done(wanted); };
-  double step = first_multibody_step(scene), spent = runs.seconds(step);
-  for (int i = 0; i < search::max_halvings && !(done(position) && done(joint_force) && done(contact_force)); ++i) {
-    step *= 0.5;
-    spent += runs.seconds(step);
-    const bool both_ended = runs.run(2.0 * step) && runs.run(step);
-    for (std::size_t q = 0; q < multibody_quantities; ++q)
-      searches[q].add(runs.difference(2.0 * step, step, static_cast<MultibodyQuantity>(q)), step, both_ended);
-    if (spent + runs.seconds(0.5 * step) > search::max_seconds) break;
-  }
-  double longer = search::max_extrapolation;
-  for (std::size_t q = 0; q < multibody_quantities; ++q)
-    if (!rejected(q) && searches[q].stalls < search::max_stalls)
-      longer = std::min(longer, std::max(1.0, searches[q].error.allowed_ratio(wanted)));
+  SearchTask task;
+  task.accuracy = scene.accuracy;
+  task.coarse.step = first_multibody_step(scene);
+  task.fine.step = 0.5 * task.coarse.step;
+  task.open_mesh = false;
+  // Contacts that open and close again in the first run have pulses as forces.
+  runs.run(task.coarse);
+  const bool impacts = runs.lost_contact();
+  for (std::size_t q = 0; q < multibody_quantities; ++q) task.wanted[q] = q != contact_force || !impacts;
+  CompanionSearch search(runs, task);
+  search.run();
 
   Choice choice{scene.model, {}, {}};
   Accuracy& result = choice.accuracy;
   result.measured = true;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  choice.model.step = longer * step;
+  const double step = search.model().step;
+  choice.model.step = step;
   notes.push_back(fmt::format("accuracy {:g}: steps of {:.3g} s; {} trial runs of the whole scene took {:.2g} s",
-                              scene.accuracy, *choice.model.step, runs.count(), result.seconds));
+                              scene.accuracy, step, runs.count(), result.seconds));
   std::string expected;
   for (std::size_t q = 0; q < multibody_quantities; ++q) {
     ErrorEstimate& estimate = result.multibody[q];
     estimate.present = runs.has(static_cast<MultibodyQuantity>(q), step);
-    estimate.expected = searches[q].error.at(longer);
-    estimate.accepted = !rejected(q) && searches[q].error.known && estimate.expected <= scene.accuracy;
+    estimate.expected = search.errors()[q];
+    const bool pulses = q == contact_force && runs.lost_contact();
+    estimate.why_not = pulses ? "contacts open and close again, and impact forces are pulses" : search.why_not(q);
+    estimate.accepted = estimate.why_not.empty();
     if (estimate.present && estimate.accepted)
       expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", multibody_names[q], estimate.expected);
   }
   if (!expected.empty()) notes.push_back("estimated errors: " + expected);
   for (std::size_t q = 0; q < multibody_quantities; ++q)
     if (result.multibody[q].present && !result.multibody[q].accepted)
-      notes.push_back(fmt::format(
-          "error not estimated: {}: {}", multibody_names[q],
-          rejected(q) ? "contacts open and close again, and impact forces are pulses"
-                      : fmt::format("the error with steps of {:.2g} s is {:.1g}{}", step, searches[q].error.value,
-                                    searches[q].stalls > 0 ? ", and it does not decrease when they are halved" : "")));
+      notes.push_back(fmt::format("error not estimated: {}: {}", multibody_names[q], result.multibody[q].why_not));
   return choice;
 }
 

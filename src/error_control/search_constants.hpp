@@ -11,6 +11,22 @@
 
 namespace traverse::error_control::search {
 
+// Companion runs (companion_search.cpp).
+inline constexpr double order = 2.0;            // P: order by which an error is told from a change; most fall faster
+inline constexpr double safety = 1.5;           // P: factor of that error
+inline constexpr double aim = 0.8;              // P: share of the accuracy that the next run aims at
+inline constexpr double small_part = 0.3;       // P: share of step or mesh in the error, below which it is not refined
+inline constexpr double min_refinement = 1.25;  // P
+inline constexpr double max_refinement = 2.0;   // P: by one run
+inline constexpr double least_ratio = 1.9;      // P: of a run to its companion
+inline constexpr double first_ratio = 5.6;      // P: of the first companion's step to the step of initial_guess.hpp
+inline constexpr double weight_of_impacts = 3.0;       // P: factor of errors if wheels lose contact
+inline constexpr double weight_of_undamped_sum = 4.0;  // P: factor of errors of moments of undamped bridges
+inline constexpr double max_price = 64.0;              // W: cost of a run over the cost of the second one
+inline constexpr double energy_step_factor = 0.25;     // P: reduction of a step that dissipates too much energy
+inline constexpr double rejected_factor = 10.0;  // P: a rejected error is at most this factor times the accuracy, or
+inline constexpr double rejected_limit = 1e-3;   // P: this value, if it can be reached
+
 // Shares of the wanted error that one cause of errors may use.
 inline constexpr double share = 0.4;  // P S: share of the step, and share of the mesh
 inline constexpr double small_share =
@@ -48,7 +64,7 @@ inline constexpr double undamped_sum = 2.0;   // P S: factor of a change, for a 
 // Halvings.
 inline constexpr int max_halvings = 14;        // P S: rounds of one search
 inline constexpr int required_agreements = 2;  // P: successive agreements that impacting wheels require
-inline constexpr int max_stalls = 2;  // P: successive halvings with little change, after which an error is rejected
+inline constexpr int max_stalls = 3;  // P: successive halvings with little change, after which an error is rejected
 inline constexpr double finest_step = 1.0 / 32.0;  // P: ratio to the first step
 inline constexpr int max_in_a_bay = 8;             // W: elements
 inline constexpr int max_in_a_span = 256;          // W S: elements

@@ -47,7 +47,6 @@ std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::stri
     if (!one.accuracy.measured) return std::nullopt;
     notes.push_back(fmt::format("at {:g} m/s:", speed));
     notes.insert(notes.end(), own.begin(), own.end());
-    one.model.trial_distance = one.accuracy.covered_until * (speed > 0.0 ? speed : 1.0);
     one.model.trials_lost_contact = one.accuracy.lost_contact;
     if (all) one.accuracy.merge(all->accuracy);
     all = Choice{all ? finer(all->model, one.model) : one.model, one.accuracy, {}};

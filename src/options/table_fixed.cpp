@@ -176,7 +176,7 @@ constexpr Row later_rows[] = {
   {"contact_impact_steps", integer, "", "20", {0, 100000}, "", 0, "least number of steps of an impact after a separation; 0: no shorter steps"},
   {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where they are not given"},
   {"accuracy_of", choice_list, "", "(all)", any, "deflection acceleration moment wheel_force acceleration_lowpass shear axial_displacement axial_force", 0, "peaks for which accuracy applies; no error is estimated for others; acceleration_lowpass: filtered by output_lowpass; default: all (shear: without effect on mesh and step; axial ones: if trains brake or are driven)"},
-  {"accuracy_whole", flag, "", "false", any, "", 0, "trial runs that select mesh and step cover the whole run, so that no later event is missed"},
+  {"accuracy_whole", flag, "", "false", any, "", 0, "no effect any more: trial runs cover the whole run always"},
   {"accuracy_cache", flag, "", "true", any, "", 0, "mesh, step and modes selected earlier for the same scene, stored beside its results in .traverse_choices, are used again"},
   {"accuracy_report", flag, "", "false", any, "", 0, "runs the scene again with a refined model and shows estimated and true errors"},
 

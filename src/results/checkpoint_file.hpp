@@ -15,6 +15,8 @@ namespace traverse::results {
 /// The reason why a run is repeated.
 struct Repeated {
   bool with_mechanisms = false;  // linear vehicles were not accurate enough
+  int elements = 0;              // mesh and step, s, if the chosen ones were not accurate enough
+  double step = 0.0;
 };
 
 struct Checkpoint {
@@ -32,7 +34,8 @@ struct Checkpoint {
   template <class Bytes>
   void keep(Bytes& bytes) {
     bytes(version, digest, time, end_time, time_step, interval, stored, wall_seconds, given_ranks,
-          repeated.with_mechanisms, results.file, results.rows, results.objects, results.digests);
+          repeated.with_mechanisms, repeated.elements, repeated.step, results.file, results.rows, results.objects,
+          results.digests);
   }
 };
 

@@ -26,8 +26,7 @@ std::string extrapolation_note(const RunModel& model, const std::vector<double>&
   const auto count = std::count(outside_trials.begin(), outside_trials.end(), 1.0);
   if (model.expected_errors.empty() || count == 0) return {};
   return fmt::format(
-      "error estimates are not valid for {} of the runs, in which wheels lost contact, stops closed or similar events "
-      "happened in no trial run; -accuracy_whole makes trial runs as long as these",
+      "error estimates are not valid for {} of the runs, in which wheels lost contact, which happened in no trial run",
       count);
 }
 

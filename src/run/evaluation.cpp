@@ -48,11 +48,6 @@ void Result::record(results::Recorder& recorder) const {
   if (shape) recorder.shape(*shape);
 }
 
-bool Result::has_uncovered_event(double losses_covered_until) const {
-  return !new_event.empty() || roughness > ExtrapolationCheck::smooth ||
-         std::any_of(losses.begin(), losses.end(), [&](double t) { return t > losses_covered_until; });
-}
-
 Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, const beam::Beam* beam, const Plan& plan,
                        const Wants& wants, std::vector<std::string>& notes)
     : scene_(scene), system_(system), beam_(beam), wants_(wants) {
@@ -78,7 +73,6 @@ Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, cons
   wheels_ = WheelExtremes(wheel_count_, system.surface_kinks());
   if (wants.stored && !scene.output.passages.empty()) axle_passages_ = {scene, plan.time_step};
   if (wants.limits) limit_check_.emplace(scene, system.fleet(), beam);
-  extrapolation_check_ = {wants.trials_until, system.fleet(), beam == nullptr ? nullptr : &beam->model()};
   set_up_filters(plan, notes);
 }
 
@@ -101,8 +95,7 @@ void Evaluation::set_up_filters(const Plan& plan, std::vector<std::string>& note
 
 void Evaluation::sample(const integrate::Instant& instant) {
   const bool stored = is_stored(instant.purpose);
-  const bool all = stored || limit_check_ || extrapolation_check_.needs_springs() || exits_.needs_bodies() ||
-                   scene_.train.drive == train::Drive::free;
+  const bool all = stored || limit_check_ || exits_.needs_bodies() || scene_.train.drive == train::Drive::free;
   system_.observe(instant.time, instant.y, instant.acceleration, now_.motion, all);
   const structure::NodalMotion& beam = now_.motion.beam;
   time_ = instant.time;
@@ -178,7 +171,6 @@ void Evaluation::record_peaks() {
     for (std::size_t i = 0; i < member.type->wheels.size(); ++i)
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
-  extrapolation_check_.add(time_, fleet, now_.motion.beam.foundation, peaks_);
   peaks_.add(time_, now_.probes, wheel_forces_,
              movement_ ? movement_->passages() : std::span<const recovery::StationPassage>());
   if (deck_) deck_->add(time_, now_.probes);
@@ -275,12 +267,11 @@ void Evaluation::record_separations(Result& result) {
     if (s.contact >= static_cast<int>(fleet.wheels.size())) continue;
     ++summary_.contact_losses;
     summary_.longest_loss = std::max(summary_.longest_loss, duration);
-    result.losses.push_back(s.start);
   }
 }
 
 void Evaluation::keep(base::Archive& archive) {
-  archive.same(peaks_, extrapolation_check_, wheels_, paths_, energy_at_start_, at_first_sample_, time_, now_.probes,
+  archive.same(peaks_, wheels_, paths_, energy_at_start_, at_first_sample_, time_, now_.probes,
                largest_deflection_value_);
   if (movement_) archive.same(*movement_);
   if (lag_) archive.same(*lag_);
@@ -313,8 +304,6 @@ Result Evaluation::finish() {
   if (wants_.stored) record_once(result);
   if (limit_check_) result.verdicts = limit_check_->verdicts(summary_, peaks_.largest_of_each(deflection));
   result.filter_unsettled = deck_ && deck_->ends_unsettled();
-  result.new_event = extrapolation_check_.new_event();
-  result.roughness = extrapolation_check_.roughness(peaks_);
   result.summary = summary_;
   result.peaks = std::move(peaks_);
   return result;

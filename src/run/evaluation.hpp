@@ -15,7 +15,6 @@
 #include "run/deck_acceleration.hpp"
 #include "run/deflected_shape.hpp"
 #include "run/exit_states.hpp"
-#include "run/extrapolation_check.hpp"
 #include "run/limit_check.hpp"
 #include "run/outputs.hpp"
 #include "run/plan.hpp"
@@ -35,7 +34,6 @@ struct Wants {
   double deck_cutoff = 0.0;    // Hz, of the filter for deck accelerations; 0: they are not filtered
   double deck_spacing = 1.0;   // longest spacing of the filter's instants over longest_spacing_for()
   bool filter_on_all = false;  // all ranks know the filtered peaks, not only the first one
-  double trials_until = std::numeric_limits<double>::infinity();  // s: end of the trial runs that chose the model
 };
 
 class Evaluation {
@@ -89,7 +87,6 @@ class Evaluation {
   std::vector<beam::SupportLine> support_lines_;  // of each probe, if supports move vertically
   std::vector<double> ground_;                    // m: their displacements now, at every span end
   ResponseExtremes peaks_;
-  ExtrapolationCheck extrapolation_check_;
   std::optional<DeckAcceleration> deck_;
   bool filters_deck_ = false;  // on any rank
   std::optional<LimitCheck> limit_check_;

@@ -60,13 +60,6 @@ class ExtremumTracker {
   }
   /// Removes all samples.
   void reset() { samples_ = {}; }
-  /// The second difference of the latest three samples; 0 if there are fewer.
-  double second_difference() const {
-    const auto &t = samples_.time, &y = samples_.value;
-    const double before = t[3] - t[2], after = t[4] - t[3];
-    if (samples_.count < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
-    return std::abs((y[4] - y[3]) / after - (y[3] - y[2]) / before) * std::min(before, after);
-  }
 
  private:
   // Smallest ratio of two successive intervals. Between instants that are closer the slope is determined by rounding

@@ -175,10 +175,14 @@ void record_quantities(Recorder& recorder) {
 
 }  // namespace
 
-void record_model(const scene::Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder) {
+void record_notes(const std::vector<std::string>& notes, results::Recorder& recorder) {
   Pairs rows;
   for (const std::string& note : notes) rows.emplace_back(std::to_string(rows.size() + 1), base::text_of_note(note));
   if (!rows.empty()) recorder.tables({{"/model/notes", rows}});
+}
+
+void record_model(const scene::Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder) {
+  record_notes(notes, recorder);
   record_quantities(recorder);
   if (scene.beam) record_bridge(*scene.beam, recorder);
   record_train(scene, recorder);

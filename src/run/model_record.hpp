@@ -10,6 +10,9 @@
 
 namespace traverse::run {
 
+/// Stores the notes of the run.
+void record_notes(const std::vector<std::string>& notes, results::Recorder& recorder);
+
 /// Stores spans, supports, hinges, foundations, stiffness and mass, vehicles and forces at t = 0, and the notes of the
 /// run.
 void record_model(const scene::Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder);

@@ -100,27 +100,12 @@ void ResponseExtremes::add(double t, std::span<const recovery::Response> probes,
     const std::size_t known = values.size() - (axial_ ? 0 : 1);
     for (std::size_t m = 0; m < known; ++m) motions_[i][m].add(t, values[m], no_kinks, recorder_of(motions[m], i));
     forces_[i].add(t, probes[i], at_probe(i), lag_, recorder_of_forces(i));
-    roughness_.acceleration = std::max(roughness_.acceleration, motions_[i][acceleration].second_difference());
   }
   for (std::size_t i = 0; i < wheel_forces.size(); ++i) {
     wheels_[i].add(t, wheel_forces[i], no_kinks, [&](double value, double at, bool outward) {
       if (outward) record_peak(wheel_force, i, value, at);
     });
-    roughness_.wheel_force = std::max(roughness_.wheel_force, wheels_[i].second_difference());
   }
-}
-
-SecondDifference ResponseExtremes::roughness() const {
-  const auto relative = [this](double second_difference, Quantity q) {
-    const double largest = std::abs(largest_[q].value);
-    return largest > 0.0 ? second_difference / largest : 0.0;
-  };
-  return {relative(roughness_.acceleration, acceleration), relative(roughness_.wheel_force, wheel_force)};
-}
-
-double SecondDifference::ratio_to(const SecondDifference& others) const {
-  const auto ratio = [](double a, double b) { return a > 0.0 ? a / b : 0.0; };
-  return std::max(ratio(acceleration, others.acceleration), ratio(wheel_force, others.wheel_force));
 }
 
 void ResponseExtremes::finish() {

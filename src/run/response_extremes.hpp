@@ -29,13 +29,6 @@ struct Range {
   End least, greatest;
 };
 
-/// Second differences of curves between samples, relative to their largest value.
-struct SecondDifference {
-  double acceleration = 0.0, wheel_force = 0.0;
-  /// The larger ratio of the two values to those of `others`; infinite if these are zero.
-  double ratio_to(const SecondDifference& others) const;
-};
-
 /// The signed extremes of a run above half of the largest one so far. Places are probes or wheels. Deflections are
 /// relative to the line through the supports.
 class ResponseExtremes {
@@ -57,18 +50,12 @@ class ResponseExtremes {
 
   const std::vector<Extreme>& of(Quantity q) const { return peaks_[q]; }
   const Extreme& largest(Quantity q) const { return largest_[q]; }
-  /// The largest second differences of accelerations and wheel forces, relative to their largest values, since the
-  /// start or the last reset_roughness().
-  SecondDifference roughness() const;
-  void reset_roughness() { roughness_ = {}; }
   /// The largest extreme of each probe or wheel.
   const std::vector<Extreme>& largest_of_each(Quantity q) const { return largest_of_each_[q]; }
   /// The range of a probe's deflection, acceleration, moment or shear.
   const Range& range(Quantity q, std::size_t probe) const { return ranges_[probe][q]; }
   std::size_t probes() const { return ranges_.size(); }
-  void keep(base::Bytes& bytes) {
-    bytes(forces_, motions_, wheels_, peaks_, largest_, largest_of_each_, ranges_, roughness_);
-  }
+  void keep(base::Bytes& bytes) { bytes(forces_, motions_, wheels_, peaks_, largest_, largest_of_each_, ranges_); }
 
  private:
   /// The motions whose extremes are tracked for each probe.
@@ -86,7 +73,6 @@ class ResponseExtremes {
   std::vector<std::array<Range, quantities>> ranges_;
   std::array<std::vector<Extreme>, quantities> peaks_;
   std::array<Extreme, quantities> largest_{};
-  SecondDifference roughness_;  // second differences of accelerations, m/s2, and wheel forces, N
   bool failed_ = false;
   std::array<std::vector<Extreme>, quantities> largest_of_each_;
 };

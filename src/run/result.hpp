@@ -20,20 +20,14 @@ struct Result {
   ResponseExtremes peaks;                        // of each quantity at every probe and wheel
   results::Summary summary;                      // greatest values; energies, residuals and cost of the run
   std::vector<results::Separation> separations;  // losses of contact
-  std::vector<double> losses;                    // s: those of wheels that were in contact at the start
   bool lost_contact = false;                     // one of any contact that was closed at the start
   std::vector<results::Verdict> verdicts;        // on the scene's limits, if they were wanted
   bool filter_unsettled = false;                 // the low-passed peak is within the unsettled end of the filter
-  std::string new_event;                         // as of ExtrapolationCheck
-  double roughness = 0.0;                        // as of ExtrapolationCheck
   // What is stored once, if it was wanted.
   std::vector<results::Recorder::Dataset> datasets;
   std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::string>>>> tables;
   std::optional<results::Shape> shape;
 
-  /// Whether the run had an event or roughness that trial runs did not cover, or a contact loss after
-  /// losses_covered_until (s).
-  bool has_uncovered_event(double losses_covered_until) const;
   /// Writes what is stored once.
   void record(results::Recorder& recorder) const;
 };

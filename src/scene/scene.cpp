@@ -58,7 +58,6 @@ void read_run(const Options& o, Scene& scene) {
   scene.accuracy = o.number("accuracy");
   if (o.has("accuracy_of")) scene.accuracy_of = o.texts("accuracy_of");
   scene.accuracy_report = o.flag("accuracy_report");
-  scene.accuracy_whole = o.flag("accuracy_whole");
   scene.accuracy_cache = o.flag("accuracy_cache");
 }
 

@@ -127,7 +127,6 @@ struct Scene {
   bool mesh_open = false;                // the elements are selected from the accuracy
   bool step_open = false;                // the step is selected from the accuracy
   bool accuracy_report = false;          // a refined run at the end gives the true errors
-  bool accuracy_whole = false;           // trial runs are as long as the run
   bool accuracy_cache = true;            // choices for the same scene from earlier runs are used again
   Output output;
   std::vector<options::VerdictLimit> limits;                 // limits of results, checked for each run
