@@ -148,7 +148,7 @@ bool CompanionSearch::add(Discretisation next) {
   space_ = space;
   if (far) coarse_ = fine_;
   fine_ = next;
-  record(last);
+  record(far ? PeakErrors{} : last);  // two runs close to each other may agree by chance
   reject_stalled(std::max(shorter, denser));
   return true;
 }

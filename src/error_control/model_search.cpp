@@ -71,7 +71,7 @@ SearchTask task_of(const Scene& scene, const FirstSteps& steps) {
 // vibration at once. The dissipated energy is proportional to the square of the vibration's amplitude, relative to the
 // static response.
 void resolve_vibration(const Scene& scene, const FirstSteps& steps, TrialRuns& trials, SearchTask& task) {
-  const double amplitude = search::share_of_vibration * search::aim * scene.accuracy;
+  const double amplitude = search::share_of_vibration * scene.accuracy;
   while (steps.of_period > 0.0 && task.fine.step > steps.of_period &&
          trials.stored(task.fine).energy_missing > amplitude * amplitude) {
     task.fine.step = two_digits(std::max(search::energy_step_factor * task.fine.step, steps.of_period));
