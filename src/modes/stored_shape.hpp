@@ -5,7 +5,7 @@
 #include <complex>
 #include <vector>
 
-#include "beam/shape_points.hpp"
+#include "beam/shape.hpp"
 #include "segment.hpp"
 
 namespace traverse::modes {

@@ -6,9 +6,7 @@
 
 #include "base/dot.hpp"
 #include "beam/assembly.hpp"
-#include "beam/ballast_shear.hpp"
 #include "beam/layered_track.hpp"
-#include "beam/point_shape.hpp"
 #include "beam/shape.hpp"
 
 namespace traverse::recovery {

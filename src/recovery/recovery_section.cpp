@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "beam/assembly.hpp"
-#include "beam/gauss.hpp"
+#include "beam/element.hpp"
 #include "beam/nonlinear_points.hpp"
 #include "recovery/spread_load.hpp"
 

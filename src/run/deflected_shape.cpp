@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "beam/shape_points.hpp"
+#include "beam/shape.hpp"
 #include "beam/support_line.hpp"
 
 namespace traverse::run {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/notes.hpp"
-#include "beam/shape_points.hpp"
+#include "beam/shape.hpp"
 #include "modes/modes.hpp"
 #include "run/quantity.hpp"
 #include "traverse/options/verdict_limit.hpp"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "traverse/beam/given_modes.hpp"
+#include "traverse/beam/model.hpp"
 
 namespace traverse::scene {
 

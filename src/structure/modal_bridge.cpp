@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "beam/cubic.hpp"
 #include "beam/shape.hpp"
 
 namespace traverse::structure {

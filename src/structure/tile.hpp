@@ -5,7 +5,7 @@
 #include <array>
 #include <type_traits>
 
-#include "beam/planes.hpp"
+#include "beam/line.hpp"
 
 namespace traverse::structure {
 
