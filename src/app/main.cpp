@@ -20,7 +20,6 @@
 #include "help.hpp"
 #include "results/origin.hpp"
 #include "run/process.hpp"
-#include "run/signals.hpp"
 #include "standard_output.hpp"
 #include "traverse/app/run.hpp"
 #include "traverse/base/error.hpp"

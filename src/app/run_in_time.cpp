@@ -18,12 +18,11 @@
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
 #include "run/checkpoints.hpp"
-#include "run/deflection_check.hpp"
+#include "run/extrapolation_check.hpp"
 #include "run/model_record.hpp"
 #include "run/norm_run.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
-#include "run/signals.hpp"
 #include "run/simulation.hpp"
 #include "traverse/options/input.hpp"
 

@@ -1,9 +1,9 @@
 // Slopes of mode shapes by a cubic spline, with the end slopes of a polynomial through the outermost stations, and the
 // beam model of a bridge by its modes.
-#include "traverse/beam/model.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "traverse/beam/model.hpp"
 
 namespace traverse::beam {
 namespace {

@@ -44,6 +44,8 @@ class InternalForces {
   std::vector<Run> runs_;
 };
 
+/// The same forces for many elements at a time. A time step computes them for a few nodes in the cache. The
+/// coefficients of elements that repeat along the beam are stored once.
 class ElementRows {
  public:
   /// Whether the beam has no hinges and no expansion devices, whose nodes have an additional unknown.
@@ -58,7 +60,7 @@ class ElementRows {
   void add(int first, int past, const Planes& x, const Planes& r) const;
 
  private:
-  // The coefficients h, A, B, C, D and S of internal_forces.hpp for each element. Element j is between the local nodes
+  // The coefficients h, A, B, C, D and S of InternalForces for each element. Element j is between the local nodes
   // j - 1 and j; its coefficients are zero if there is no element.
   static constexpr int numbers = 6;
   struct Run {

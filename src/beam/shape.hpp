@@ -33,6 +33,8 @@ std::array<double, 4> rotation(double xi, double h, double shear);
 /// Axial shape functions phi_1, phi_2.
 inline std::array<double, 2> linear(double xi) { return {1.0 - xi, xi}; }
 
+/// Points along the bridge at which its shapes are stored. They are so close that straight lines between them represent
+/// the curves of the elements.
 class ShapePoints {
  public:
   struct Point {

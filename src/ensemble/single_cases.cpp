@@ -2,7 +2,7 @@
 #include "ensemble/single_cases.hpp"
 
 #include "ensemble/case_batch.hpp"
-#include "run/signals.hpp"
+#include "run/process.hpp"
 #include "run/simulation.hpp"
 #include "run/step_cost.hpp"
 

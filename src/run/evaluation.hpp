@@ -11,7 +11,6 @@
 #include "recovery/load_movement.hpp"
 #include "recovery/recovery.hpp"
 #include "recovery/viscous_lag.hpp"
-#include "run/axle_load_records.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/deflected_shape.hpp"
 #include "run/exit_states.hpp"
@@ -21,7 +20,6 @@
 #include "run/plan.hpp"
 #include "run/response_extremes.hpp"
 #include "run/result.hpp"
-#include "run/wheel_extremes.hpp"
 #include "run/wheel_unloading.hpp"
 #include "traverse/scene/scene.hpp"
 

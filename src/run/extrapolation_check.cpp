@@ -1,14 +1,17 @@
 // Records for every kind of one-sided spring, support and sleeper whether it has been unloaded, compressed or in
-// tension, and reports the first of these states that occurs only after the end of the trial runs.
+// tension, and reports the first of these states that occurs only after the end of the trial runs. Prints a warning for
+// deflections above a tenth of the longest span, and stops the run with an error above a hundred spans.
 #include "run/extrapolation_check.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 #include <utility>
 
+#include "traverse/base/error.hpp"
 #include "traverse/train/vehicle.hpp"
 
 namespace traverse::run {
@@ -17,6 +20,9 @@ namespace {
 constexpr unsigned char unloaded = 1, compressed = 2, tensioned = 4;
 
 bool may_separate(const beam::FoundationLaw& law) { return law.one_sided || law.gap > 0.0; }
+
+constexpr double warning_ratio = 0.1;  // relative to the longest span
+constexpr double error_ratio = 100.0;  // relative to the longest span
 
 }  // namespace
 
@@ -98,6 +104,24 @@ void ExtrapolationCheck::add(double t, const train::Fleet& fleet, const structur
       record(t, s.part, forces[s.place]);
   if (until_ < std::numeric_limits<double>::infinity())
     for (const double force : foundation.below_sleepers) record(t, sleepers_, force);
+}
+
+void check_deflection(MPI_Comm comm, const scene::Scene& scene, double deflection) {
+  if (!scene.beam) return;
+  const double span = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end());
+  const double size = std::abs(deflection);
+  if (size > error_ratio * span)
+    throw SolverError(
+        fmt::format("the bridge deflects by {:.3g} m, its longest span is {:g} m: no beam does; check the units of "
+                    "beam_EI, beam_mass, loads and speed (N, m, kg, s)",
+                    size, span));
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (size > warning_ratio * span && rank == 0)
+    fmt::print(
+        "  note: the bridge deflects by {:.3g} m, more than a tenth of its longest span of {:g} m: the theory of small "
+        "displacements does not hold there\n",
+        size, span);
 }
 
 }  // namespace traverse::run

@@ -1,6 +1,9 @@
 // Checks a run after the end of the trial runs that chose its step: springs, supports and sleepers that open or close
-// for the first time, and curves that are rougher within a step than before.
+// for the first time, and curves that are rougher within a step than before; and whether the theory of small
+// displacements is valid for the bridge's deflection.
 #pragma once
+
+#include <mpi.h>
 
 #include <cstddef>
 #include <limits>
@@ -13,6 +16,7 @@
 #include "structure/nonlinear_foundation.hpp"
 #include "train/fleet.hpp"
 #include "traverse/beam/model.hpp"
+#include "traverse/scene/scene.hpp"
 
 namespace traverse::run {
 
@@ -66,5 +70,9 @@ class ExtrapolationCheck {
   std::optional<SecondDifference> roughness_before_;
   std::string new_event_;
 };
+
+/// Prints a warning on the first rank if the deflection (m) is a large part of the longest span. SolverError if it is
+/// impossibly large: then some quantity is not in SI units. The same on every rank.
+void check_deflection(MPI_Comm comm, const scene::Scene& scene, double deflection);
 
 }  // namespace traverse::run

@@ -1,13 +1,17 @@
 // Writes the datasets of /model: spans, supports, stiffness and mass along the bridge, foundations, vehicles with their
-// bodies, wheels, springs and joints, and moving forces.
+// bodies, wheels, springs and joints, and moving forces. The digest is of the sorted options and the texts of all input
+// files, without options that leave the results unchanged.
 #include "run/model_record.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "base/digest.hpp"
 #include "base/notes.hpp"
 #include "beam/shape.hpp"
 #include "modes/modes.hpp"
-#include "run/quantity.hpp"
+#include "run/response_extremes.hpp"
 #include "traverse/options/verdict_limit.hpp"
 
 namespace traverse::run {
@@ -197,6 +201,30 @@ void record_modes(const SharedBeam& shared, results::Recorder& recorder) {
     modes.damper_ratio.push_back(mode.dampers);
   }
   recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
+}
+
+std::string digest_of(const scene::Scene& scene, std::span<const std::string_view> excluded,
+                      const std::vector<options::InputText>& files, std::string_view more) {
+  auto entries = scene.options;
+  std::erase_if(entries, [&](const auto& option) {
+    const std::string& name = option.first;
+    const bool display_only = name == "verbose" || name.starts_with("ts_monitor") || name.starts_with("log_") ||
+                              name.starts_with("report_") || name.find("_view") != name.npos;
+    return display_only || std::find(excluded.begin(), excluded.end(), name) != excluded.end();
+  });
+  std::sort(entries.begin(), entries.end());
+  base::Digest digest;
+  const auto add = [&](std::string_view text) {
+    digest.add(std::to_string(text.size()) + ":");
+    digest.add(text);
+  };
+  for (const auto& [name, value] : entries) {
+    add(name);
+    add(value);
+  }
+  for (const options::InputText& file : files) add(file.text);
+  add(more);
+  return fmt::format("{:016x}", digest.value());
 }
 
 }  // namespace traverse::run

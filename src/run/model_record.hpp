@@ -1,9 +1,12 @@
-// Stores the model for pictures and reports: /model of the results file.
+// Stores the model for pictures and reports, /model of the results file, and a digest of all inputs of a scene.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "options/input_texts.hpp"
 #include "results/recorder.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
@@ -16,5 +19,10 @@ void record_model(const scene::Scene& scene, const std::vector<std::string>& not
 
 /// Stores the modes that represent the bridge, or its first distinct frequencies, with their damping ratios: /modes.
 void record_modes(const SharedBeam& shared, results::Recorder& recorder);
+
+/// A 64-bit hash (16 hex digits) of the scene's options, the files' texts and `more`. Options in `excluded`, and
+/// options that only change the display, are not included.
+std::string digest_of(const scene::Scene& scene, std::span<const std::string_view> excluded,
+                      const std::vector<options::InputText>& files, std::string_view more = {});
 
 }  // namespace traverse::run

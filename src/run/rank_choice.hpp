@@ -1,9 +1,11 @@
 // Chooses the number of ranks of a single run by a model of the duration of a step, from the size of the scene and the
-// measured latency of messages between the ranks (doc/scaling.md).
+// measured latency of messages between the ranks (doc/scaling.md), and runs on the first ranks only, while the others
+// wait without use of a processor.
 #pragma once
 
 #include <mpi.h>
 
+#include <functional>
 #include <string>
 
 #include "traverse/scene/scene.hpp"
@@ -36,5 +38,9 @@ struct RankChoice {
 };
 /// Collective; the same on every rank.
 RankChoice choose_ranks(MPI_Comm comm, const scene::Scene& scene);
+
+/// Collective. Runs `work` on the first `count` ranks of comm in a separate communicator. Returns its status on all
+/// ranks. An exception is thrown on the working ranks; the others get its status.
+int run_on_first(MPI_Comm comm, int count, const std::function<int(MPI_Comm)>& work);
 
 }  // namespace traverse::run
