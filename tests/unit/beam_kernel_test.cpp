@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "engine/batch_kernel.hpp"
-#include "engine/elimination_order.hpp"
 #include "engine/matrix_lanes.hpp"
 #include "engine/processor.hpp"
 
