@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "norm/load_models.hpp"
+#include "norm/en1991.hpp"
 #include "norm/static_bridge.hpp"
 #include "results/stage.hpp"
 #include "run/norm_run.hpp"

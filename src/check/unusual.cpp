@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "norm/en1991.hpp"
-#include "norm/usual_ranges.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::check {

@@ -14,7 +14,7 @@
 #include "error_control/initial_guess.hpp"
 #include "error_control/search_constants.hpp"
 #include "error_control/trial_window.hpp"
-#include "integrate/integrator_choice.hpp"
+#include "integrate/integrators.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/plan.hpp"
 

@@ -13,7 +13,6 @@
 #include "arrays.hpp"
 #include "integrate/integrators.hpp"
 #include "integrate/second_order.hpp"
-#include "integrator_choice.hpp"
 #include "structure/beam_operator.hpp"
 #include "traverse/options/input.hpp"
 

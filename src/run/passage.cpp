@@ -9,7 +9,7 @@
 #include <set>
 
 #include "base/notes.hpp"
-#include "integrate/integrator_choice.hpp"
+#include "integrate/integrators.hpp"
 #include "results/stage.hpp"
 #include "run/exit_states.hpp"
 #include "structure/active_window.hpp"

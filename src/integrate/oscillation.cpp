@@ -1,6 +1,9 @@
-// Multiplies each complex modal coordinate by exp(lambda dt), in real arithmetic on real and imaginary parts, and
-// transforms between complex and real modal coordinates.
-#include "integrate/coupled_oscillation.hpp"
+// Closed-form solution of q'' + 2 sigma q' + omega^2 q = 0 after a time dt, for underdamped, critically damped and
+// overdamped modes without loss of digits. Each complex modal coordinate is multiplied by exp(lambda dt), in real
+// arithmetic on real and imaginary parts.
+#include "integrate/oscillation.hpp"
+
+#include <cmath>
 
 namespace traverse::integrate {
 namespace {
@@ -44,6 +47,22 @@ void CoupledOscillation::evaluate_after(const Eigen::VectorXcd& propagator, Eige
   multiply_by(propagator, y_);
   evaluate(u, w);
   y_.swap(later_);
+}
+
+FreeOscillation free_oscillation(double omega, double sigma, double dt) {
+  const double square = (omega - sigma) * (omega + sigma);
+  double even = 0.0, odd = 0.0;  // e^(-sigma t) cos, e^(-sigma t) sin over its frequency
+  if (square > 0.0) {
+    const double damped = std::sqrt(square), decay = std::exp(-sigma * dt);
+    even = decay * std::cos(damped * dt);
+    odd = decay * std::sin(damped * dt) / damped;
+  } else {
+    const double kappa = std::sqrt(-square), slow = std::exp(-omega * omega / (sigma + kappa) * dt);
+    const double ratio = std::exp(-2.0 * kappa * dt);
+    even = 0.5 * slow * (1.0 + ratio);
+    odd = kappa * dt > 1e-8 ? -0.5 * slow * std::expm1(-2.0 * kappa * dt) / kappa : slow * dt;
+  }
+  return {even + sigma * odd, odd, -omega * omega * odd, even - sigma * odd};
 }
 
 }  // namespace traverse::integrate

@@ -1,5 +1,4 @@
-// The free oscillation of modes that damping couples, u'' + C u' + Omega^2 u = 0, exact in time: each complex mode
-// decays and oscillates independently.
+// Free oscillations of single modes and of modes that damping couples, exact for any time.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,6 +7,14 @@
 #include "structure/modal_bridge.hpp"
 
 namespace traverse::integrate {
+
+/// (u, u') at t + dt is {uu, uw; wu, ww} (u, u') at t.
+struct FreeOscillation {
+  double uu, uw, wu, ww;
+};
+
+/// The free oscillation u'' + 2 sigma u' + omega^2 u = 0 over a time dt, s, also if overdamped; omega, sigma in 1/s.
+FreeOscillation free_oscillation(double omega, double sigma, double dt);
 
 class CoupledOscillation {
  public:
