@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/whole.hpp"
+#include "base/numbers.hpp"
 #include "traverse/beam/model.hpp"
 
 namespace traverse::beam {

@@ -116,7 +116,7 @@ struct PeakState {
   double* contact_lost_time = nullptr;           // s: for each wheel; negative: in contact
   double *contact_loss_count = nullptr, *longest_contact_loss = nullptr;  // rows: 1; s
   // N m, for each probe: moment from loads and inertia inside the element, before and after the lag of b M' damping
-  // (viscous_lag.hpp).
+  // (recovery/load_movement.hpp).
   double *interior_moment = nullptr, *interior_moment_lagged = nullptr;
   bool lags = false;
   const double* lag = nullptr;               // a row: s, above 0 in all lanes if `lags`

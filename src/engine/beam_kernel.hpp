@@ -1,10 +1,10 @@
 // The structure's side of a stage (batch_task.hpp): J a = P + forces - C w~ - K v~ with J = M + rate C + displacement K
 // = L D L^T in every lane, from w = w~ + rate a and v = v~ + displacement a.
 //
-// The factorisation goes unknown by unknown in the order of matrix_lanes.hpp, and columns are eliminated from both ends
-// to the middle column. The contact forces change from pass to pass. In each pass only the window of columns under the
-// wheels is solved; the columns outside it are eliminated once before the passes of a stage, and solved after them. If
-// the window has left the middle, the middle is moved to it. All functions of the kernels must have internal linkage
+// The factorisation goes unknown by unknown in the order of structure_lanes.hpp, and columns are eliminated from both
+// ends to the middle column. The contact forces change from pass to pass. In each pass only the window of columns under
+// the wheels is solved; the columns outside it are eliminated once before the passes of a stage, and solved after them.
+// If the window has left the middle, the middle is moved to it. All functions of the kernels must have internal linkage
 // (train_kernel.hpp).
 #pragma once
 

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "train/linearisation_residual.hpp"
+#include "train/linear_dynamics.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::engine {

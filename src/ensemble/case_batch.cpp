@@ -9,7 +9,7 @@
 #include "engine/train_arrays.hpp"
 #include "integrate/integrators.hpp"
 #include "run/passage.hpp"
-#include "train/linearisation_residual.hpp"
+#include "train/linear_dynamics.hpp"
 
 namespace traverse::ensemble {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "ensemble/case_batch.hpp"
 #include "run/process.hpp"
+#include "run/rank_choice.hpp"
 #include "run/simulation.hpp"
-#include "run/step_cost.hpp"
 
 namespace traverse::ensemble {
 namespace {

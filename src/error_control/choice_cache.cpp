@@ -23,7 +23,7 @@
 #include "integrate/integrators.hpp"
 #include "options/data_file.hpp"
 #include "options/input_texts.hpp"
-#include "results/own_file.hpp"
+#include "results/place.hpp"
 #include "run/model_record.hpp"
 #include "scene/limits.hpp"
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/whole.hpp"
+#include "base/numbers.hpp"
 #include "error_control/model_search.hpp"
 #include "error_control/search_constants.hpp"
 #include "run/plan.hpp"

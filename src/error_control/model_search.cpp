@@ -9,8 +9,8 @@
 #include <numbers>
 #include <tuple>
 
+#include "base/numbers.hpp"
 #include "base/one_step_methods.hpp"
-#include "base/whole.hpp"
 #include "error_control/initial_guess.hpp"
 #include "error_control/search_constants.hpp"
 #include "error_control/trial_window.hpp"

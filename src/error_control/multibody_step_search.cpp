@@ -13,8 +13,8 @@
 #include "error_control/error_model.hpp"
 #include "error_control/search_constants.hpp"
 #include "results/stage.hpp"
+#include "run/rank_choice.hpp"
 #include "run/simulation.hpp"
-#include "run/step_cost.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::error_control {

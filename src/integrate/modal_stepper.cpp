@@ -15,7 +15,7 @@
 #include "base/petsc.hpp"
 #include "beam/shape.hpp"
 #include "integrate/second_order.hpp"
-#include "train/on_line.hpp"
+#include "train/wheel_paths.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::integrate {

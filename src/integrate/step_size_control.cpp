@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/whole.hpp"
+#include "base/numbers.hpp"
 
 namespace traverse::integrate {
 namespace {

@@ -58,8 +58,6 @@ class StaticBridge {
   std::vector<Bearing> bearings_;
 };
 
-/// Static effects of trains and load models over all their positions: the least and the greatest of every effect along
-/// the bridge.
 enum class Effect { deflection, moment, shear, reaction, end_rotation, joint_rotation };
 struct EffectRow {
   std::string_view name, words, unit;
@@ -88,6 +86,8 @@ struct Place {
   std::size_t number = 0;      // index of the span
 };
 
+/// Static effects of trains and load models over all their positions: the least and the greatest of every effect along
+/// the bridge.
 struct StaticEffects {
   static constexpr double tie_factor = 1.0 + 1e-9;
 

@@ -7,7 +7,6 @@
 #include "beam/assembly.hpp"
 #include "beam/element.hpp"
 #include "beam/nonlinear_points.hpp"
-#include "recovery/spread_load.hpp"
 
 namespace traverse::recovery {
 

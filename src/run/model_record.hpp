@@ -1,4 +1,5 @@
-// Stores the model for pictures and reports, /model of the results file, and a digest of all inputs of a scene.
+// Stores the model for pictures and reports, /model of the results file, the deflected shape of the bridge at the
+// instant of its largest deflection, /shape, and a digest of all inputs of a scene.
 #pragma once
 
 #include <span>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "options/input_texts.hpp"
+#include "recovery/recovery.hpp"
 #include "results/recorder.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
@@ -24,5 +26,17 @@ void record_modes(const SharedBeam& shared, results::Recorder& recorder);
 /// options that only change the display, are not included.
 std::string digest_of(const scene::Scene& scene, std::span<const std::string_view> excluded,
                       const std::vector<options::InputText>& files, std::string_view more = {});
+
+/// The data of the deflected shape: this rank's nodal values and the loads on the bridge.
+struct LargestDeflection {
+  double time = 0.0;  // s
+  std::vector<double> v, w, a;
+  std::vector<recovery::ElementLoad> loads;
+  std::vector<double> ground;  // m: displacements of moving supports, at every span end; empty: none
+};
+
+/// Collective. The deflection relative to the line through the supports, at the nodes, at the probes and at points in
+/// between, with the contribution of loads inside elements, as at probes.
+results::Shape shape_of(const beam::Beam& beam, const scene::Scene& scene, const LargestDeflection& worst);
 
 }  // namespace traverse::run

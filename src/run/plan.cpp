@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-#include "base/whole.hpp"
+#include "base/numbers.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::run {

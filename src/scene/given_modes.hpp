@@ -1,4 +1,4 @@
-// Reads the natural modes of a bridge from a file: text, or HDF5 as described in results/modes_text.hpp.
+// Reads the natural modes of a bridge from a file: text, or HDF5 as described in results/origin.hpp.
 #pragma once
 
 #include <string>

@@ -24,7 +24,6 @@
 #include "beam/internal_forces.hpp"
 #include "structure/beam_operator.hpp"
 #include "structure/ranges.hpp"
-#include "structure/tile.hpp"
 
 namespace traverse::structure {
 

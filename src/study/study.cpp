@@ -22,7 +22,6 @@
 #include "study/find.hpp"
 #include "study/prepared_study.hpp"
 #include "study/study_file.hpp"
-#include "study/study_refinement.hpp"
 #include "study/study_runs.hpp"
 #include "study/sweep_findings.hpp"
 #include "traverse/options/input.hpp"

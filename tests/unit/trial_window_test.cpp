@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "error_control/accuracy.hpp"
-#include "results/run_model.hpp"
+#include "results/study_table.hpp"
 #include "traverse/options/options.hpp"
 
 namespace traverse::error_control {

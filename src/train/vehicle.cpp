@@ -1,5 +1,5 @@
 // Evaluates the Fourier series and the table of a force that varies over time.
-#include "traverse/train/force_variation.hpp"
+#include "traverse/train/vehicle.hpp"
 
 #include <algorithm>
 #include <cmath>
