@@ -1,4 +1,4 @@
-// What the functions of the C interface share: errors become a status and one line.
+// What the functions of the C interface share: errors become a status and one line, and passages have handles.
 #pragma once
 
 #include <exception>
@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "run/process.hpp"
+#include "step_by_step.hpp"
 #include "traverse/base/error.hpp"
+#include "traverse/problem.hpp"
+#include "traverse/traverse.h"
 
 namespace traverse::app {
 
@@ -35,5 +38,10 @@ T* require_not_null(T* pointer, const char* what) {
 
 /// Starts PETSc, SLEPc and MPI, which end with the process.
 void start_libraries(const std::vector<std::string>& petsc_words = {});
+
+/// A new handle of a passage at t = 0; its vehicles are mechanisms unless the problem says otherwise.
+traverse_passage* open_passage(Problem problem);
+/// The run of an open passage; InputError for NULL and for a closed one.
+StepByStep& require_open(const traverse_passage* passage);
 
 }  // namespace traverse::app

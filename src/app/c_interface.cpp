@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "c_call.hpp"
-#include "c_passage.hpp"
 #include "results/dataset_words.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/traverse.h"

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "c_call.hpp"
-#include "c_passage.hpp"
 #include "traverse/problem.hpp"
 #include "traverse/simulate.hpp"
 #include "traverse/traverse.h"

@@ -16,15 +16,16 @@
 #include <vector>
 
 #include "applications.hpp"
-#include "fast_mpi_init.hpp"
-#include "help.hpp"
+#include "base/one_step_methods.hpp"
+#include "integrate/integrators.hpp"
+#include "options/help_groups.hpp"
+#include "process_start.hpp"
 #include "results/origin.hpp"
 #include "run/process.hpp"
-#include "run/signals.hpp"
-#include "standard_output.hpp"
 #include "traverse/app/run.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/options/table.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace {
@@ -87,6 +88,21 @@ traverse::options::Input read_input(int argc, char** argv) {
   return traverse::options::read_input(*arguments.argc(), *arguments.argv(), before);
 }
 
+/// Help text on everything (empty `what`), on a group of options, on one option or on `integrators`; `man`: the manual
+/// page; `bash`: the completion for that shell. InputError for any other word.
+std::string help_about(const std::string& what) {
+  const std::string integrators = traverse::integrate::integrators_help();
+  if (what == "integrators" || what == "ts_type") return integrators.substr(1);  // without the leading newline
+  if (what == "man") return traverse::options::manual_page(integrators);
+  if (what == "bash") {
+    std::vector<std::string> types;
+    for (const traverse::base::MethodRow& row : traverse::base::methods()) types.emplace_back(row.name);
+    for (const traverse::integrate::PetscType& type : traverse::integrate::petsc_types()) types.emplace_back(type.name);
+    return traverse::options::bash_completion(types);
+  }
+  return traverse::options::help_text(what) + (what.empty() ? integrators : "");
+}
+
 int run(traverse::options::Input& input, const std::string& verb) {
   try {
     traverse::options::put_into_petsc(input);
@@ -122,7 +138,7 @@ int main(int argc, char** argv) {
     start_check(argc, argv);
     traverse::options::Input input = read_input(argc, argv);
     if (input.help) {
-      const std::string text = traverse::app::help_about(input.help_about);
+      const std::string text = help_about(input.help_about);
       return after_output(std::fputs(text.c_str(), stdout) < 0 ? 1 : 0);
     }
     if (input.version) return after_output(std::puts("traverse " TRAVERSE_VERSION) < 0 ? 1 : 0);

@@ -18,7 +18,6 @@
 #include "prepare.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
-#include "run/active_ranks.hpp"
 #include "run/checkpoints.hpp"
 #include "run/rank_choice.hpp"
 #include "study/study.hpp"

@@ -23,7 +23,6 @@
 #include "run/norm_run.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
-#include "run/signals.hpp"
 #include "run/simulation.hpp"
 #include "traverse/options/input.hpp"
 

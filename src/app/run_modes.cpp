@@ -15,7 +15,6 @@
 #include "run/model_record.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
-#include "run/signals.hpp"
 
 namespace traverse::app {
 

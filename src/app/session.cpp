@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/petsc.hpp"
-#include "fast_mpi_init.hpp"
+#include "process_start.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/simulate.hpp"
 

@@ -14,7 +14,7 @@
 #include "check/unusual.hpp"
 #include "ensemble/parallel_cases.hpp"
 #include "options/data_file.hpp"
-#include "run/signals.hpp"
+#include "run/process.hpp"
 #include "step_by_step.hpp"
 #include "study/prepared_study.hpp"
 #include "traverse/options/input.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "error_control/sweep_model.hpp"
-#include "run/signals.hpp"
+#include "run/process.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {

@@ -2,7 +2,7 @@
 // line.
 #include "traverse/base/error.hpp"
 
-#include "base/utf8.hpp"
+#include "base/text.hpp"
 
 namespace traverse {
 namespace {

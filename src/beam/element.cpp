@@ -6,7 +6,6 @@
 #include <cstddef>
 
 #include "beam/shape.hpp"
-#include "gauss.hpp"
 
 namespace traverse::beam {
 namespace {

@@ -1,7 +1,5 @@
 // Slopes of mode shapes by a cubic spline, with the end slopes of a polynomial through the outermost stations, and the
 // beam model of a bridge by its modes.
-#include "traverse/beam/given_modes.hpp"
-
 #include <algorithm>
 #include <cmath>
 

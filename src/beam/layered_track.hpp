@@ -1,7 +1,15 @@
-// Sleepers with their pads, ballast and sub-ballast, which connect the rail to the bridge and to the ground.
+// Sleepers with their pads, ballast and sub-ballast, which connect the rail to the bridge and to the ground, and shear
+// springs and dampers between neighbouring ballast masses (Zhai, Wang and Lin 2004).
+//
+// Ballast masses are a bay apart, which is several columns if the rail has several elements per bay, and only
+// neighbouring columns may be coupled. Each column between two masses therefore has a link: an unknown on the straight
+// line between the masses. If the masses are n columns apart, neighbouring links are connected by springs and dampers
+// with n times the coefficients of the shear; in equilibrium they act as the spring and damper of the shear. A link has
+// a millionth of the ballast's mass, so that the mass matrix is regular.
 #pragma once
 
 #include "slice.hpp"
+#include "traverse/beam/model.hpp"
 
 namespace traverse::beam {
 
@@ -69,5 +77,29 @@ struct SleeperConnection {
   Spring spring_along;
 };
 SleeperConnection connection_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout);
+
+/// Calls visit(unknown, mass) for the links between two neighbouring sleepers whose ballast masses are in shear.
+template <class Visit>
+void visit_links(const Sleeper& left, const Sleeper& right, const Layout& layout, Visit visit) {
+  constexpr double mass_ratio = 1e-6;
+  const double mass = mass_ratio * 0.5 * (left.values.ballast_mass + right.values.ballast_mass);
+  for (int column = left.rail_node + 1; column < right.rail_node; ++column)
+    visit(column * layout.block + layout.ballast_place(), mass);
+}
+
+/// Whether shear acts between two neighbours: both have a separate ballast mass, and the deflection of a bridge does
+/// not use the unknowns of the links between them.
+bool shear_between(const Sleeper& left, const Sleeper& right, const Layout& layout);
+
+/// The pairs of neighbours in shear with a column or a link among the columns [first, past).
+std::vector<std::pair<Sleeper, Sleeper>> pairs_in_shear(const Line& bridge, const Layout& layout, int first, int past);
+
+void release_links(const Line& bridge, const Layout& layout, Slice& slice);
+/// Adds the masses of the links and the springs and dampers of the shear.
+void add_shear(const Line& bridge, const Layout& layout, const Slice& slice, Rows& mass, Rows& stiffness,
+               Rows& damping);
+
+/// Throws InputError if it cannot; the message names the option or the sleeper, the value and the allowed values.
+void check_track(const BeamModel& model);
 
 }  // namespace traverse::beam

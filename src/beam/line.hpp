@@ -1,4 +1,5 @@
-// The numbering of the structure's unknowns: column by column along x, with the same number in each column.
+// The numbering of the structure's unknowns, column by column along x, with the same number in each column, and arrays
+// of their values for products with many nodes at a time.
 //
 // A column contains a node of the bridge, (u, v, theta), with a second rotation if the beam has hinges. With a layered
 // track it also contains a node of the rail, with a second rotation if the rail has joints and a second displacement
@@ -73,5 +74,15 @@ struct Line {
     return place[component] < 0 ? -1 : (first_column + node) * block + place[component];
   }
 };
+
+/// The arrays, by the unknown's index in a column.
+using Planes = std::array<double*, kinds>;
+
+/// Largest number of nodes of one call with planes.
+inline constexpr int tile = 128;
+
+/// Number of nodes that a product processes at a time. A call may read as many values behind its own ones; they are
+/// arbitrary.
+inline constexpr int nodes_per_chunk = 32;
 
 }  // namespace traverse::beam

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <string>
 
-#include "check_track.hpp"
+#include "layered_track.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::beam {
@@ -242,7 +242,7 @@ void check(const BeamModel& model) {
   check_cracks(model);
   check_divisions(model);
   check_strains(model);
-  if (model.track) check_track(model);  // check_track.cpp
+  if (model.track) check_track(model);
   check_foundation(model.foundation, model.length());
 }
 

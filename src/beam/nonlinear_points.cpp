@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "assembly.hpp"
-#include "gauss.hpp"
 #include "layered_track.hpp"
 
 namespace traverse::beam {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "beam/point_shape.hpp"
+#include "beam/assembly.hpp"
 
 namespace traverse::beam {
 

@@ -2,13 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/whole.hpp"
+#include "base/numbers.hpp"
 #include "traverse/beam/model.hpp"
 
 namespace traverse::beam {
 namespace {
 
-constexpr double rounding = 1e-9;  // relative to an element's length: closer stations are equal
+constexpr double same_station = 1e-9;  // relative to an element's length: closer stations are equal
 
 constexpr double min_piece = 0.2;  // relative to an element's length: jumps closer to another division are ignored
 
@@ -122,14 +122,14 @@ double mass_on_bridge(const BeamModel& model, const LayeredTrack& track) {
 }  // namespace
 
 int RailMesh::first_from(double station) const {
-  return base::whole(std::ceil((station - start) / element - rounding));
+  return base::whole(std::ceil((station - start) / element - same_station));
 }
 
 RailMesh rail_mesh(const BeamModel& model) {
   const LayeredTrack& track = *model.track;
   const auto bays = [&](double x) { return (x - track.offset) / track.spacing; };
-  const double first = std::floor(bays(model.start - track.approach) + rounding);
-  const double last = std::ceil(bays(model.end() + track.approach) - rounding);
+  const double first = std::floor(bays(model.start - track.approach) + same_station);
+  const double last = std::ceil(bays(model.end() + track.approach) - same_station);
   return {track.offset + first * track.spacing, track.spacing / track.elements_per_bay,
           base::whole((last - first) * track.elements_per_bay)};
 }

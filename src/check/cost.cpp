@@ -17,7 +17,6 @@
 #include "results/terminal.hpp"
 #include "run/outputs.hpp"
 #include "run/rank_choice.hpp"
-#include "run/step_cost.hpp"
 #include "scene/limits.hpp"
 #include "structure/active_window.hpp"
 #include "traverse/options/input.hpp"

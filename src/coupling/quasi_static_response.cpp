@@ -13,7 +13,7 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr int positions = 2000;            // number of positions of the weights along their path
 constexpr double constant_distance = 0.5;  // m: weights whose distances change by less move as one train
 
@@ -133,7 +133,7 @@ double QuasiStaticResponse::static_energy(double station) {
 // The constant is added.
 double QuasiStaticResponse::peak_of_train(const InfluenceLine& line, double constant) const {
   const beam::Mesh& mesh = structure_->line().mesh;
-  double front = -infinite, rear = infinite;
+  double front = -unbounded, rear = unbounded;
   for (const StaticLoad& w : weights_) {
     front = std::max(front, w.x + 0.5 * w.length);
     rear = std::min(rear, w.x - 0.5 * w.length);

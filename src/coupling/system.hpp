@@ -37,7 +37,6 @@
 #include "base/one_step_methods.hpp"
 #include "coupling/contact_events.hpp"
 #include "coupling/contact_newton.hpp"
-#include "coupling/kink_events.hpp"
 #include "coupling/quasi_static_response.hpp"
 #include "engine/linear_train.hpp"
 #include "recovery/recovery.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "coupling/system.hpp"
-#include "train/on_line.hpp"
+#include "train/wheel_paths.hpp"
 
 namespace traverse::coupling {
 

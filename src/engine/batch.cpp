@@ -9,7 +9,6 @@
 #include "engine/structure_lanes.hpp"
 #include "engine/train_arrays.hpp"
 #include "train/linear_dynamics.hpp"
-#include "train/linearisation_residual.hpp"
 
 namespace traverse::engine {
 

@@ -11,7 +11,6 @@
 #include "engine/surfaces.hpp"
 #include "engine/train_arrays.hpp"
 #include "structure/compliance.hpp"
-#include "structure/contact_field.hpp"
 
 namespace traverse::engine {
 

@@ -1,10 +1,10 @@
-// The tables of surface_table.hpp for all wheels of a fleet.
+// The tables of train_task.hpp for all wheels of a fleet.
 #pragma once
 
 #include <deque>
 #include <vector>
 
-#include "engine/surface_table.hpp"
+#include "engine/train_task.hpp"
 #include "train/fleet.hpp"
 
 namespace traverse::engine {

@@ -6,7 +6,7 @@
 #include "ensemble/case_batch.hpp"
 #include "ensemble/engines.hpp"
 #include "ensemble/single_cases.hpp"
-#include "run/signals.hpp"
+#include "run/process.hpp"
 
 namespace traverse::ensemble {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "engine/speed_class.hpp"
 #include "engine/train_arrays.hpp"
-#include "integrate/integrator_choice.hpp"
+#include "integrate/integrators.hpp"
 #include "run/passage.hpp"
-#include "train/linearisation_residual.hpp"
+#include "train/linear_dynamics.hpp"
 
 namespace traverse::ensemble {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "ensemble/case_batch.hpp"
 #include "run/deck_acceleration.hpp"
-#include "run/step_cost.hpp"
+#include "run/rank_choice.hpp"
 #include "run/wheel_unloading.hpp"
 
 namespace traverse::ensemble {

@@ -10,7 +10,7 @@
 #include "integrate/modal_peaks.hpp"
 #include "modal_engine/greatest_peaks.hpp"
 #include "modal_engine/moving_force_batch.hpp"
-#include "run/signals.hpp"
+#include "run/process.hpp"
 
 namespace traverse::ensemble {
 namespace {

@@ -9,7 +9,6 @@
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
 #include "run/process.hpp"
-#include "run/signals.hpp"
 
 namespace traverse::ensemble {
 namespace {

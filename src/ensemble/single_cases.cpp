@@ -2,9 +2,9 @@
 #include "ensemble/single_cases.hpp"
 
 #include "ensemble/case_batch.hpp"
-#include "run/signals.hpp"
+#include "run/process.hpp"
+#include "run/rank_choice.hpp"
 #include "run/simulation.hpp"
-#include "run/step_cost.hpp"
 
 namespace traverse::ensemble {
 namespace {

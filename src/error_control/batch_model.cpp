@@ -18,7 +18,7 @@
 #include "error_control/search_constants.hpp"
 #include "error_control/sweep_model.hpp"
 #include "results/stage.hpp"
-#include "run/step_cost.hpp"
+#include "run/rank_choice.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::error_control {

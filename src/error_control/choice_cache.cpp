@@ -23,8 +23,8 @@
 #include "integrate/integrators.hpp"
 #include "options/data_file.hpp"
 #include "options/input_texts.hpp"
-#include "results/own_file.hpp"
-#include "run/scene_digest.hpp"
+#include "results/place.hpp"
+#include "run/model_record.hpp"
 #include "scene/limits.hpp"
 
 namespace traverse::error_control {

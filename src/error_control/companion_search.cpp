@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "base/whole.hpp"
+#include "base/numbers.hpp"
 #include "error_control/search_constants.hpp"
 
 namespace traverse::error_control {

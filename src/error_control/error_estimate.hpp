@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "run/quantity.hpp"
+#include "run/response_extremes.hpp"
 
 namespace traverse::error_control {
 

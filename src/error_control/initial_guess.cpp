@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "base/whole.hpp"
+#include "base/numbers.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/plan.hpp"
 #include "traverse/base/error.hpp"

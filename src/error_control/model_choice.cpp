@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/numbers.hpp"
 #include "base/one_step_methods.hpp"
-#include "base/whole.hpp"
 
 namespace traverse::error_control {
 

@@ -12,8 +12,8 @@
 
 #include "error_control/companion_search.hpp"
 #include "results/stage.hpp"
+#include "run/rank_choice.hpp"
 #include "run/simulation.hpp"
-#include "run/step_cost.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::error_control {

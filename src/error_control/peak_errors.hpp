@@ -4,7 +4,7 @@
 #include <array>
 
 #include "base/passage_peaks.hpp"
-#include "run/quantity.hpp"
+#include "run/response_extremes.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::error_control {

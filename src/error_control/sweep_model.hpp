@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "error_control/model_choice.hpp"
-#include "results/run_model.hpp"
+#include "results/study_table.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::error_control {

@@ -7,8 +7,8 @@
 #include "error_control/search_constants.hpp"
 #include "results/stage.hpp"
 #include "run/deck_acceleration.hpp"
+#include "run/rank_choice.hpp"
 #include "run/simulation.hpp"
-#include "run/step_cost.hpp"
 
 namespace traverse::error_control {
 

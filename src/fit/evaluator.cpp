@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "ensemble/parallel_cases.hpp"
-#include "run/signals.hpp"
+#include "run/process.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::fit {

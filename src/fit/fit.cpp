@@ -19,7 +19,6 @@
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
 #include "run/process.hpp"
-#include "run/signals.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::fit {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "beam/support_line.hpp"
+#include "beam/mesh.hpp"
 #include "engine/processor.hpp"
 #include "ensemble/case_batch.hpp"
 #include "fit/forward_model.hpp"

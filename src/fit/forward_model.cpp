@@ -16,7 +16,7 @@
 #include "modes/modes.hpp"
 #include "results/stage.hpp"
 #include "run/outputs.hpp"
-#include "run/signals.hpp"
+#include "run/process.hpp"
 #include "run/simulation.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"

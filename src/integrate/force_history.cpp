@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "train/on_line.hpp"
+#include "train/wheel_paths.hpp"
 
 namespace traverse::integrate {
 namespace {

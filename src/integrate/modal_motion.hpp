@@ -9,9 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "integrate/coupled_oscillation.hpp"
 #include "integrate/force_history.hpp"
-#include "integrate/free_oscillation.hpp"
+#include "integrate/oscillation.hpp"
 #include "structure/modal_bridge.hpp"
 
 namespace traverse::integrate {

@@ -1,15 +1,35 @@
-// The methods of one_step_methods.hpp as PETSc TS types, by their names. System::step_motion computes their steps,
-// without SNES and without vectors of stages in PETSc; TS manages everything else (time, step, options, monitors).
-// TSSetTimeStep sets the length of steps. A step whose stages have no solution is repeated with a quarter of the
-// length; a step that a TSAdapt rejects is repeated with the length that it selects.
+// The methods of one_step_methods.hpp as PETSc TS types, by their names, and access to the entries of PETSc vectors.
+// System::step_motion computes their steps, without SNES and without vectors of stages in PETSc; TS manages everything
+// else (time, step, options, monitors). TSSetTimeStep sets the length of steps. A step whose stages have no solution is
+// repeated with a quarter of the length; a step that a TSAdapt rejects is repeated with the length that it selects.
 #pragma once
 
 #include <petscts.h>
 
+#include "base/petsc.hpp"
 #include "coupling/system.hpp"
 #include "integrate/step_size_control.hpp"
 
 namespace traverse::integrate {
+
+/// Access to the entries of PETSc vectors within a scope.
+struct Array {  // writable
+  explicit Array(Vec v) : vec(v) { base::check(VecGetArray(v, &data)); }
+  ~Array() { (void)VecRestoreArray(vec, &data); }
+  Array(const Array&) = delete;
+  Array& operator=(const Array&) = delete;
+  Vec vec;
+  double* data = nullptr;
+};
+
+struct ReadArray {
+  explicit ReadArray(Vec v) : vec(v) { base::check(VecGetArrayRead(v, &data)); }
+  ~ReadArray() { (void)VecRestoreArrayRead(vec, &data); }
+  ReadArray(const ReadArray&) = delete;
+  ReadArray& operator=(const ReadArray&) = delete;
+  Vec vec;
+  const double* data = nullptr;
+};
 
 inline constexpr const char* step_level_adapt = "ladder";  // a TSAdapt type with step-size levels, for methods that
                                                            // estimate their errors

@@ -1,11 +1,12 @@
 // Selects the next step length longest/2^k from the local error estimate of an embedded method: at once shorter if the
-// error is too large, twice as long after two accurate steps.
+// error is too large, twice as long after two accurate steps. To count steps, the ends of steps are followed; samples
+// without a stop between them are counted together.
 #include "integrate/step_size_control.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/whole.hpp"
+#include "base/numbers.hpp"
 
 namespace traverse::integrate {
 namespace {
@@ -18,6 +19,29 @@ constexpr double target = 0.5;              // wanted error on another level, re
 constexpr int required_accurate_steps = 2;  // number of accurate steps before a longer step
 constexpr double same_step = 1e-6;          // lengths of steps that differ relatively by less are equal
 constexpr double rounding = 1e-9;           // rounding of times, relative to a step
+
+constexpr double same_end = 1e-3;     // of a step or an interval: closer ends are one
+constexpr double same_length = 1e-7;  // relative difference of lengths that share a factorisation
+
+/// The lengths of the latest steps, the last one first.
+class Lengths {
+ public:
+  explicit Lengths(std::size_t stored) : stored_(stored) {}
+  /// Whether the length is a new one.
+  bool add(double length) {
+    const auto known = std::find_if(latest_.begin(), latest_.end(),
+                                    [&](double one) { return std::abs(one - length) <= same_length * length; });
+    const bool found = known != latest_.end();
+    if (found) latest_.erase(known);
+    latest_.insert(latest_.begin(), length);
+    if (latest_.size() > stored_) latest_.pop_back();
+    return !found;
+  }
+
+ private:
+  std::size_t stored_;
+  std::vector<double> latest_;
+};
 
 }  // namespace
 
@@ -62,6 +86,36 @@ double StepSizeControl::next_step(double remaining, double most) const {
   const double h = length(first);
   if (remaining <= h) return remaining;
   return remaining < 2.0 * h ? 0.5 * remaining : h;
+}
+
+StepCount count_steps(double end, double interval, double longest, const std::vector<double>& stops,
+                      std::size_t stored) {
+  StepCount count;
+  Lengths lengths(stored);
+  const double slack = same_end * std::min({longest, interval, end});
+  const auto add = [&](double duration, double times) {
+    const double length = shared_evenly(duration, longest);
+    count.steps += times * std::round(duration / length);
+    if (lengths.add(length)) ++count.lengths;
+  };
+  auto stop = stops.begin();
+  double samples = 0.0;
+  for (double t = 0.0; t < end - slack;) {
+    while (stop != stops.end() && *stop <= t + slack) ++stop;
+    const double next_stop = stop != stops.end() ? std::min(*stop, end) : end, sample = samples * interval;
+    const double whole = std::floor((next_stop - sample) / interval + same_end);
+    if (t == sample && whole >= 1.0) {
+      add(interval, whole);
+      samples += whole;
+      t = samples * interval;
+      continue;
+    }
+    double target = std::min(next_stop, (samples + 1.0) * interval);
+    if (target > (samples + 1.0) * interval - slack) target = ++samples * interval;
+    add(target - t, 1.0);
+    t = target;
+  }
+  return count;
 }
 
 }  // namespace traverse::integrate

@@ -10,10 +10,8 @@
 #include <numbers>
 #include <string_view>
 
-#include "arrays.hpp"
 #include "integrate/integrators.hpp"
-#include "integrate/second_order.hpp"
-#include "integrator_choice.hpp"
+#include "second_order.hpp"
 #include "structure/beam_operator.hpp"
 #include "traverse/options/input.hpp"
 

@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "base/petsc.hpp"
-#include "coupling/contact_event_locator.hpp"
 #include "coupling/system.hpp"
-#include "integrate/step_count.hpp"
 #include "integrate/step_size_control.hpp"
 
 namespace traverse::integrate {

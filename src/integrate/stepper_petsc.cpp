@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "arrays.hpp"
 #include "integrate/stepper.hpp"
+#include "second_order.hpp"
 
 namespace traverse::integrate {
 

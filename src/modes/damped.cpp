@@ -9,7 +9,7 @@
 #include "eigen.hpp"
 #include "modes/modes.hpp"
 #include "quadratic.hpp"
-#include "stored_shape.hpp"
+#include "segment.hpp"
 
 namespace traverse::modes {
 namespace {

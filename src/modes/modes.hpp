@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "beam/beam.hpp"
-#include "beam/shape_points.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::modes {
 

@@ -9,7 +9,7 @@
 #include <limits>
 #include <string>
 
-#include "vectors.hpp"
+#include "eigen.hpp"
 
 namespace traverse::modes {
 namespace {

@@ -1,6 +1,5 @@
 // The generalized forces g of eq. 42 of the paper without contact: gravity, springs, actuators; and the energy balance.
 #include "multibody/mechanism.hpp"
-#include "pair_times_B.hpp"
 
 namespace traverse::multibody {
 

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "multibody/mechanism.hpp"
-#include "pair_times_B.hpp"
 
 namespace traverse::multibody {
 

@@ -1,10 +1,17 @@
 // Geometry of a joint in the body-fixed frames of its two bodies, and first and second derivatives of the displacement
-// along its sliding direction.
+// along its sliding direction. Sine and cosine of a body's angle, by power series for angles below 0.1 rad.
 #include "multibody/joint.hpp"
+
+#include <cmath>
 
 #include "equations/normal.hpp"
 
 namespace traverse::multibody {
+namespace {
+
+constexpr double small_angle = 0.1;  // rad: for smaller angles the series below are exact to rounding
+
+}  // namespace
 
 using equations::NormalPlacement;
 
@@ -32,6 +39,21 @@ Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& j, const Frame& 
 void slide_curvature(const JointGeometry& j, const Frame& first, const Frame& second, JointCurvature& curvature) {
   curvature.setZero();
   NormalPlacement(j, quarter_turn(j.normal), first, second).add_curvature(1.0, curvature);
+}
+
+void Frame::set_angle(double value) {
+  angle = value;
+  if (std::abs(value) < small_angle) {
+    const double x = value * value;
+    cosine = 1.0 - x * (1.0 / 2.0) *
+                       (1.0 - x * (1.0 / 12.0) *
+                                  (1.0 - x * (1.0 / 30.0) * (1.0 - x * (1.0 / 56.0) * (1.0 - x * (1.0 / 90.0)))));
+    sine = value *
+           (1.0 - x * (1.0 / 6.0) * (1.0 - x * (1.0 / 20.0) * (1.0 - x * (1.0 / 42.0) * (1.0 - x * (1.0 / 72.0)))));
+    return;
+  }
+  cosine = std::cos(value);
+  sine = std::sin(value);
 }
 
 }  // namespace traverse::multibody

@@ -306,4 +306,7 @@ class Mechanism {
   double length_ = 1.0;  // m, the arm that scales angles to lengths
 };
 
+/// product += K B for the matrix K of a pair of bodies.
+void add_pair_times_B(int first, int second, const PairMatrix& K, const MechanismState& s, Eigen::MatrixXd& product);
+
 }  // namespace traverse::multibody

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "active_rows.hpp"
 #include "multibody/mechanism.hpp"
+#include "sparse_ldl.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::multibody {

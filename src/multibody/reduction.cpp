@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "active_rows.hpp"
-
 namespace traverse::multibody {
 
 namespace {

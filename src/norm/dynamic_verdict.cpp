@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "norm/en1991.hpp"
-#include "norm/load_models.hpp"
 
 namespace traverse::norm {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "norm/static_effects.hpp"
+#include "norm/static_bridge.hpp"
 #include "results/recorder.hpp"
 #include "results/verdict.hpp"
 #include "traverse/options/norm_rules.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "beam/cubic.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::norm {
 

@@ -8,7 +8,6 @@
 
 #include "norm/dynamic_verdict.hpp"
 #include "norm/en1991.hpp"
-#include "results/engineering_units.hpp"
 #include "results/terminal.hpp"
 
 namespace traverse::norm {

@@ -1,14 +1,16 @@
 // Reads texts from the disk or from a results file, checks that they are UTF-8 without control characters, and records
-// a copy of each.
+// a copy of each. Parses a YAML text twice: by document events, to detect a second document, and then as a tree.
 #include "options/input_texts.hpp"
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "base/regular_file.hpp"
-#include "base/utf8.hpp"
+#include "base/text.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::options {
@@ -50,6 +52,25 @@ std::string text_on_disk(const std::string& path, const TextKind& kind) {
     why = fmt::format("longer than {} characters, so this is not {}", kind.most_characters, kind.what);
   throw InputError(fmt::format("{}{}{}: {}", kind.option, kind.option.empty() ? "" : " = ", path, why));
 }
+
+/// Records the line in which a document begins.
+class DocumentStart : public YAML::EventHandler {
+ public:
+  int line() const { return line_; }
+
+  void OnDocumentStart(const YAML::Mark& mark) override { line_ = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+ private:
+  int line_ = 0;
+};
 
 }  // namespace
 
@@ -120,6 +141,17 @@ std::vector<std::string> mounted_in(const std::string& folder) {
     if (std::filesystem::path(file.name).parent_path() == std::filesystem::path(folder.substr(prefix.size())))
       paths.push_back(prefix + file.name);
   return paths;
+}
+
+YAML::Node one_document(const std::string& text, const std::string& file, const std::string& prefix) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStart start;
+  if (parser.HandleNextDocument(start) && parser.HandleNextDocument(start))
+    throw InputError(
+        fmt::format("{}:{}: {}contains more than one YAML document (a line ---), or text that belongs to none", file,
+                    start.line(), prefix));
+  return YAML::Load(text);
 }
 
 }  // namespace traverse::options

@@ -1,6 +1,10 @@
-// The texts of the input files of a scene. They are stored with the results, so that the scene can be run again from
-// the results file.
+// The texts of the input files of a scene, which are stored with the results, so that the scene can be run again from
+// the results file, and the reading of a YAML file that must contain one document. YAML::Load ignores further documents
+// without a message, and YAML::LoadAll does not terminate if a document begins with a character that cannot begin one
+// ("]", ",").
 #pragma once
+
+#include <yaml-cpp/yaml.h>
 
 #include <cstddef>
 #include <map>
@@ -59,5 +63,9 @@ const std::string& mounted(const std::string& path);
 bool is_mounted(const std::string& path);
 /// The paths of the mounted files in a folder, which includes the prefix.
 std::vector<std::string> mounted_in(const std::string& folder);
+
+/// The document of a text, null for an empty text. InputError if something follows it; the message is file, line,
+/// `prefix` and the reason. YAML::Exception if the text is not well formed.
+YAML::Node one_document(const std::string& text, const std::string& file, const std::string& prefix = "");
 
 }  // namespace traverse::options

@@ -1,5 +1,9 @@
-// The manual page, from the option table.
+// The manual page, and the bash completion of option names and of values that are words, from the option table.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <set>
 
 #include "help_groups.hpp"
 
@@ -67,6 +71,63 @@ traverse\-report results/three_span_train.h5
 .fi
 )troff";
 
+using Words = std::set<std::string>;
+
+/// The prefixes of options with a name that users choose.
+constexpr const char* user_named[] = {"vehicle_NAME_PART_", "vehicle_NAME_", "train_NAME_", "track_NAME_",
+                                      "study_vary_NAME_"};
+
+/// The shell pattern of an option: "beam_EI", or "vehicle_*_mass" for a name that users choose.
+std::string pattern_of(std::string name) {
+  for (const std::string_view word : {"NAME_PART", "NAME"})
+    if (const std::size_t at = name.find(word); at != std::string::npos) return name.replace(at, word.size(), "*");
+  return name;
+}
+
+void add_words(std::string_view text, Words& words) {
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (end > begin) words.emplace(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+constexpr std::string_view script =
+    R"(# Completion of traverse's options in bash: source this file, or install it among the completions.
+_traverse() {
+  local cur=${COMP_WORDS[COMP_CWORD]} prev= words= at rest
+  ((COMP_CWORD > 0)) && prev=${COMP_WORDS[COMP_CWORD - 1]}
+  COMPREPLY=()
+  case $prev in
+@VALUES@  esac
+  if [ -n "$words" ]; then
+    # shellcheck disable=SC2207  # words without blanks
+    COMPREPLY=($(compgen -W "$words" -- "$cur"))
+    return
+  fi
+  [[ $cur == -* ]] || return
+  words='@NAMES@'
+  # shellcheck disable=SC2207
+  COMPREPLY=($(compgen -W "$words" -- "$cur"))
+  # Names that users choose: the part of the name after each underscore.
+@USER_NAMED@}
+complete -F _traverse traverse
+)";
+
+constexpr std::string_view after_user_name = R"(  if [[ $cur == -{0}* ]]; then
+    for ((at = {1}; at < ${{#cur}}; ++at)); do
+      [ "${{cur:at:1}}" = _ ] || continue
+      rest=${{cur:at + 1}}
+      # shellcheck disable=SC2207
+      COMPREPLY+=($(compgen -P "${{cur:0:at + 1}}" -W '{2}' -- "$rest"))
+    done
+  fi
+)";
+
+void replace(std::string& text, std::string_view what, const std::string& with) {
+  text.replace(text.find(what), what.size(), with);
+}
+
 }  // namespace
 
 std::string manual_page(const std::string& integrators) {
@@ -85,6 +146,51 @@ std::string manual_page(const std::string& integrators) {
     page += literal(std::string_view(integrators).substr(begin, end - begin)) + "\n";
   }
   return page + ".fi\n" + std::string(after_options);
+}
+
+std::string bash_completion(const std::vector<std::string>& ts_types) {
+  Words names, files;
+  std::map<std::string, Words> choices, ends;  // by pattern; by the text before NAME
+  for (const HelpGroup& group : help_groups())
+    for (const auto& [name, row] : group.options) {
+      const std::string pattern = "-" + pattern_of(name);
+      add_words(row->choices, choices[pattern]);
+      if (row->kind == Kind::flag) add_words("true false", choices[pattern]);
+      if (row->kind == Kind::file || row->kind == Kind::number_or_file) files.insert(pattern);
+      bool named = false;
+      for (const std::string_view before : user_named) {
+        if (named || !name.starts_with(before)) continue;
+        named = true;
+        ends[std::string(before.substr(0, before.find("NAME")))].insert(name.substr(before.size()));
+      }
+      if (!named && name.find("NAME") == std::string::npos) names.insert("-" + name);
+    }
+  choices["-ts_type"] = {ts_types.begin(), ts_types.end()};
+  for (const HelpGroup& group : help_groups()) choices["-help"].insert(group.name);
+  for (const char* more : {"integrators", "vehicles", "man", "bash"}) choices["-help"].insert(more);
+  files.insert({"-options_file", "-output_file"});
+
+  std::string values;
+  for (const auto& [pattern, words] : choices)
+    if (!words.empty() && pattern.find('*') == std::string::npos)
+      values += fmt::format("    {}) words='{}' ;;\n", pattern, fmt::join(words, " "));
+  for (const auto& [pattern, words] : choices)
+    if (!words.empty() && pattern.find('*') != std::string::npos)
+      values += fmt::format("    {}) words='{}' ;;\n", pattern, fmt::join(words, " "));
+  values += fmt::format(
+      "    {})\n      compopt -o filenames 2>/dev/null\n      mapfile -t COMPREPLY <<<\"$(compgen -f -- \"$cur\")\"\n"
+      "      [ -n \"${{COMPREPLY[0]}}\" ] || COMPREPLY=()\n"
+      "      return ;;\n",
+      fmt::join(files, "|"));
+  std::string after;
+  for (const auto& [before, words] : ends)
+    after += fmt::format(after_user_name, before, before.size() + 1, fmt::join(words, " "));
+
+  std::string text(script);
+  replace(text, "@VALUES@", values);
+  replace(text, "@NAMES@", fmt::format("{}", fmt::join(names, " ")));
+  replace(text, "@USER_NAMED@", after);
+  return text;
 }
 
 }  // namespace traverse::options

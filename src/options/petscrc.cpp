@@ -1,6 +1,9 @@
 // Collects options from the files and environment variables of PETSc, and adds the options of Traverse among them with
-// the lowest precedence and a message on each.
+// the lowest precedence and a message on each. Converts option names between the older and the newer ones of PETSc by
+// the table of renamed options.
 #include "options/petscrc.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -8,8 +11,9 @@
 #include <filesystem>
 #include <string_view>
 
-#include "options/other_names.hpp"
+#include "base/petsc.hpp"
 #include "options/read_file.hpp"
+#include "traverse/base/error.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {
@@ -80,6 +84,31 @@ std::vector<std::string> add_weakest(std::vector<Entry> given, Entries& in_force
     }
   }
   return notes;
+}
+
+void use_own_names(Entries& entries) {
+  const auto rename = [&](const char* from, const char* to) {
+    const Entry *one = entries.find(to), *other = entries.find(from);
+    if (other == nullptr) return;
+    if (one != nullptr)
+      throw InputError(
+          fmt::format("{}: this is another name of {}; give only one of the two", other->given(), one->given()));
+    entries.rename(from, to);
+  };
+  for (const base::RenamedOption& option : base::renamed_options) rename(option.newer, option.name);
+  rename("check", "describe");  // its name before `traverse check`, the verdict of EN 1991-2
+}
+
+std::string name_in_petsc(const std::string& name) {
+  for (const base::RenamedOption& option : base::renamed_options)
+    if (name == option.name) return option.known();
+  return name;
+}
+
+std::string own_name(const std::string& name) {
+  for (const base::RenamedOption& option : base::renamed_options)
+    if (name == option.newer) return option.name;
+  return name;
 }
 
 }  // namespace traverse::options

@@ -1,5 +1,6 @@
 // Options from the places that PETSc reads: the files .petscrc and petscrc, the variables PETSC_OPTIONS and
 // PETSC_OPTIONS_YAML. Traverse reads them instead of PETSc, checks them as all others, and reports the effect of each.
+// Of options that PETSc has renamed (base/petsc_versions.hpp) users may write either name with every version of PETSc.
 #pragma once
 
 #include <string>
@@ -17,5 +18,13 @@ std::vector<Entry> read_petscrc(bool files);
 /// Adds the options of Traverse among them to the options in force, unless these have an entry of the same name.
 /// Returns a line for each: that it is in force, which entry overrides it, or that it is ignored.
 std::vector<std::string> add_weakest(std::vector<Entry> given, Entries& in_force);
+
+/// Renames entries with a newer name of PETSc to the name in Traverse. InputError if both names are given.
+void use_own_names(Entries& entries);
+
+/// The name of an option in the linked version of PETSc.
+std::string name_in_petsc(const std::string& name);
+/// The name of an option in Traverse, from either name.
+std::string own_name(const std::string& name);
 
 }  // namespace traverse::options

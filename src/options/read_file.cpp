@@ -14,7 +14,6 @@
 #include <sstream>
 
 #include "options/input_texts.hpp"
-#include "options/one_document.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::options {

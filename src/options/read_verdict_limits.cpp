@@ -10,7 +10,6 @@
 
 #include "options/data_file.hpp"
 #include "options/input_texts.hpp"
-#include "options/one_document.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/table.hpp"
 

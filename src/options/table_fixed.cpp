@@ -2,7 +2,7 @@
 #include <limits>
 #include <vector>
 
-#include "base/static_text.hpp"
+#include "base/text.hpp"
 #include "derived_rows.hpp"
 #include "track/spectrum_names.hpp"
 #include "traverse/options/analyses.hpp"

@@ -1,7 +1,7 @@
 // Rows of the option table: a vehicle and its parts. See table.hpp for the columns.
 #include <array>
 
-#include "base/static_text.hpp"
+#include "base/text.hpp"
 #include "derived_rows.hpp"
 #include "traverse/contact/law.hpp"
 #include "traverse/options/table.hpp"

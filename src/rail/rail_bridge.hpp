@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "recovery/ground_forces.hpp"
-#include "recovery/rail_devices.hpp"
 #include "structure/beam_operator.hpp"
 #include "structure/nonlinear_foundation.hpp"
 

@@ -9,7 +9,7 @@
 #include "rail/rail_bridge.hpp"
 #include "results/recorder.hpp"
 #include "results/verdict.hpp"
-#include "traverse/options/rail_loads.hpp"
+#include "traverse/options/analyses.hpp"
 
 namespace traverse::rail {
 

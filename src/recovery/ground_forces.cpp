@@ -1,17 +1,17 @@
 // Sums of foundation, ground and inertia forces as products of precomputed coefficients with nodal displacements,
-// velocities and accelerations, summed over ranks.
+// velocities and accelerations, pad and ballast forces as linear combinations of those above and below each spring, and
+// openings as the difference of the rail's two longitudinal displacements at a node; all summed over ranks.
 #include "recovery/ground_forces.hpp"
 
 #include <algorithm>
+#include <cmath>
 
-#include "base/dot.hpp"
+#include "base/numbers.hpp"
 #include "beam/assembly.hpp"
-#include "beam/ballast_shear.hpp"
-#include "beam/layered_track.hpp"
-#include "beam/point_shape.hpp"
 #include "beam/shape.hpp"
 
 namespace traverse::recovery {
+
 GroundForces::GroundForces(const beam::Beam& beam) : beam_(beam) {
   const beam::Foundation& f = beam.model().foundation;
   const std::size_t spans = beam.model().spans.size();
@@ -136,6 +136,70 @@ std::array<double, 2> GroundForces::foundation() const {
 std::array<double, 2> GroundForces::drag() const {
   const double a = beam_.rayleigh().a;
   return {a * sums_[drag_], a * sums_[drag_ + 1]};
+}
+
+SleeperForces::SleeperForces(const beam::Beam& beam, const std::vector<double>& stations)
+    : beam_(beam), sums_(2 * stations.size(), 0.0) {
+  const std::vector<beam::Sleeper> all = beam::sleepers_of(beam.bridge(), 0, beam.columns());
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const auto nearest = std::min_element(all.begin(), all.end(), [&](const beam::Sleeper& a, const beam::Sleeper& b) {
+      return std::abs(a.x - stations[i]) < std::abs(b.x - stations[i]);
+    });
+    x_.push_back(nearest->x);
+    add_sleeper(i, *nearest);
+  }
+}
+
+void SleeperForces::add_sleeper(std::size_t i, const beam::Sleeper& s) {
+  const beam::Layout& layout = beam_.layout();
+  const std::size_t pad = 2 * i, ballast = pad + 1;
+  add(pad, s.rail_node * layout.block + layout.place[beam::rail_v], s.values.pad, -1.0);
+  if (!s.sleeper_moves) {  // the pad acts on the bridge or on the ground
+    if (s.on_bridge) add_bridge(pad, s, s.values.pad);
+    return;
+  }
+  add(pad, s.unknown(layout), s.values.pad, 1.0);
+  add(ballast, s.unknown(layout), s.linear_ballast(), -1.0);
+  if (s.ballast_moves)
+    add(ballast, s.ballast_unknown(layout), s.linear_ballast(), 1.0);
+  else if (s.on_bridge)
+    add_bridge(ballast, s, s.linear_ballast());
+}
+
+void SleeperForces::add_bridge(std::size_t sum, const beam::Sleeper& s, const beam::Spring& spring) {
+  const beam::Element& element = beam_.mesh().element(s.at.element);
+  const auto psi = beam::hermite(s.at.xi, element.length, element.shear).value;
+  const auto places = beam_.bridge().transverse(s.at.element);
+  for (std::size_t i = 0; i < 4; ++i) add(sum, places[i], spring, psi[i]);
+}
+
+void SleeperForces::add(std::size_t sum, int unknown, const beam::Spring& spring, double factor) {
+  const int local = unknown < 0 ? -1 : beam_.local(unknown);
+  if (local >= 0) terms_.push_back({sum, beam::index(local), factor * spring.c, factor * spring.k});
+}
+
+void SleeperForces::evaluate(const double* v, const double* w) {
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  for (const Term& t : terms_) sums_[t.sum] += t.c * w[t.unknown] + t.k * v[t.unknown];
+  MPI_Allreduce(MPI_IN_PLACE, sums_.data(), static_cast<int>(sums_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+}
+
+RailDevices::RailDevices(const beam::Beam& beam) : beam_(beam) {
+  if (beam.rail() == nullptr || !beam.model().axial) return;
+  const beam::Line& rail = *beam.rail();
+  for (const double x : rail.model.expansion_devices) {
+    const int right = rail.mesh.locate(x).element, left = rail.mesh.locate(x, true).element;
+    x_.push_back(x);
+    left_.push_back(rail.axial(left)[1]);
+    right_.push_back(rail.axial(right)[0]);
+  }
+  openings_.resize(x_.size());
+}
+
+void RailDevices::evaluate(const double* v) {
+  const auto value = [&](int unknown) { return beam_.local(unknown) < 0 ? 0.0 : v[beam_.local(unknown)]; };
+  for (std::size_t i = 0; i < x_.size(); ++i) openings_[i] = value(right_[i]) - value(left_[i]);
+  MPI_Allreduce(MPI_IN_PLACE, openings_.data(), static_cast<int>(x_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
 }
 
 }  // namespace traverse::recovery

@@ -1,12 +1,14 @@
 // Forces on the structure other than loads and support reactions: the linear part of the foundation of section 3, the
 // ground under a layered track, and the resultants of inertia, all linear in the nodal values. With loads, reactions
-// and the nonlinear part of the foundation their sum is zero.
+// and the nonlinear part of the foundation their sum is zero. Also forces in the pads of sleepers of a layered track
+// and in the ballast below them, and openings of its rail expansion devices.
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include "beam/beam.hpp"
+#include "beam/layered_track.hpp"
 
 namespace traverse::recovery {
 
@@ -51,6 +53,59 @@ class GroundForces {
   std::array<std::size_t, beam::foundation_kind_count + 1> first_{};  // first sum of each kind, and past the last
   std::size_t track_ = 0, inertia_ = 0, drag_ = 0;
   double mass_ = 0.0;
+};
+
+/// Forces in the pads of sleepers of a layered track and in the ballast below them.
+class SleeperForces {
+ public:
+  /// Forces of the sleepers nearest to these stations of a layered track, m.
+  SleeperForces(const beam::Beam& beam, const std::vector<double>& stations);
+
+  /// Collective, from this rank's slices of the nodal displacements and their rates; complete on every rank.
+  void evaluate(const double* v, const double* w);
+
+  /// Stations of the sleepers, m.
+  const std::vector<double>& x() const { return x_; }
+  /// Forces of springs and dampers in the order of the stations, N, positive in compression: between rail and sleeper,
+  /// and between the sleeper and the layer below its ballast, without ballast that acts over a gap.
+  double pad(std::size_t i) const { return sums_[2 * i]; }
+  double ballast(std::size_t i) const { return sums_[2 * i + 1]; }
+
+ private:
+  /// The term c w + k v of one local unknown in one sum.
+  struct Term {
+    std::size_t sum, unknown;
+    double c, k;
+  };
+  /// Adds `factor` times the displacement of an unknown to the compression of a spring; -1: it does not move.
+  void add(std::size_t sum, int unknown, const beam::Spring& spring, double factor);
+  /// Adds the bridge's deflection below a sleeper to the compression of a spring.
+  void add_bridge(std::size_t sum, const beam::Sleeper& s, const beam::Spring& spring);
+  void add_sleeper(std::size_t i, const beam::Sleeper& s);
+
+  const beam::Beam& beam_;
+  std::vector<double> x_;
+  std::vector<Term> terms_;
+  std::vector<double> sums_;
+};
+
+/// Openings of the rail expansion devices of a layered track.
+class RailDevices {
+ public:
+  explicit RailDevices(const beam::Beam& beam);
+
+  /// Collective, from this rank's slice of the nodal displacements; the results are complete on every rank.
+  void evaluate(const double* v);
+
+  /// Stations of the devices from left to right, m; empty without devices or without axial unknowns.
+  const std::vector<double>& x() const { return x_; }
+  /// Displacement along x of the rail on the right of each device minus that on its left, m; positive if it opens.
+  const std::vector<double>& openings() const { return openings_; }
+
+ private:
+  const beam::Beam& beam_;
+  std::vector<double> x_, openings_;
+  std::vector<int> left_, right_;  // global unknowns
 };
 
 }  // namespace traverse::recovery

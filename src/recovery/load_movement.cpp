@@ -1,11 +1,26 @@
 // Finds the loads of the previous instant by their numbers, and the stations between both positions of each load.
+// Integrates m + b dm/dt = c exactly from call to call, with c piecewise linear in time and discontinuous when a load
+// passes the station.
 #include "recovery/load_movement.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 
 namespace traverse::recovery {
+namespace {
+
+ElementLoad between(const ElementLoad& from, const ElementLoad& to, double part) {
+  const auto at = [&](double a, double b) { return a + part * (b - a); };
+  ElementLoad load = to;
+  load.fx = at(from.fx, to.fx);
+  load.fy = at(from.fy, to.fy);
+  load.moment = at(from.moment, to.moment);
+  return load;
+}
+
+}  // namespace
 
 LoadMovement::LoadMovement(const Recovery& recovery) : recovery_(recovery), along_(recovery.stations().size()) {
   std::iota(along_.begin(), along_.end(), std::size_t{0});
@@ -68,6 +83,86 @@ void LoadMovement::record_passages() {
   std::sort(passages_.begin(), passages_.end(), [](const StationPassage& a, const StationPassage& b) {
     return std::tie(a.station, a.time) < std::tie(b.station, b.time);
   });
+}
+
+/// The contributions of loads that move through the station's element, at the ends of parts of the interval, as if each
+/// load remained on the side of the station from which it came, and the jumps when they pass the station. Returns
+/// whether there are such loads.
+bool ViscousLag::add_passing_loads(std::size_t station, History& by_loads) {
+  const auto [left, right] = recovery_.element_of(station);
+  const double x = recovery_.stations()[station];
+  jumps_.clear();
+  bool any = false;
+  for (const LoadMovement::Moved& moved : movement_.moved()) {
+    const double way = moved.x_to - moved.x_from;
+    const bool was_left = recovery_.is_left_of(station, moved.x_from);
+    const bool is_left = recovery_.is_left_of(station, moved.x_to);
+    const bool outside = std::max(moved.x_from, moved.x_to) <= left || std::min(moved.x_from, moved.x_to) >= right;
+    if (outside && was_left == is_left) continue;
+    if (!any) by_loads.fill({});
+    any = true;
+    for (std::size_t k = 0; k <= parts; ++k) {
+      const double part = static_cast<double>(k) / parts, at = moved.x_from + part * way;
+      const ElementLoad load = between(moved.from, moved.to, part);
+      const Forces added = recovery_.inside(station, at, load, was_left);
+      for (std::size_t f = 0; f < added.size(); ++f) by_loads[k][f] += added[f];
+    }
+    if (was_left == is_left) continue;
+    Jump jump{recovery_.jump(station, moved.to),
+              movement_.interval() * (1.0 - std::clamp((x - moved.x_from) / way, 0.0, 1.0))};
+    for (double& by : jump.by) by *= is_left ? 1.0 : -1.0;
+    jumps_.push_back(jump);
+  }
+  return any;
+}
+
+// Solves m + b dm/dt = c, exactly for c that is linear in each part and jumps when loads pass the station.
+void ViscousLag::advance_lag(std::size_t station, const Forces& c) {
+  Inner& inner = inner_[station];
+  History by_loads;
+  const bool moving = add_passing_loads(station, by_loads);
+  const double interval = movement_.interval(), h = moving ? interval / parts : interval, decay = std::exp(-h / b_);
+  for (double& part : inner.unrelaxed) part *= std::exp(-interval / b_);
+  for (std::size_t f = 0; f < c.size(); ++f) {
+    const auto advance = [&, m = &inner.m[f]](double from, double to) {
+      const double lag = b_ * (to - from) / h;
+      *m = to - lag + (*m - from + lag) * decay;
+    };
+    if (!moving) {
+      advance(inner.c[f], c[f]);
+      continue;
+    }
+    double end = c[f] - by_loads[parts][f];
+    for (const Jump& jump : jumps_) end -= jump.by[f];
+    const double remainder = inner.c[f] - by_loads[0][f], change = (end - remainder) / parts;
+    for (std::size_t k = 0; k < parts; ++k)
+      advance(remainder + change * static_cast<double>(k) + by_loads[k][f],
+              remainder + change * static_cast<double>(k + 1) + by_loads[k + 1][f]);
+    for (const Jump& jump : jumps_) {
+      const double lag = jump.by[f] * std::exp(-jump.ago / b_);
+      inner.m[f] += jump.by[f] - lag;
+      inner.unrelaxed[f] -= lag;
+    }
+  }
+}
+
+void ViscousLag::apply(std::vector<Response>& responses) {
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    Response& r = responses[i];
+    Inner& inner = inner_[i];
+    const Forces nodal = {r.nodal_moment, r.nodal_shear, r.nodal_axial_force};
+    const Forces c = {r.moment - nodal[0], r.shear - nodal[1], r.axial_force - nodal[2]};
+    if (first_) inner.m = c;
+    if (movement_.interval() > 0.0) advance_lag(i, c);
+    inner.c = c;
+    r.moment = nodal[0] + inner.m[0];
+    r.shear = nodal[1] + inner.m[1];
+    r.axial_force = nodal[2] + inner.m[2];
+    r.moment_rate = r.nodal_moment_rate + (c[0] - inner.m[0]) / b_;
+    r.unrelaxed_shear = inner.unrelaxed[1];
+    r.unrelaxed_axial_force = inner.unrelaxed[2];
+  }
+  first_ = false;
 }
 
 }  // namespace traverse::recovery

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "beam/support_line.hpp"
+#include "beam/mesh.hpp"
 #include "recovery/recovery_section.hpp"
 
 namespace traverse::recovery {

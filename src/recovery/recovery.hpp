@@ -1,6 +1,8 @@
-// Response at any station: deflection from the shape functions, moment and shear from the element's equilibrium.
+// Response at any station: deflection from the shape functions, moment and shear from the element's equilibrium. A load
+// that is spread over a part of an element acts as point loads of a Gauss rule.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -27,7 +29,7 @@ struct ElementLoad {
 /// shear = d moment/dx.
 struct Response {
   double deflection = 0.0, velocity = 0.0, acceleration = 0.0;  // in space
-  double relative_deflection = 0.0;                             // to the line through the supports (support_line.hpp)
+  double relative_deflection = 0.0;                             // to the line through the supports (beam/mesh.hpp)
   double moment = 0.0, shear = 0.0;
   double axial_displacement = 0.0, axial_force = 0.0;
   /// The parts of the forces, and of d moment/dt (N m/s), that follow from the nodal values alone, without loads,
@@ -136,5 +138,29 @@ class Recovery {
   std::vector<double>
       gathered_;  // for every station: v, w, a, and v, w of the unknowns above each sleeper on its element
 };
+
+/// Calls f(ElementLoad) with point loads that have the effect of `load`, exact for responses that are polynomials of xi
+/// up to degree 5 on both sides of `kink`. A concentrated load is its own point.
+template <class F>
+void for_points(const ElementLoad& load, double kink, F f) {
+  if (load.extent == 0.0) return f(load);
+  constexpr std::array<double, 3> place = {-0.7745966692414834, 0.0, 0.7745966692414834};
+  constexpr std::array<double, 3> weight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  const double left = load.xi - 0.5 * load.extent, right = load.xi + 0.5 * load.extent;
+  const double middle = std::clamp(kink, left, right);
+  for (const auto& [from, to] : {std::array{left, middle}, std::array{middle, right}}) {
+    if (!(to > from)) continue;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      const double part = weight[i] * (to - from) / load.extent;
+      ElementLoad point = load;
+      point.xi = 0.5 * (from + to) + 0.5 * (to - from) * place[i];
+      point.fx *= part;
+      point.fy *= part;
+      point.moment *= part;
+      point.extent = 0.0;
+      f(point);
+    }
+  }
+}
 
 }  // namespace traverse::recovery

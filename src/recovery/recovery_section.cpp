@@ -5,9 +5,8 @@
 #include <algorithm>
 
 #include "beam/assembly.hpp"
-#include "beam/gauss.hpp"
+#include "beam/element.hpp"
 #include "beam/nonlinear_points.hpp"
-#include "recovery/spread_load.hpp"
 
 namespace traverse::recovery {
 

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "beam/held_element.hpp"
 #include "beam/layered_track.hpp"
 #include "beam/section.hpp"
 #include "beam/shape.hpp"

@@ -16,7 +16,6 @@
 #include "base/bytes.hpp"
 #include "base/digest.hpp"
 #include "base/regular_file.hpp"
-#include "results/own_file.hpp"
 #include "results/place.hpp"
 
 namespace traverse::results {

@@ -11,7 +11,7 @@ struct Row {
   std::string_view path, dimensions, long_name;  // the first row that fits is used; no name: the last word of the path
 };
 
-constexpr Row rows[] = {
+constexpr Row dataset_rows[] = {
     {"time", "time", "time"},
     {"probes/x", "probes/x", "station of the probe"},
     {"probes/deflection", "time probes/x", "deflection of the beam, upward positive"},
@@ -192,16 +192,16 @@ DatasetWords words_of(std::string_view path, std::size_t rank) {
   if (at_end) path.remove_prefix(end.size());
   DatasetWords words;
   std::string star;
-  const auto row =
-      std::find_if(std::begin(rows), std::end(rows), [&](const Row& r) { return fits(r.path, path, star); });
-  std::string_view list = row == std::end(rows) ? "" : row->dimensions;
+  const auto row = std::find_if(std::begin(dataset_rows), std::end(dataset_rows),
+                                [&](const Row& r) { return fits(r.path, path, star); });
+  std::string_view list = row == std::end(dataset_rows) ? "" : row->dimensions;
   while (!list.empty() && words.dimensions.size() < rank) {
     const std::string name = filled(list.substr(0, list.find(' ')), star);
     words.dimensions.push_back((at_end && name == "time" ? "/end/" : "/") + name);
     list.remove_prefix(std::min(list.size(), list.substr(0, list.find(' ')).size() + 1));
   }
   if (words.dimensions.size() < rank) words.dimensions.clear();
-  const bool named = row != std::end(rows) && !row->long_name.empty();
+  const bool named = row != std::end(dataset_rows) && !row->long_name.empty();
   words.long_name =
       with_blanks(named ? filled(row->long_name, star) : std::string(path.substr(path.find_last_of('/') + 1)));
   return words;

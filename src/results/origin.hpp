@@ -1,4 +1,5 @@
-// The origin of a results file: the options and the texts of all input files, unchanged.
+// The origin of a results file: the options and the texts of all input files, unchanged; and natural modes of an HDF5
+// file as text, the input of scene/given_modes.hpp, which results files also store.
 #pragma once
 
 #include <string>
@@ -8,7 +9,6 @@
 #include "traverse/options/entry.hpp"
 
 namespace traverse::results {
-
 namespace hdf5 {
 class File;
 }
@@ -26,5 +26,10 @@ std::vector<options::Entry> origin_of(const std::string& path);
 const std::string& opened_origin();
 /// Whether an output file is the default name that origin_of sets.
 bool is_new_name(const options::Entry& output_file);
+
+/// Reads the group /modes of a file: frequency, modal_mass, modal_damping_ratio [m], x [p], shape [m,p] or
+/// [tracks,m,p], slope with the same shape (optional), axial [m] (modes with 1 are ignored), outputs/NAME [m] with the
+/// attribute `unit`. Throws InputError that names file and dataset.
+std::string modes_as_text(const std::string& path);
 
 }  // namespace traverse::results

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "results/engineering_units.hpp"
+#include "results/terminal.hpp"
 
 namespace traverse::results {
 namespace {

@@ -1,14 +1,16 @@
-// Arranges the rows of a sweep's table by trains and speeds, and prints the peaks of each train.
+// Arranges the rows of a sweep's table by trains and speeds, and prints the peaks of each train, how many speeds were
+// added, the remaining uncertainty of the peaks, and the speeds of the first mode in km/h. Writes the datasets of
+// resonance speeds v = f d/i and cancellation speeds.
 #include "results/sweep.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string_view>
 #include <utility>
 
-#include "results/engineering_units.hpp"
 #include "results/terminal.hpp"
 
 namespace traverse::results {
@@ -66,6 +68,8 @@ std::vector<double> static_deflections(const StudyTable& table) {
         values[table.study().place(run, 0) * probes + p] = value;
   return values;
 }
+
+long added_speeds(const Refined& refined) { return std::count(refined.added.begin(), refined.added.end(), 1.0); }
 
 }  // namespace
 
@@ -131,6 +135,76 @@ void print_sweep(const StudyTable& table) {
   };
   print("least wheel force", "least_wheel_force", false);
   print("greatest wheel force", "greatest_wheel_force", true);
+  std::fflush(stdout);
+}
+
+void print(const Refined& refined) {
+  const long added = added_speeds(refined), given = static_cast<long>(refined.added.size()) - added;
+  std::string remaining = "no speed between the computed ones can have a higher peak";
+  if (refined.wanted == 0.0)
+    remaining =
+        refined.uncertainty > 0.0
+            ? fmt::format(
+                  "between two computed speeds a limit may still be exceeded ({}); -sweep_refine 1e-2 adds more speeds",
+                  refined.curve)
+            : "every limit that is satisfied at the computed speeds is also satisfied between them";
+  else if (refined.uncertainty > 0.0)
+    remaining = fmt::format("between the computed speeds, peaks can be at most {:.1g} higher than found ({}){}",
+                            refined.uncertainty, refined.curve,
+                            refined.uncertainty > refined.wanted ? ", more than the requested accuracy" : "");
+  fmt::print("  {} speeds added to {}; {}\n", added, given, remaining);
+}
+
+void add_to(std::vector<Attribute>& summary, const Refined& refined) {
+  summary.push_back({"speeds_added", added_speeds(refined)});
+  summary.push_back({"peak_uncertainty", refined.uncertainty});
+  summary.push_back({"peak_uncertainty_of", refined.curve});
+}
+
+void record(const std::vector<int>& trains, const std::vector<Resonance>& resonances,
+            const std::vector<Cancellation>& cancellations, Recorder& recorder) {
+  std::vector<Recorder::Dataset> sets;
+  const auto add = [&sets](const char* name, const char* unit, const auto& list, auto get) {
+    std::vector<double> values;
+    for (const auto& one : list) values.push_back(get(one));
+    if (!values.empty()) sets.push_back({name, {values.size()}, values, unit});
+  };
+  if (!trains.empty())
+    add("/resonances/hslm_a", "1", resonances,
+        [&](const Resonance& r) { return static_cast<double>(trains[r.train]); });
+  add("/resonances/mode", "1", resonances, [](const Resonance& r) { return static_cast<double>(r.mode); });
+  add("/resonances/order", "1", resonances, [](const Resonance& r) { return static_cast<double>(r.order); });
+  add("/resonances/frequency", "Hz", resonances, [](const Resonance& r) { return r.frequency; });
+  add("/resonances/distance", "m", resonances, [](const Resonance& r) { return r.distance; });
+  add("/resonances/speed", "m/s", resonances, [](const Resonance& r) { return r.speed; });
+  add("/resonances/deflection_speed", "m/s", resonances, [](const Resonance& r) { return r.of_deflection; });
+  add("/resonances/acceleration_speed", "m/s", resonances, [](const Resonance& r) { return r.of_acceleration; });
+  add("/cancellations/mode", "1", cancellations, [](const Cancellation& c) { return static_cast<double>(c.mode); });
+  add("/cancellations/half_waves", "1", cancellations,
+      [](const Cancellation& c) { return static_cast<double>(c.half_waves); });
+  add("/cancellations/speed", "m/s", cancellations, [](const Cancellation& c) { return c.speed; });
+  recorder.datasets(sets);
+}
+
+void print(const std::vector<int>& trains, const std::vector<Resonance>& resonances,
+           const std::vector<Cancellation>& cancellations) {
+  const std::size_t none = std::max<std::size_t>(1, trains.size());
+  std::size_t last = none;
+  for (const Resonance& r : resonances) {
+    if (r.mode != 1) continue;
+    if (last == none) fmt::print("resonances v = f1 d/i of f1 {:.4g} Hz, km/h", r.frequency);
+    if (r.train != last)
+      fmt::print("\n  {}d {:.4g} m", trains.empty() ? "" : fmt::format("{:>5}  ", fmt::format("A{}", trains[r.train])),
+                 r.distance);
+    last = r.train;
+    fmt::print("; i {} predicted {:.4g}, {}", r.order, 3.6 * r.speed,
+               std::isnan(r.of_deflection) ? "no peak there" : fmt::format("found {:.4g}", 3.6 * r.of_deflection));
+  }
+  if (last < none) fmt::print("\n");
+  std::string speeds;
+  for (const Cancellation& c : cancellations)
+    if (c.mode == 1) speeds += fmt::format("{}{:.4g}", speeds.empty() ? "" : ", ", 3.6 * c.speed);
+  if (!speeds.empty()) fmt::print("cancellation speeds v = 2 f1 L/(2 k + 1): {} km/h\n", speeds);
   std::fflush(stdout);
 }
 

@@ -1,5 +1,5 @@
 // Formats and prints progress with the remaining time, the summary of a run, and tables of natural frequencies with
-// damping ratios.
+// damping ratios. The table of engineering units comes from the CSV file when the program is built.
 #include "results/terminal.hpp"
 
 #include <fmt/format.h>
@@ -11,12 +11,11 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <stdexcept>
 
-#include "results/engineering_units.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results {
-
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -34,6 +33,10 @@ bool is_first_rank() {
 }
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+constexpr EngineeringUnit unit_table[] = {
+#include "engineering_units_rows.inc"
+};
 
 }  // namespace
 
@@ -265,6 +268,18 @@ void print_modes(const modes::Modes& modes, double omega1, double omega2, double
                                               rayleigh_a, rayleigh_b, omega1, omega2));
   }
   std::fflush(stdout);
+}
+
+const EngineeringUnit& engineering_unit(std::string_view quantity) {
+  const auto* row = std::find_if(std::begin(unit_table), std::end(unit_table),
+                                 [&](const EngineeringUnit& u) { return u.quantity == quantity; });
+  if (row == std::end(unit_table)) throw std::logic_error("no engineering unit for " + std::string(quantity));
+  return *row;
+}
+
+std::string in_engineering_units(std::string_view quantity, double value, int digits) {
+  const EngineeringUnit& unit = engineering_unit(quantity);
+  return fmt::format("{:.{}g} {}", unit.factor * value, digits, unit.name);
 }
 
 }  // namespace traverse::results

@@ -3,12 +3,25 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "modes/modes.hpp"
 #include "results/recorder.hpp"
 
 namespace traverse::results {
+
+/// The units in which people read quantities: scripts/engineering_units.csv, which pictures and reports read too.
+struct EngineeringUnit {
+  std::string_view quantity, si, name;
+  double factor = 1.0;  // from SI
+};
+
+/// The row of a quantity such as "deflection"; std::logic_error if there is none.
+const EngineeringUnit& engineering_unit(std::string_view quantity);
+
+/// "-4.213 mm": a value in SI units in its engineering unit.
+std::string in_engineering_units(std::string_view quantity, double value, int digits = 4);
 
 /// "12 ms", "3.4 s", "2 min 05 s", "1 h 10 min".
 std::string duration_text(double seconds);

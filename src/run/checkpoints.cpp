@@ -13,8 +13,8 @@
 #include "options/input_texts.hpp"
 #include "results/origin.hpp"
 #include "results/stage.hpp"
-#include "run/scene_digest.hpp"
-#include "run/signals.hpp"
+#include "run/model_record.hpp"
+#include "run/process.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::run {

@@ -20,7 +20,7 @@ constexpr double first_factor = 1.5;        // factor of the first frequency; EN
 constexpr std::size_t frequency_count = 3;  // number of distinct frequencies
 constexpr double wanted_instants = 20.0;    // in a period of the cut-off frequency
 constexpr double least_instants = 8.0;      // in a period of the cut-off frequency
-constexpr double interval_tolerance = 1e-9;
+constexpr double spacing_tolerance = 1e-9;
 constexpr double instant_tolerance = 1e-6;  // relative to the interval
 constexpr double same_frequency = 1e-6;     // relative difference below which two frequencies are equal
 constexpr int cheap_nodes = 1000;           // largest number of nodes for which computing frequencies is cheap
@@ -94,7 +94,7 @@ double longest_spacing_for(double frequency) { return 1.0 / (least_instants * fr
 double unsettled_end(double frequency) { return unsettled_periods / frequency; }
 
 std::string filter_obstacle(double frequency, const Plan& plan, std::size_t series, const char* what, double spacing) {
-  if (plan.interval > spacing * longest_spacing_for(frequency) * (1.0 + interval_tolerance))
+  if (plan.interval > spacing * longest_spacing_for(frequency) * (1.0 + spacing_tolerance))
     return fmt::format("samples or steps of {:g} s are too long for {:g} Hz; allowed: at most {:g} s", plan.interval,
                        frequency, longest_spacing_for(frequency));
   const double numbers = static_cast<double>(series) * (1.0 + plan.end_time / plan.interval);

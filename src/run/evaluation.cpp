@@ -9,8 +9,6 @@
 #include <iterator>
 #include <limits>
 
-#include "run/envelope.hpp"
-
 namespace traverse::run {
 namespace {
 

@@ -3,28 +3,49 @@
 
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "beam/support_line.hpp"
+#include "base/passage_peaks.hpp"
+#include "beam/mesh.hpp"
 #include "coupling/system.hpp"
 #include "integrate/stepper.hpp"
 #include "recovery/load_movement.hpp"
 #include "recovery/recovery.hpp"
-#include "recovery/viscous_lag.hpp"
-#include "run/axle_load_records.hpp"
+#include "results/recorder.hpp"
+#include "results/verdict.hpp"
 #include "run/deck_acceleration.hpp"
-#include "run/deflected_shape.hpp"
 #include "run/exit_states.hpp"
 #include "run/limit_check.hpp"
+#include "run/model_record.hpp"
 #include "run/outputs.hpp"
 #include "run/plan.hpp"
 #include "run/response_extremes.hpp"
-#include "run/result.hpp"
-#include "run/wheel_extremes.hpp"
 #include "run/wheel_unloading.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::run {
+
+/// The result of a run, as values.
+struct Result {
+  /// The magnitudes of the peaks at each probe, and the extremes of all wheels.
+  base::PassagePeaks passage_peaks() const;
+
+  ResponseExtremes peaks;                        // of each quantity at every probe and wheel
+  results::Summary summary;                      // greatest values; energies, residuals and cost of the run
+  std::vector<results::Separation> separations;  // losses of contact
+  bool lost_contact = false;                     // one of any contact that was closed at the start
+  std::vector<results::Verdict> verdicts;        // on the scene's limits, if they were wanted
+  bool filter_unsettled = false;                 // the low-passed peak is within the unsettled end of the filter
+  // What is stored once, if it was wanted.
+  std::vector<results::Recorder::Dataset> datasets;
+  std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::string>>>> tables;
+  std::optional<results::Shape> shape;
+
+  /// Writes what is stored once.
+  void record(results::Recorder& recorder) const;
+};
 
 /// What is evaluated of a run beyond its peaks and diagnostics.
 struct Wants {

@@ -1,13 +1,19 @@
 // Writes the datasets of /model: spans, supports, stiffness and mass along the bridge, foundations, vehicles with their
-// bodies, wheels, springs and joints, and moving forces.
+// bodies, wheels, springs and joints, and moving forces. The digest is of the sorted options and the texts of all input
+// files, without options that leave the results unchanged. Deflections of a shape are those at the nodes from the
+// stored displacement vector, and inside elements by recovery with the loads of that instant.
 #include "run/model_record.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "base/digest.hpp"
 #include "base/notes.hpp"
-#include "beam/shape_points.hpp"
+#include "beam/mesh.hpp"
+#include "beam/shape.hpp"
 #include "modes/modes.hpp"
-#include "run/quantity.hpp"
+#include "run/response_extremes.hpp"
 #include "traverse/options/verdict_limit.hpp"
 
 namespace traverse::run {
@@ -173,6 +179,32 @@ void record_quantities(Recorder& recorder) {
   recorder.tables({{"/quantities/peaks", peaks}, {"/quantities/limits", limits}});
 }
 
+constexpr std::size_t points_per_call = 4000;  // points inside elements in one call; each needs a kilobyte
+
+using Point = beam::ShapePoints::Point;
+
+/// Collective. Adds the deflections of the nodes of all ranks.
+void add_nodes(const beam::Beam& beam, const std::vector<double>& v, const std::vector<Point>& points,
+               std::vector<double>& deflection) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const int local = points[i].node < 0 ? -1 : beam.local(beam.bridge().unknown(points[i].node, 1));
+    if (local >= 0) deflection[i] = v[static_cast<std::size_t>(local)];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, deflection.data(), static_cast<int>(deflection.size()), MPI_DOUBLE, MPI_SUM, beam.comm());
+}
+
+/// Collective. Sets the deflections of points[which[0]], points[which[1]], ...
+void fill_inside(const beam::Beam& beam, double self_weight, const LargestDeflection& worst,
+                 const std::vector<Point>& points, const std::vector<std::size_t>& which,
+                 std::vector<double>& deflection) {
+  std::vector<double> stations;
+  for (const std::size_t i : which) stations.push_back(points[i].x);
+  recovery::Recovery recovery(beam, std::move(stations), self_weight);
+  std::vector<recovery::Response> responses;
+  recovery.evaluate(worst.v.data(), worst.w.data(), worst.a.data(), worst.loads, responses);
+  for (std::size_t k = 0; k < which.size(); ++k) deflection[which[k]] = responses[k].deflection;
+}
+
 }  // namespace
 
 void record_notes(const std::vector<std::string>& notes, results::Recorder& recorder) {
@@ -201,6 +233,49 @@ void record_modes(const SharedBeam& shared, results::Recorder& recorder) {
     modes.damper_ratio.push_back(mode.dampers);
   }
   recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
+}
+
+std::string digest_of(const scene::Scene& scene, std::span<const std::string_view> excluded,
+                      const std::vector<options::InputText>& files, std::string_view more) {
+  auto entries = scene.options;
+  std::erase_if(entries, [&](const auto& option) {
+    const std::string& name = option.first;
+    const bool display_only = name == "verbose" || name.starts_with("ts_monitor") || name.starts_with("log_") ||
+                              name.starts_with("report_") || name.find("_view") != name.npos;
+    return display_only || std::find(excluded.begin(), excluded.end(), name) != excluded.end();
+  });
+  std::sort(entries.begin(), entries.end());
+  base::Digest digest;
+  const auto add = [&](std::string_view text) {
+    digest.add(std::to_string(text.size()) + ":");
+    digest.add(text);
+  };
+  for (const auto& [name, value] : entries) {
+    add(name);
+    add(value);
+  }
+  for (const options::InputText& file : files) add(file.text);
+  add(more);
+  return fmt::format("{:016x}", digest.value());
+}
+
+results::Shape shape_of(const beam::Beam& beam, const scene::Scene& scene, const LargestDeflection& worst) {
+  const beam::ShapePoints shape(beam.mesh(), scene.output.probes);
+  const std::vector<Point>& points = shape.points();
+  results::Shape out{worst.time, shape.x(), std::vector<double>(points.size(), 0.0)};
+  add_nodes(beam, worst.v, points, out.deflection);
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].node < 0) which.push_back(i);
+    if (which.size() < points_per_call && (i + 1 < points.size() || which.empty())) continue;
+    fill_inside(beam, scene.self_weight ? scene.gravity : 0.0, worst, points, which, out.deflection);
+    which.clear();
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const beam::SupportLine line = beam::support_line(beam.model(), points[i].x);
+    out.deflection[i] -= line.height(beam.model().settlement) + line.height(worst.ground);
+  }
+  return out;
 }
 
 }  // namespace traverse::run

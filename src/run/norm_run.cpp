@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "norm/load_models.hpp"
+#include "norm/en1991.hpp"
 #include "results/stage.hpp"
 #include "run/simulation.hpp"
 

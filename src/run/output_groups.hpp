@@ -16,9 +16,9 @@ void add_balance(const Source& source, Outputs& outputs);   // outputs_beam.cpp
 void add_rail(const Source& source, Outputs& outputs);      // outputs_beam.cpp
 /// The quantities of given modes other than deflections.
 void add_outputs_of_modes(const Source& source, Outputs& outputs);  // outputs_beam.cpp
-void add_foundation(const Source& source, Outputs& outputs);        // outputs_foundation.cpp
-void add_hanging(const Source& source, Outputs& outputs);           // outputs_foundation.cpp
-void add_sleepers(const Source& source, Outputs& outputs);          // outputs_foundation.cpp
+void add_foundation(const Source& source, Outputs& outputs);        // outputs.cpp
+void add_hanging(const Source& source, Outputs& outputs);           // outputs.cpp
+void add_sleepers(const Source& source, Outputs& outputs);          // outputs.cpp
 
 inline constexpr OutputGroup output_groups[] = {add_couplers, add_vehicles, add_energy};
 inline constexpr OutputGroup output_groups_of_a_bridge[] = {

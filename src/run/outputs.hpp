@@ -16,9 +16,7 @@
 
 #include "coupling/system.hpp"
 #include "recovery/ground_forces.hpp"
-#include "recovery/rail_devices.hpp"
 #include "recovery/recovery.hpp"
-#include "recovery/sleeper_forces.hpp"
 #include "results/recorder.hpp"
 #include "traverse/scene/scene.hpp"
 

@@ -1,12 +1,18 @@
 // Derives the time step from the first period, the crossing of a span and the shortest wave of track and wheels,
-// rounded to 1, 2 or 5 times a power of ten, and the sampling interval from that.
+// rounded to 1, 2 or 5 times a power of ten, and the sampling interval from that. Given steps are bounded by the first
+// period, waves of the track, sleepers and contact oscillation, and the element length by 1/lambda = (4 EI/k)^(1/4) of
+// a beam on an elastic foundation.
 #include "run/plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+
+#include "base/numbers.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::run {
 namespace {
@@ -126,6 +132,120 @@ void move_end_to_sample(Plan& plan) {
   if (std::abs(sample_next_to_end(plan) - plan.end_time) < tolerance) plan.end_time = sample_next_to_end(plan);
 }
 
+// Element length times lambda, lambda = (k/4EI)^(1/4). The error of the deflection under a force on a bed is 2 % at 1,
+// a fifth at 2, a factor of three at 4.
+constexpr double warning_on_bed = 1.0, limit_on_bed = 2.0;
+
+// Errors of peaks of a bridge of three spans under a moving force (R6): esdirk4 3e-3 with 12 steps in the first period,
+// 5e-3 with 7, 3 % with 5 and 5 % with 4; the second-order genalpha 1 % with 36 and 5 % with 12. For one span under a
+// sprung mass (R3) 2e-4 with 5.
+constexpr double min_steps_per_period = 4.0, good_steps_per_period = 8.0, second_order_steps_per_period = 40.0;
+// If the crossing of a bridge lasts this number of first periods, the deflection is static within 1 %, for any step.
+constexpr double slow_crossing_periods = 50.0;
+
+// Errors of wheel forces over a bump of 2 m: 1 % with 20 steps per wave, 10 % with 8, nearly 50 % with 4.
+constexpr double min_steps_per_wave = 8.0, good_steps_per_wave = 20.0;
+// Sleepers and contact oscillations excite wheel forces less: a part of the variation is lost.
+constexpr double steps_per_sleeper = 4.0, steps_per_oscillation = 10.0;
+
+constexpr double max_stored_samples = 1e10;
+constexpr double shortest_run = 1e-12;  // s
+
+bool has_loads(const scene::Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
+
+void check_waves(const scene::Scene& scene, double step, std::vector<std::string>& notes) {
+  double wave = scene.profile.shortest_wave();
+  for (const train::Course& course : scene.train.courses)
+    if (course.profile) wave = std::min(wave, course.profile->shortest_wave());
+  if (scene.train.vehicles.empty() || scene.train.speed <= 0.0 || !std::isfinite(wave)) return;
+  const double passage = wave / scene.train.speed;
+  if (step > passage / min_steps_per_wave)
+    throw InputError(
+        fmt::format("ts_dt = {:g}: the track's shortest wave, {:g} m, is passed in {:g} s; allowed: at most {:g} s, or "
+                    "leave ts_dt out",
+                    step, wave, passage, passage / min_steps_per_wave));
+  if (step > passage / good_steps_per_wave)
+    notes.push_back(fmt::format(
+        "steps of {:g} s are long for the track's shortest wave, {:g} m, passed in {:g} s: wheel forces are rough; "
+        "-ts_dt {:.2g} resolves it",
+        step, wave, passage, passage / good_steps_per_wave));
+}
+
+// Single sleepers affect the wheels, not the bridge.
+void check_sleepers(const scene::Scene& scene, double step, std::vector<std::string>& notes) {
+  if (!scene.beam || !scene.beam->track || scene::greatest_speed(scene) <= 0.0) return;
+  const double passage = scene.beam->track->spacing / scene::greatest_speed(scene);
+  if (step > passage / steps_per_sleeper)
+    notes.push_back(
+        fmt::format("steps of {:g} s are long for the sleepers, each passed in {:g} s: forces of wheels and rail are "
+                    "rough; -ts_dt {:.2g} resolves them",
+                    step, passage, passage / steps_per_oscillation));
+}
+
+void check_periods(const scene::Scene& scene, double step, double period, bool high_order,
+                   std::vector<std::string>& notes) {
+  const double speed = scene::greatest_speed(scene);
+  if (!scene.beam || period <= 0.0 || speed <= 0.0) return;
+  const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
+  if (span / speed > slow_crossing_periods * period) return;
+  if (step > period / min_steps_per_period)
+    throw InputError(fmt::format(
+        "ts_dt = {:g}: the first period of the beam is {:g} s, which the load excites; allowed: at most {:g} s, or "
+        "leave ts_dt out",
+        step, period, period / min_steps_per_period));
+  const double good = period / (high_order ? good_steps_per_period : second_order_steps_per_period);
+  if (step <= good) return;
+  notes.push_back(
+      fmt::format("steps of {:g} s are long for the first period of {:g} s{}: deflections may be some per cent off; "
+                  "take -ts_dt {:.2g}{}",
+                  step, period, high_order ? "" : " and order 2", good, high_order ? "" : " or -ts_type esdirk4"));
+}
+
+void check_harmonics(const scene::Scene& scene, double step, std::vector<std::string>& notes) {
+  const double frequency = highest_load_frequency(scene.load);
+  if (frequency == 0.0) return;
+  const double period = 1.0 / frequency;
+  if (step > period / min_steps_per_period)
+    throw InputError(
+        fmt::format("ts_dt = {:g}: the loads vary with {:g} Hz; allowed: at most {:g} s, or leave ts_dt out", step,
+                    frequency, period / min_steps_per_period));
+  if (step > period / good_steps_per_period)
+    notes.push_back(
+        fmt::format("steps of {:g} s are long for loads that vary with {:g} Hz; -ts_dt {:.2g} resolves them", step,
+                    frequency, period / good_steps_per_period));
+}
+
+/// The greatest lambda in a span, 1/m.
+double largest_lambda(const beam::BeamModel& beam, double start, double length, int elements) {
+  double lambda = 0.0;
+  for (int i = 0; i < elements; ++i) {
+    const double x = start + (i + 0.5) * length / elements;
+    for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
+      lambda = std::max(lambda, bending_decay_rate(kind.direction, bed.k.at(x, x), beam.EI.at(x, x)));
+    });
+  }
+  return lambda;
+}
+
+void check_beds(const beam::BeamModel& beam, std::vector<std::string>& notes) {
+  double start = 0.0;
+  for (std::size_t i = 0; i < beam.spans.size(); start += beam.spans[i++]) {
+    const double span = beam.spans[i], lambda = largest_lambda(beam, start, span, beam.elements[i]);
+    const auto elements = [&](double length) { return base::whole(std::ceil(lambda * span / length)); };
+    if (beam.elements[i] < elements(limit_on_bed))
+      throw InputError(
+          fmt::format("beam_elements_per_span = {}: the beam bends within 1/lambda = {:.3g} m of a wheel on "
+                      "its bed; allowed: at least {} in the span of {:g} m, or a softer bed",
+                      beam.elements[i], 1.0 / lambda, elements(limit_on_bed), span));
+    if (beam.elements[i] >= elements(warning_on_bed)) continue;
+    notes.push_back(
+        fmt::format("the beam bends within 1/lambda = {:.3g} m of a wheel on its bed: deflections there are "
+                    "some per cent off; -beam_elements_per_span {} resolves them",
+                    1.0 / lambda, elements(warning_on_bed)));
+    return;
+  }
+}
+
 }  // namespace
 
 bool Plan::ends_at_sample() const { return end_time == sample_next_to_end(*this); }
@@ -172,6 +292,55 @@ Plan make_plan(const scene::Scene& scene, const coupling::System& system, double
   }
   move_end_to_sample(plan);
   return plan;
+}
+
+void check_mesh(const scene::Scene& scene, std::vector<std::string>& notes) {
+  if (!scene.beam || scene.beam->track || !has_loads(scene)) return;
+  const beam::BeamModel& beam = *scene.beam;
+  const bool moves = scene.analysis == options::Analysis::transient && scene::greatest_speed(scene) > 0.0;
+  if (moves && scene.model.modes == 0 && *std::min_element(beam.elements.begin(), beam.elements.end()) == 1)
+    notes.emplace_back(
+        "one element a span: its first frequency is up to a tenth too high, and so may the response be wrong; "
+        "-beam_elements_per_span 4 keeps a thousandth");
+  check_beds(beam, notes);
+}
+
+void check_times(const Plan& plan) {
+  if (plan.end_time < shortest_run)
+    throw InputError(fmt::format("ts_max_time = {:g}: too short a run for rounding; allowed: at least {:g} s",
+                                 plan.end_time, shortest_run));
+  if (!(plan.end_time / plan.interval < max_stored_samples))
+    throw InputError(fmt::format("output_interval = {:g}: too many samples to the end at {:g} s; allowed: above {:g} s",
+                                 plan.interval, plan.end_time, plan.end_time / max_stored_samples));
+}
+
+void check_steps(const scene::Scene& scene, const Plan& plan, double first_period, bool high_order,
+                 std::vector<std::string>& notes) {
+  if (!scene.model.step) return;
+  const double step = std::min(plan.time_step, plan.interval);
+  check_waves(scene, step, notes);
+  check_sleepers(scene, step, notes);
+  check_periods(scene, step, first_period, high_order, notes);
+  check_harmonics(scene, step, notes);
+}
+
+void check_contacts(const scene::Scene& scene, const Plan& plan, const train::Fleet& fleet,
+                    std::vector<std::string>& notes) {
+  double period = std::numeric_limits<double>::infinity();
+  for (const train::WheelContact& c : fleet.wheels) {
+    const train::Wheel& wheel = fleet.wheel(c);
+    const bool round = wheel.shape.flat_length <= 0.0 && wheel.shape.polygon_amplitude <= 0.0;
+    if (scene.profile.level() && round) continue;
+    const double stiffness = contact::force(c.law, c.kinematics, 0.0).normal_by_penetration;
+    const double mass = fleet.vehicles[c.vehicle].mechanism.model().bodies[c.body].mass;
+    if (stiffness > 0.0) period = std::min(period, 2.0 * std::numbers::pi * std::sqrt(mass / stiffness));
+  }
+  const double step = std::min(plan.time_step, plan.interval);
+  if (step > period / steps_per_oscillation)
+    notes.push_back(
+        fmt::format("steps of {:g} s pass over the wheels' oscillation on their contacts, {:.3g} s a period: where the "
+                    "track stirs it, wheel forces are rough; -ts_dt {:.2g} resolves it",
+                    step, period, period / (2.0 * steps_per_oscillation)));
 }
 
 }  // namespace traverse::run

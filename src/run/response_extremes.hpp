@@ -1,11 +1,14 @@
 // Extremes (peaks) of a run. Between samples a curve is interpolated by a polynomial of degree four
-// (interpolated_extremum.hpp). The least and the greatest value at every probe form the envelopes along the bridge.
-// When a wheel passes a probe, the moment there has a kink over time, and the shear jumps (probe_forces.hpp); option
-// step_probes gives both an instant of their own. With damping b K both relax after that within a time of b, which may
-// be much shorter than a step.
+// (extremum_tracker.hpp). The least and the greatest value at every probe form the envelopes along the bridge. When a
+// wheel passes a probe, the moment there has a kink over time, and the shear jumps; option step_probes gives both an
+// instant of their own. With damping b K both relax after that within a time of b, which may be much shorter than a
+// step.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
 #include <string>
@@ -13,12 +16,214 @@
 
 #include "base/bytes.hpp"
 #include "recovery/load_movement.hpp"
+#include "recovery/recovery.hpp"
+#include "results/recorder.hpp"
 #include "run/extremum_tracker.hpp"
-#include "run/probe_forces.hpp"
-#include "run/quantity.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::run {
+
+/// The quantities whose peaks are evaluated and whose errors `accuracy` controls.
+enum Quantity : std::size_t {
+  deflection,
+  acceleration,
+  moment,
+  wheel_force,
+  low_passed,
+  shear_force,
+  axial_displacement,
+  axial_force,
+  quantities
+};
+inline constexpr std::array<const char*, quantities> quantity_names = {
+    "deflection", "acceleration",       "moment",     "wheel force", "low-passed acceleration",
+    "shear",      "axial displacement", "axial force"};
+/// Their names in options and in the results file.
+inline constexpr std::array<const char*, quantities> stored_names = {
+    "deflection", "acceleration",       "moment",     "wheel_force", "acceleration_lowpass",
+    "shear",      "axial_displacement", "axial_force"};
+
+inline constexpr std::array<const char*, quantities> quantity_units = {"m", "m/s2", "N m", "N", "m/s2", "N", "m", "N"};
+
+/// Whether only single runs by elements evaluate its peaks, not runs by modes or in batches.
+inline constexpr bool by_elements_only(std::size_t q) { return q >= shear_force; }
+
+/// The extremes of the section forces at a probe. A passage is the instant at which a load passes the probe. At a
+/// passage the moment has a kink over time and the shear jumps (also the axial force, if the load has a component along
+/// x); the values on both sides are extremes. They are known if a step ends at the passage; otherwise they are
+/// extrapolated, where possible, by straight lines from the two instants before and the two after it.
+class ProbeForces {
+ public:
+  ProbeForces() = default;
+  /// axial: the beam has an axial force.
+  explicit ProbeForces(bool axial) : has_axial_(axial) {}
+
+  /// Calls record(Quantity, value, time, outward, other) for the extremes of moment, shear and axial force; other: the
+  /// shear at a moment's extreme, the moment at a shear's extreme. passages: those since the previous instant,
+  /// ascending; lag: b of Rayleigh damping, s, if the responses lag.
+  template <class Record>
+  void add(double t, const recovery::Response& r, std::span<const recovery::StationPassage> passages, double lag,
+           Record&& record) {
+    const bool lagging = lag > 0.0 && !std::isnan(r.moment_rate);
+    for (const recovery::StationPassage& passage : passages) kinks_.add(passage.time);
+    store({t, r.moment, r.shear, r.axial_force});
+    largest_moment_ = std::max(largest_moment_, std::abs(r.moment));
+    if (lagging)
+      lagging_moment_.add(t, r.moment, r.moment_rate, lag, of_moment(record));
+    else
+      moment_.add(t, r.moment, kinks_, of_moment(record));
+    add_jumping(t, r, passages, lagging ? lag : 0.0, record);
+  }
+  template <class Record>
+  void finish(double lag, Record&& record) {
+    lagging_moment_.finish(of_moment(record));
+    moment_.finish(kinks_, of_moment(record));
+    finish_piece(lag, record);
+  }
+
+ private:
+  static constexpr double same_instant =
+      1e-4;  // relative to the time between two instants: a passage so near an instant with both sides belongs to it
+  static constexpr double moment_tolerance = 0.02;  // relative to the largest moment at the probe
+  static constexpr double hinge_arm = 1e-6;  // m: times the shear, a moment that is a rounding error, as at a hinge
+
+  struct Forces {
+    double time = 0.0, moment = 0.0, shear = 0.0, axial = 0.0;
+    /// Linear interpolation or extrapolation with these forces and the forces at another instant.
+    Forces at(double t, const Forces& through) const {
+      const double part = (t - time) / (through.time - time);
+      return {t, moment + part * (through.moment - moment), shear + part * (through.shear - shear),
+              axial + part * (through.axial - axial)};
+    }
+  };
+
+  template <class Record>
+  auto of_moment(Record& record) {
+    return [this, &record](double value, double at, bool outward) {
+      record(moment, value, at, outward, interpolate(at).shear);
+    };
+  }
+  template <class Record>
+  auto of_shear(Record& record) {
+    return [this, &record](double value, double at, bool outward) {
+      record(shear_force, value, at, outward, interpolate(at).moment);
+    };
+  }
+  template <class Record>
+  static auto of_axial(Record& record) {
+    return [&record](double value, double at, bool outward) { record(axial_force, value, at, outward, 0.0); };
+  }
+
+  /// Whether a straight line through two instants `apart` s apart may be continued for `beyond` s: through two instants
+  /// close together, at an event, it has the slope of rounding errors.
+  static bool reaches(double beyond, double apart) { return beyond <= base::Stencil::most_uneven * apart; }
+
+  template <class Record>
+  void add_jumping(double t, const recovery::Response& r, std::span<const recovery::StationPassage> passages,
+                   double lag, Record&& record) {
+    if (instants_ > 0 && t <= latest_[0].time) return;  // this instant was already added
+    const Forces relaxed = {t, r.moment, r.shear - (lag > 0.0 ? r.unrelaxed_shear : 0.0),
+                            r.axial_force - (lag > 0.0 ? r.unrelaxed_axial_force : 0.0)};
+    const bool ends_there = r.shear_beside != none || r.axial_force_beside != none;
+    const double tolerance = instants_ > 0 ? same_instant * (t - latest_[0].time) : 0.0;
+    std::size_t between = 0;
+    double passage = 0.0;
+    for (const recovery::StationPassage& p : passages) {
+      if ((ended_there_ && p.time <= latest_[0].time + tolerance) || (ends_there && p.time >= t - tolerance)) continue;
+      passage = p.time;
+      ++between;
+    }
+    ended_there_ = ends_there;
+    if (ends_there) {
+      const auto side_forces = [&](std::size_t side) {
+        return Forces{t, relaxed.moment, relaxed.shear + r.shear_beside[side],
+                      relaxed.axial + r.axial_force_beside[side]};
+      };
+      if (between == 0) add_to_piece(side_forces(0), r, lag, record);
+      finish_piece(lag, record);
+      kinks_.add(t);
+      add_to_piece(side_forces(1), r, lag, record);
+    } else if (between > 0) {
+      const bool known =
+          between == 1 && instants_ > 1 && reaches(passage - latest_[0].time, latest_[0].time - latest_[1].time);
+      if (known) before_passage_ = latest_[0].at(passage, latest_[1]);
+      finish_piece(lag, record);
+      has_before_ = known;
+      add_to_piece(relaxed, r, lag, record);
+    } else {
+      add_to_piece(relaxed, r, lag, record);
+    }
+  }
+  /// Adds an instant on one side of all passages of loads to the present interval between passages, or to a new one.
+  template <class Record>
+  void add_to_piece(const Forces& now, const recovery::Response& r, double lag, Record& record) {
+    if (has_before_ && instants_ == 1 && reaches(latest_[0].time - before_passage_.time, now.time - latest_[0].time))
+      record_sides(latest_[0].at(before_passage_.time, now), now, lag, record);
+    shear_.add(now.time, now.shear, r.shear - now.shear, lag, of_shear(record));
+    if (has_axial_) axial_.add(now.time, now.axial, r.axial_force - now.axial, lag, of_axial(record));
+    latest_ = {now, latest_[0]};
+    ++instants_;
+  }
+  template <class Record>
+  void finish_piece(double lag, Record& record) {
+    if (instants_ > 0) shear_.finish(lag, of_shear(record));
+    if (instants_ > 0 && has_axial_) axial_.finish(lag, of_axial(record));
+    instants_ = 0;
+    has_before_ = false;
+  }
+  // If the extrapolated moments of both sides differ, although the moment does not jump, the instants are too far apart
+  // for straight lines.
+  template <class Record>
+  void record_sides(const Forces& after_passage, const Forces& now, double lag, Record& record) {
+    has_before_ = false;
+    const double allowed = moment_tolerance * largest_moment_ + hinge_arm * std::abs(after_passage.shear);
+    if (std::abs(after_passage.moment - before_passage_.moment) > allowed) return;
+    const bool lower = std::abs(before_passage_.moment) < std::abs(after_passage.moment);
+    record(moment, lower ? before_passage_.moment : after_passage.moment, before_passage_.time, true,
+           lower ? before_passage_.shear : after_passage.shear);
+    const auto both = [&](Quantity q, double Forces::*force, double other) {
+      const JumpExtremum after =
+          extremum_after_jump(before_passage_.*force, after_passage.*force,
+                              (now.*force - after_passage.*force) / (now.time - after_passage.time), lag);
+      record(q, before_passage_.*force, before_passage_.time, true, other);
+      if (after.exists && after.later < now.time - after_passage.time)  // the line reaches no further
+        record(q, after.value, after_passage.time + after.later, true, other);
+    };
+    both(shear_force, &Forces::shear, after_passage.moment);
+    if (has_axial_) both(axial_force, &Forces::axial, 0.0);
+  }
+
+  void store(const Forces& now) {
+    history_[next_] = now;
+    next_ = (next_ + 1) % history_.size();
+    if (count_ < history_.size()) ++count_;
+  }
+  /// Linear interpolation between the instants around t, which is one of the latest.
+  Forces interpolate(double t) const {
+    const auto latest = [&](std::size_t i) -> const Forces& {
+      return history_[(next_ + 2 * history_.size() - 1 - i) % history_.size()];
+    };
+    for (std::size_t i = 0; i + 1 < count_; ++i)
+      if (latest(i + 1).time < t && latest(i).time > latest(i + 1).time && t <= latest(i).time)
+        return latest(i).at(t, latest(i + 1));
+    return latest(count_ - 1 < 1 || t >= latest(0).time ? 0 : count_ - 1);
+  }
+
+  static constexpr std::array<double, 2> none{};
+  ExtremumTracker moment_;
+  KinkTimes kinks_;  // of the moment
+  LaggedMomentTracker lagging_moment_;
+  JumpingCurve shear_, axial_;
+  std::array<Forces, 2> latest_{};  // relaxed forces in the interval between two passages, the latest first
+  std::size_t instants_ = 0;        // in this interval between passages
+  bool ended_there_ = false;        // the latest instant has both sides
+  bool has_before_ = false;
+  Forces before_passage_;  // forces just before a passage between two instants; the forces after it are not yet known
+  std::array<Forces, 8> history_{};
+  std::size_t next_ = 0, count_ = 0;
+  double largest_moment_ = 0.0;  // N m
+  bool has_axial_ = false;
+};
 
 /// The least and the greatest value of one quantity at one probe, with their times.
 struct Range {
@@ -94,5 +299,10 @@ double peak_difference(const ResponseExtremes& rough, const ResponseExtremes& fi
 
 /// The empty extremes of a run of the scene. lag: b of Rayleigh damping if responses have rates, s.
 ResponseExtremes peaks_for(const scene::Scene& scene, std::size_t wheels, double lag);
+
+/// /envelope/deflection, acceleration, moment, shear, each [p,2]: least and greatest, interpolated between samples;
+/// each with _time (s). moment_shear and shear_moment: the shear, and the moment, at these instants. forces: whether
+/// moments and shears are known.
+std::vector<results::Recorder::Dataset> envelopes(const ResponseExtremes& peaks, bool forces);
 
 }  // namespace traverse::run

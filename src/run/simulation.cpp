@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "run/signals.hpp"
+#include "run/process.hpp"
 
 namespace traverse::run {
 namespace {

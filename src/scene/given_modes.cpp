@@ -13,7 +13,6 @@
 
 #include "options/data_file.hpp"
 #include "options/input_texts.hpp"
-#include "results/modes_text.hpp"
 #include "results/origin.hpp"
 #include "traverse/base/error.hpp"
 

@@ -1,9 +1,9 @@
-// Reads the natural modes of a bridge from a file: text, or HDF5 as described in results/modes_text.hpp.
+// Reads the natural modes of a bridge from a file: text, or HDF5 as described in results/origin.hpp.
 #pragma once
 
 #include <string>
 
-#include "traverse/beam/given_modes.hpp"
+#include "traverse/beam/model.hpp"
 
 namespace traverse::scene {
 

@@ -11,7 +11,7 @@
 #include "limits.hpp"
 #include "options/read_verdict_limits.hpp"
 #include "scene_parts.hpp"
-#include "train/on_line.hpp"
+#include "train/wheel_paths.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
 

@@ -21,16 +21,16 @@ constexpr double undamped_width = 0.01;  // relative to the speed, if no damping
 constexpr double wide_range = 4.0;       // ratio of the ends from which on the first values form a geometric series
 
 /// The quantities of a study's columns that a search can have.
-constexpr const char* peaks[] = {"peak_deflection", "peak_acceleration",    "peak_moment",
-                                 "amplification",   "greatest_wheel_force", "longest_loss"};
+constexpr const char* kept_peaks[] = {"peak_deflection", "peak_acceleration",    "peak_moment",
+                                      "amplification",   "greatest_wheel_force", "longest_loss"};
 
-bool is_speed(const std::string& option) { return option.ends_with("_speed"); }
+bool is_speed_option(const std::string& option) { return option.ends_with("_speed"); }
 
 std::string names_of_quantities(const Scene& scene) {
   std::string names;
   for (const options::VerdictLimit& limit : scene.limits)
     if (options::limit_quantity(limit.quantity)->finder == options::LimitFinder::run) names += limit.quantity + ", ";
-  for (const char* peak : peaks) names += fmt::format("{}{}", peak, peak == std::end(peaks)[-1] ? "" : ", ");
+  for (const char* peak : kept_peaks) names += fmt::format("{}{}", peak, peak == std::end(kept_peaks)[-1] ? "" : ", ");
   return names;
 }
 
@@ -50,7 +50,7 @@ std::vector<double> first_values(double from, double to, double points) {
 /// Without find_points, the number of speeds that no resonance fits between.
 double points_for(const Options& o, const Scene& scene, const StudyDimension& searched) {
   if (o.has("find_points")) return o.integer("find_points");
-  if (!is_speed(searched.name())) return points_by_default;
+  if (!is_speed_option(searched.name())) return points_by_default;
   const double damping = least_damping(scene), width = damping > 0.0 ? 2.0 * damping : undamped_width;
   return 1.0 + points_in_width * std::log(searched.values.back() / searched.values.front()) / width;
 }
@@ -106,7 +106,7 @@ void read_search(const Options& o, Study& study) {
   if (o.has("find_for_each")) {
     for (const std::string& name : o.texts("find_for_each"))
       find.for_each.push_back(study.dimensions[of_option(name)].axis);
-  } else if (is_speed(option)) {
+  } else if (is_speed_option(option)) {
     for (const StudyDimension& d : study.dimensions)
       if (d.axis != own && d.law == "list" && d.name() != "track_seed") find.for_each.push_back(d.axis);
   }
@@ -143,7 +143,7 @@ void finish_search(const Options& o, Scene& scene) {
            options::limit_quantity(limit.quantity)->finder == options::LimitFinder::run;
   };
   const bool has_limit = std::any_of(scene.limits.begin(), scene.limits.end(), limited);
-  const bool is_peak = std::find(std::begin(peaks), std::end(peaks), find.quantity) != std::end(peaks);
+  const bool is_peak = std::find(std::begin(kept_peaks), std::end(kept_peaks), find.quantity) != std::end(kept_peaks);
   if (find.value ? !has_limit && !is_peak : !find.quantity.empty() && !has_limit)
     o.refuse(find.value ? "find_quantity" : "find_keep",
              fmt::format("'{}' is not a quantity of this search; allowed: {}", find.quantity,

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-#include "norm/usual_ranges.hpp"
+#include "norm/en1991.hpp"
 #include "options/data_file.hpp"
 #include "scene_parts.hpp"
 

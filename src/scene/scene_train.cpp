@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "scene_parts.hpp"
-#include "train/mirrored.hpp"
+#include "train/train_unit.hpp"
 
 namespace traverse::scene {
 namespace {

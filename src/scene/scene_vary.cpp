@@ -11,7 +11,6 @@
 #include "results/study_table.hpp"
 #include "results/terminal.hpp"
 #include "scene_parts.hpp"
-#include "study_axes.hpp"
 #include "vary_reader.hpp"
 
 namespace traverse::scene {

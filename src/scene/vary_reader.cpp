@@ -1,14 +1,19 @@
 // Expands lists and ranges of values, and draws samples of uniform, normal and lognormal distributions from a
-// reproducible random stream.
+// reproducible random stream. Places dimensions on axes of their own or on a shared one, and computes the designs of
+// sensitivity analyses.
 #include "vary_reader.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <utility>
 
 #include "base/random_stream.hpp"
+#include "base/sampling_design.hpp"
 #include "options/data_file.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::scene {
 namespace {
@@ -153,6 +158,159 @@ void VaryReader::check_one_way() const {
   for (const char* way : {"", "from", "uniform", "normal", "lognormal"})
     if (has(way)) ways.push_back(name(way));
   if (ways.size() > 1) o_.refuse(ways[1], "give either these or " + ways[0]);
+}
+
+using options::Study;
+using options::StudyDimension;
+
+StudyAxes::StudyAxes(const options::Options& o, Study& study)
+    : o_(o), study_(study), combine_(o.choice("study_combine")) {
+  seed_ = static_cast<std::uint64_t>(o.integer("study_seed"));
+  if (o.has("study_draws")) draws_ = static_cast<std::size_t>(o.integer("study_draws"));
+  const std::string method = o.choice("study_sensitivity");
+  if (method == "none") return;
+  if (combine_ != "grid") o.refuse("study_combine", "a sensitivity analysis (study_sensitivity) needs grid");
+  using Method = options::Sensitivity::Method;
+  study_.sensitivity.emplace();
+  study_.sensitivity->method = method == "local" ? Method::local : method == "morris" ? Method::morris : Method::sobol;
+  study_.sensitivity->seed = seed_;
+}
+
+void StudyAxes::add_listed(StudyDimension dimension, double count) {
+  if (combine_ != "grid" && count > VaryReader::most_values)
+    o_.refuse("study_combine", fmt::format("{} has {:g} values; allowed: at most {:g}", dimension.name(), count,
+                                           VaryReader::most_values));
+  if (combine_ == "grid") {
+    dimension.axis = study_.axes.size();
+    study_.axes.push_back({dimension.name(), static_cast<std::size_t>(std::min(count, 1e15))});
+    runs_ *= count;
+    sizes_ += fmt::format("{}{:g} of {}", sizes_.empty() ? "" : " times ", count, dimension.name());
+  } else if (combine_ == "together") {
+    merge("row", static_cast<std::size_t>(count), dimension);
+    runs_ = count;
+  } else {
+    draw_from_list(dimension);
+    merge("draw", draws(dimension.name()), dimension);
+    runs_ = static_cast<double>(draws_);
+  }
+  study_.dimensions.push_back(std::move(dimension));
+}
+
+void StudyAxes::add_drawn(StudyDimension dimension, const VaryReader& reader) {
+  if (study_.sensitivity) return add_factor(std::move(dimension), reader);
+  std::size_t count = draws_;
+  if (combine_ == "together" && joint_) count = study_.axes[*joint_].length;
+  if (count == 0) count = draws(dimension.name());
+  if (!joint_ && combine_ != "together") {
+    runs_ *= static_cast<double>(count);
+    sizes_ += fmt::format("{}{} draws", sizes_.empty() ? "" : " times ", count);
+  } else if (combine_ == "together") {
+    runs_ = static_cast<double>(count);
+  }
+  if (runs_ <= VaryReader::most_values) dimension.values = reader.draws(seed_, count);
+  merge(combine_ == "together" ? "row" : "draw", count, dimension);
+  study_.dimensions.push_back(std::move(dimension));
+}
+
+void StudyAxes::finish_design() {
+  if (!study_.sensitivity) return;
+  options::Sensitivity& analysis = *study_.sensitivity;
+  const std::size_t factors = readers_.size();
+  if (factors == 0)
+    o_.refuse("study_sensitivity",
+              "no option has a distribution; allowed: study_vary with uniform, normal or lognormal");
+  using Method = options::Sensitivity::Method;
+  if (analysis.method != Method::local) {
+    analysis.base_samples = draws(study_.dimensions[first_factor_].name());
+    if (analysis.base_samples < 2)
+      o_.refuse("study_draws", "one sample has no scatter, so that its intervals would have no width; allowed: from 2");
+  }
+  const auto points = static_cast<double>(analysis.method == Method::local ? 1 + base::local_points_per_factor * factors
+                                          : analysis.method == Method::morris ? base::morris_block(factors)
+                                                                              : base::saltelli_block(factors)) *
+                      static_cast<double>(std::max<std::size_t>(analysis.base_samples, 1));
+  runs_ *= points;
+  sizes_ += fmt::format("{}{:g} points of the design", sizes_.empty() ? "" : " times ", points);
+  if (points > VaryReader::most_values)
+    o_.refuse("study_draws",
+              fmt::format("{:g} points of the design; allowed: at most {:g}", points, VaryReader::most_values));
+  if (runs_ > most_runs()) return;
+  study_.axes[analysis.axis].length = static_cast<std::size_t>(points);
+  const std::vector<double> cube =
+      analysis.method == Method::sobol    ? base::saltelli_design(analysis.base_samples, factors, seed_)
+      : analysis.method == Method::morris ? base::morris_design(analysis.base_samples, factors, seed_)
+                                          : std::vector<double>();
+  for (std::size_t i = 0; i < factors; ++i) {
+    StudyDimension& factor = study_.dimensions[first_factor_ + i];
+    factor.values = cube.empty() ? local_values(readers_[i], i, factors) : values_of(readers_[i], cube, i, factors);
+    factor.deviation = readers_[i].deviation();
+    for (const double value : factor.values)
+      readers_[i].check(readers_[i].name(readers_[i].law()), value,
+                        "value of the design: ", "; use another distribution");
+  }
+}
+
+void StudyAxes::add_factor(StudyDimension dimension, const VaryReader& reader) {
+  if (reader.whole()) o_.refuse(reader.name(reader.law()), "the option has whole numbers, and no sensitivity analysis");
+  if (readers_.empty()) {
+    study_.sensitivity->axis = study_.axes.size();
+    study_.axes.push_back({"point", 0});
+    first_factor_ = study_.dimensions.size();
+  }
+  dimension.axis = study_.sensitivity->axis;
+  study_.dimensions.push_back(std::move(dimension));
+  readers_.push_back(reader);
+}
+
+std::vector<double> StudyAxes::values_of(const VaryReader& reader, const std::vector<double>& cube, std::size_t i,
+                                         std::size_t factors) const {
+  const bool whole_range =
+      reader.law() == "uniform" || study_.sensitivity->method == options::Sensitivity::Method::sobol;
+  std::vector<double> values;
+  for (std::size_t at = i; at < cube.size(); at += factors)
+    values.push_back(reader.quantile(whole_range ? cube[at] : tail + (1.0 - 2.0 * tail) * cube[at]));
+  return values;
+}
+
+std::vector<double> StudyAxes::local_values(const VaryReader& reader, std::size_t i, std::size_t factors) {
+  const double mean = reader.mean(), scale = mean != 0.0 ? std::abs(mean) : reader.deviation();
+  std::vector<double> values(1 + base::local_points_per_factor * factors, mean);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(1 + base::local_points_per_factor * i);
+  at[0] += base::local_step * scale;
+  at[1] -= base::local_step * scale;
+  return values;
+}
+
+std::size_t StudyAxes::draws(const std::string& dimension) const {
+  if (draws_ == 0)
+    throw InputError(
+        fmt::format("study_draws is missing: the number of values drawn of {}; allowed: a whole number from 1 to "
+                    "{:g}",
+                    dimension, VaryReader::most_values));
+  return draws_;
+}
+
+void StudyAxes::merge(const char* name, std::size_t length, StudyDimension& dimension) {
+  if (!joint_) {
+    joint_ = study_.axes.size();
+    study_.axes.push_back({name, length});
+  }
+  if (const std::size_t other = study_.axes[*joint_].length; other != length) {
+    const auto shares_axis = [this](const StudyDimension& d) { return d.axis == *joint_; };
+    const auto first = std::find_if(study_.dimensions.begin(), study_.dimensions.end(), shares_axis);
+    o_.refuse("study_combine",
+              fmt::format("needs lists of equal length; {} ({}) and {} ({}) differ; use study_combine grid",
+                          first->name(), other, dimension.name(), length));
+  }
+  dimension.axis = *joint_;
+}
+
+void StudyAxes::draw_from_list(StudyDimension& dimension) const {
+  const std::vector<double> list = std::move(dimension.values);
+  const base::RandomStream stream(seed_, dimension.name());
+  dimension.values.clear();
+  for (std::size_t i = 0; i < draws(dimension.name()); ++i)
+    dimension.values.push_back(list[static_cast<std::size_t>(stream.uniform(i) * static_cast<double>(list.size()))]);
 }
 
 }  // namespace traverse::scene

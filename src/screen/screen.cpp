@@ -14,7 +14,6 @@
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
 #include "run/process.hpp"
-#include "run/signals.hpp"
 #include "screen/audit.hpp"
 #include "traverse/base/error.hpp"
 

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "norm/en1991.hpp"
-#include "norm/usual_ranges.hpp"
 #include "screen/beam_modes.hpp"
 
 namespace traverse::screen {

@@ -1,5 +1,5 @@
 // Detection of repeating values along the beam, such as the factors on equal spans, and their storage only once. Here
-// a step is the elimination of one node of a chain (parts.hpp). A step
+// a step is the elimination of one node of a chain (subdomain_batch.hpp). A step
 // here is one item of a sequence along the beam: a node, or one elimination of a factorisation.
 #pragma once
 

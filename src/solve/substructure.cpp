@@ -1,17 +1,46 @@
-// Each rank eliminates its inner nodes. The Schur complements of the separators are gathered and solved on every rank,
-// and back substitution computes the inner nodes.
+// Each rank eliminates its inner nodes, with the factorisation compiled for the block size, from 2 to 7 unknowns per
+// node or the general one. The Schur complements of the separators are gathered and solved on every rank, and back
+// substitution computes the inner nodes.
 #include "substructure.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
-#include "flush_denormals.hpp"
 #include "traverse/base/error.hpp"
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
 
 namespace traverse::solve {
 namespace {
+
+/// During its lifetime, subnormal numbers (below 2.2e-308) are set to zero on this thread, if the processor can do so.
+/// A response that decays along the bridge ends in subnormal numbers, which rounding prevents from decaying to zero on
+/// the remaining bridge, and with which many processors compute slowly.
+class FlushDenormals {
+ public:
+#if defined(__SSE2__)
+  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | flush_results | flush_operands); }
+  ~FlushDenormals() { _mm_setcsr(saved_); }
+
+ private:
+  static constexpr unsigned flush_results = 0x8000;
+  static constexpr unsigned flush_operands = 0x0040;
+  unsigned saved_;
+
+ public:
+#else
+  FlushDenormals() {}
+  ~FlushDenormals() {}
+#endif
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+};
 
 // The message of a rank to the others after factorisation: four numbers on its pivots, the diagonal entries of its
 // separator in the original matrix, and the three blocks of SchurPart.
@@ -39,6 +68,28 @@ Columns from(const Columns& x, int column) { return {x.x + column * x.stride, x.
 
 void grow(std::vector<double>& buffer, std::ptrdiff_t size) {
   if (static_cast<std::ptrdiff_t>(buffer.size()) < size) buffer.resize(static_cast<std::size_t>(size));
+}
+
+std::unique_ptr<AnySubstructure> make_substructure(MPI_Comm comm, int block_size, int local_nodes) {
+  if (block_size < 1 || block_size > largest_block || local_nodes < 0) {
+    throw std::logic_error("blocks have 1 to " + std::to_string(largest_block) + " unknowns");
+  }
+  switch (block_size) {
+    case 2:
+      return std::make_unique<Substructure<2>>(comm, block_size, local_nodes);
+    case 3:
+      return std::make_unique<Substructure<3>>(comm, block_size, local_nodes);
+    case 4:
+      return std::make_unique<Substructure<4>>(comm, block_size, local_nodes);
+    case 5:
+      return std::make_unique<Substructure<5>>(comm, block_size, local_nodes);
+    case 6:
+      return std::make_unique<Substructure<6>>(comm, block_size, local_nodes);
+    case 7:
+      return std::make_unique<Substructure<7>>(comm, block_size, local_nodes);
+    default:
+      return std::make_unique<Substructure<any_block>>(comm, block_size, local_nodes);
+  }
 }
 
 }  // namespace
@@ -279,5 +330,43 @@ template class Substructure<5>;
 template class Substructure<6>;
 template class Substructure<7>;
 template class Substructure<any_block>;
+
+struct SubstructuredCholesky::Impl {
+  std::unique_ptr<AnySubstructure> substructure;
+  int block = 0;
+  std::ptrdiff_t nodes = 0;
+};
+
+SubstructuredCholesky::SubstructuredCholesky(MPI_Comm comm, int block_size, int local_nodes)
+    : impl_(std::make_unique<Impl>(Impl{make_substructure(comm, block_size, local_nodes), block_size, local_nodes})) {}
+SubstructuredCholesky::~SubstructuredCholesky() = default;
+SubstructuredCholesky::SubstructuredCholesky(SubstructuredCholesky&&) noexcept = default;
+SubstructuredCholesky& SubstructuredCholesky::operator=(SubstructuredCholesky&&) noexcept = default;
+
+void SubstructuredCholesky::factor(const BlockTridiagonal& A, const std::vector<char>& fixed) {
+  impl_->substructure->factor(A, fixed);
+}
+
+void SubstructuredCholesky::solve(double* x, int columns) const {
+  const Range all = {0, impl_->nodes};
+  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, columns, all, nullptr});
+}
+
+void SubstructuredCholesky::solve(double* x, RhsCallback& rhs_callback) const {
+  const Range all = {0, impl_->nodes};
+  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, 1, all, &rhs_callback});
+}
+
+void SubstructuredCholesky::solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past,
+                                         RhsCallback& rhs_callback) const {
+  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, 1, {first, past}, &rhs_callback});
+}
+
+void SubstructuredCholesky::solve_local(double* x, int columns, std::ptrdiff_t first, std::ptrdiff_t past) const {
+  impl_->substructure->solve({{x, first, (past - first) * impl_->block}, columns, {first, past}, nullptr});
+}
+
+double SubstructuredCholesky::pivot_ratio() const { return impl_->substructure->pivot_ratio(); }
+std::size_t SubstructuredCholesky::stored_numbers() const { return impl_->substructure->stored_numbers(); }
 
 }  // namespace traverse::solve

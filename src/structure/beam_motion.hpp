@@ -21,10 +21,9 @@
 #include <vector>
 
 #include "base/one_step_methods.hpp"
-#include "beam/element_rows.hpp"
+#include "beam/internal_forces.hpp"
 #include "structure/beam_operator.hpp"
 #include "structure/ranges.hpp"
-#include "structure/tile.hpp"
 
 namespace traverse::structure {
 

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <string>
 
-#include "structure/tile.hpp"
+#include "structure/ranges.hpp"
 
 namespace traverse::structure {
 namespace {

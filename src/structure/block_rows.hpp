@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "beam/planes.hpp"
+#include "beam/line.hpp"
 #include "solve/block_tridiagonal.hpp"
 #include "solve/repeats.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "structure/beam_operator.hpp"
-#include "structure/contact_field.hpp"
+#include "structure/compliance.hpp"
 #include "structure/ranges.hpp"
 
 namespace traverse::structure {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <tuple>
 
-#include "base/dot.hpp"
+#include "base/numbers.hpp"
 #include "beam/shape.hpp"
 
 namespace traverse::structure {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "beam/shape.hpp"
-#include "recovery/spread_load.hpp"
 
 namespace traverse::structure {
 

@@ -21,7 +21,6 @@
 #include "recovery/recovery.hpp"
 #include "structure/beam_operator.hpp"
 #include "structure/compliance.hpp"
-#include "structure/contact_field.hpp"
 #include "structure/nonlinear_foundation.hpp"
 #include "structure/support_motion.hpp"
 

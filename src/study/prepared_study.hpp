@@ -10,7 +10,6 @@
 
 #include "ensemble/parallel_cases.hpp"
 #include "error_control/model_choice.hpp"
-#include "results/run_model.hpp"
 #include "results/study_table.hpp"
 #include "study/study_scenes.hpp"
 

@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "results/refined.hpp"
-#include "results/run_model.hpp"
 #include "results/study_reader.hpp"
 #include "results/study_table.hpp"
+#include "results/sweep.hpp"
 #include "study/sweep_findings.hpp"
 #include "traverse/scene/scene.hpp"
 

@@ -1,7 +1,7 @@
 // The names of all spectra for help texts and messages, from their table.
 #pragma once
 
-#include "base/static_text.hpp"
+#include "base/text.hpp"
 #include "traverse/track/spectrum.hpp"
 
 namespace traverse::track {

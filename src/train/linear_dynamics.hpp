@@ -1,4 +1,6 @@
-// A vehicle with constant matrices about its initial state. The error is of second order in the angles.
+// A vehicle with constant matrices about its initial state, and the error of this model. The error is of second order
+// in the angles: the residual of the mechanism's equations is proportional to the squares of the coordinates from the
+// state of linearisation.
 //
 // With the independent coordinates p = p0 + c t + x, where c is the steady motion along the track, all bodies are at q
 // = q0 + u t + B x with u = B c + b, and the mechanism's projected equations of motion become
@@ -9,6 +11,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "train/fleet.hpp"
 #include "vehicle_newton.hpp"
@@ -83,5 +86,12 @@ class LinearDynamics : public VehicleDynamics {
   Eigen::VectorXd R_, r_, position_, velocity_;
   Eigen::MatrixXd J_;
 };
+
+/// The largest residual over the vehicle's weight with its coordinates at x from the start (m, rad). The vehicle is
+/// moved to this state.
+double linearisation_residual_at(MovingVehicle& vehicle, const double* x);
+
+/// The square root of that residual per unit of each coordinate alone, 1/m or 1/rad.
+std::vector<double> residual_roots(MovingVehicle vehicle);
 
 }  // namespace traverse::train

@@ -1,5 +1,7 @@
 // Joins the bodies, joints and springs of coupled vehicles in one mechanism, and adds the driving constraint of a
-// prescribed speed (a rheonomic constraint of equation 43 of the paper).
+// prescribed speed (a rheonomic constraint of equation 43 of the paper). For a mirror image, the signs of x
+// coordinates, angles, moments and asymmetric laws of torsion springs are reversed for all parts of a vehicle or
+// coupler.
 #include "train/train_unit.hpp"
 
 #include <algorithm>
@@ -134,6 +136,45 @@ Part placed(Part part, const Coupler& coupler, const std::array<const Member*, 2
   return part;
 }
 
+void mirror(Eigen::Vector2d& point) { point.x() = -point.x(); }
+
+void mirror(Eigen::Vector3d& place) {  // x, y, phi
+  place.x() = -place.x();
+  place.z() = -place.z();
+}
+
+void mirror(multibody::Joint& joint) {
+  for (Eigen::Vector2d* point : {&joint.point, &joint.axis, &joint.from, &joint.to}) mirror(*point);
+}
+
+void mirror(multibody::Spring& spring) {
+  mirror(spring.from);
+  mirror(spring.to);
+}
+
+/// A twist changes its sign, and so does its moment.
+void mirror(multibody::TorsionSpring& spring) {
+  if (spring.free_angle) spring.free_angle = -*spring.free_angle;
+  if (!spring.law) return;
+  using base::Side;
+  base::ForceLaw& law = *spring.law;
+  law.elastic = law.elastic.reversed();
+  law.damper = law.damper.reversed();
+  if (law.side != Side::both) law.side = law.side == Side::tension ? Side::compression : Side::tension;
+}
+
+void mirror(Wheel& wheel) {
+  wheel.shape.flat_angle = -wheel.shape.flat_angle;
+  wheel.shape.polygon_phase = -wheel.shape.polygon_phase;
+}
+
+void mirror(contact::BodyContact& contact) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    mirror(contact.centres[i]);
+    mirror(contact.line[i]);
+  }
+}
+
 }  // namespace
 
 AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen) {
@@ -191,6 +232,31 @@ AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, d
       if (s.winding) s.winding = frozen_function(*s.winding);
   }
   return all;
+}
+
+Vehicle mirrored(Vehicle vehicle) {
+  multibody::MechanismModel& model = vehicle.mechanism;
+  for (multibody::Body& body : model.bodies) {
+    mirror(body.position);
+    mirror(body.velocity);
+  }
+  for (multibody::Joint& joint : model.joints) mirror(joint);
+  for (multibody::Spring& spring : model.springs) mirror(spring);
+  for (multibody::TorsionSpring& spring : model.torsion_springs) mirror(spring);
+  for (multibody::Actuator& actuator : model.actuators)
+    for (const std::size_t along : {0, 2}) actuator.action[along].reverse();
+  for (multibody::Driver& driver : model.drivers)
+    if (driver.coordinate != 1) driver.value.reverse();
+  for (Wheel& wheel : vehicle.wheels) mirror(wheel);
+  for (contact::BodyContact& contact : vehicle.contacts) mirror(contact);
+  for (Sensor& sensor : vehicle.sensors) mirror(sensor.arm);
+  return vehicle;
+}
+
+Coupler mirrored(Coupler coupler) {
+  if (coupler.joint) mirror(*coupler.joint);
+  mirror(coupler.spring);
+  return coupler;
 }
 
 }  // namespace traverse::train

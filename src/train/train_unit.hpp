@@ -1,4 +1,5 @@
-// The vehicles of a train on the track. Vehicles joined by couplers are one mechanism: a unit.
+// The vehicles of a train on the track. Vehicles joined by couplers are one mechanism: a unit. They are described as
+// running to the right; a vehicle that runs to the left is the mirror image.
 #pragma once
 
 #include <string>
@@ -39,5 +40,9 @@ struct AssembledTrain {
 /// frozen: for the static start, every drive remains at its position at t = 0, and a free train is fixed. `types` must
 /// outlive the result.
 AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen);
+
+/// Reverses the signs of x, angles and moments, also in tables. The name remains.
+Vehicle mirrored(Vehicle vehicle);
+Coupler mirrored(Coupler coupler);
 
 }  // namespace traverse::train

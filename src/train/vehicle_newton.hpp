@@ -1,13 +1,31 @@
 // The condensation of a vehicle's Newton matrix J onto its contact rows, for all kinds of dynamics.
 #pragma once
 
+#include <Eigen/Dense>
 #include <vector>
 
 #include "multibody/mechanism.hpp"
-#include "newton_inverse.hpp"
+#include "solve/band_lu.hpp"
 #include "train/vehicle_dynamics.hpp"
 
 namespace traverse::train {
+
+/// The inverse of a vehicle's Newton matrix, in a form that depends on its size.
+class NewtonInverse {
+ public:
+  /// singular: some coordinates may have no stiffness.
+  void compute(const Eigen::MatrixXd& J, bool singular);
+  void apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
+  void keep(base::Bytes& bytes) { bytes(form_, inverse_, band_, lu_, order_); }
+
+ private:
+  enum class Form { whole, band, factors } form_ = Form::whole;
+  Eigen::MatrixXd inverse_;
+  solve::BandLu band_;
+  Eigen::MatrixXd lu_;                            // L D^-1 and D U of the permuted rows in one matrix
+  Eigen::VectorXi order_;                         // new position of each row
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;  // work space
+};
 
 /// For each body the columns that its three rows of coordinates extend over.
 using ColumnRanges = std::vector<multibody::ColumnRange>;

@@ -1,5 +1,6 @@
 // The paths of a train's wheels, for static deflections during the run: vehicles that pass or follow each other at
-// different speeds do not keep their initial distances.
+// different speeds do not keep their initial distances. Also whether a wheel or a moving force is on the line that it
+// runs along.
 #pragma once
 
 #include <cstddef>
@@ -33,5 +34,13 @@ class WheelPaths {
   std::size_t stride_ = 1, count_ = 0;
   double drift_ = 0.0;
 };
+
+/// Whether something at x with this speed is on the line from `start` to `end` (m). At an end it is only at rest: what
+/// moves there has not arrived or has left.
+inline bool is_on_line(double start, double end, double x, double speed) {
+  if (speed == 0.0) return x >= start && x <= end;
+  const double rounding = 1e-13 * (end - start);
+  return x > start + rounding && x < end - rounding;
+}
 
 }  // namespace traverse::train

@@ -12,9 +12,8 @@
 #include <vector>
 
 #include "engine/batch_kernel.hpp"
-#include "engine/elimination_order.hpp"
-#include "engine/matrix_lanes.hpp"
 #include "engine/processor.hpp"
+#include "engine/structure_lanes.hpp"
 
 namespace traverse::engine {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "beam/beam.hpp"
+#include "beam/mesh.hpp"
 #include "beam/shape.hpp"
-#include "beam/support_line.hpp"
 
 namespace traverse {
 namespace {

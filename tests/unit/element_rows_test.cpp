@@ -1,11 +1,10 @@
 // Products of many elements at a time, and parts of a matrix that do not touch, against the matrices themselves.
-#include "beam/element_rows.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "beam/internal_forces.hpp"
 #include "structure/beam_operator.hpp"
 #include "structure/block_rows.hpp"
 

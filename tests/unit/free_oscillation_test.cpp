@@ -1,7 +1,7 @@
 // A free oscillation against its differential equation, slow, fast and creeping.
-#include "integrate/free_oscillation.hpp"
-
 #include <gtest/gtest.h>
+
+#include "integrate/oscillation.hpp"
 
 namespace traverse::test {
 namespace {

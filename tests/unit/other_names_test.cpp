@@ -1,12 +1,11 @@
 // Options that PETSc 3.25 has renamed: either name will do, with every version of PETSc.
-#include "options/other_names.hpp"
-
 #include <gtest/gtest.h>
 #include <petscsys.h>
 
 #include <utility>
 
-#include "base/petsc_versions.hpp"
+#include "base/petsc.hpp"
+#include "options/petscrc.hpp"
 #include "support/message.hpp"
 #include "support/temporary_folder.hpp"
 #include "traverse/options/input.hpp"

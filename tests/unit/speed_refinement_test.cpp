@@ -1,6 +1,4 @@
 // Speeds that are added near peaks, and the distance at which a train repeats itself.
-#include "study/speed_refinement.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +6,8 @@
 #include <limits>
 
 #include "scene/load_models.hpp"
-#include "study/resonances.hpp"
+#include "study/interval_search.hpp"
+#include "study/sweep_findings.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::study {

@@ -1,7 +1,7 @@
 // The counted steps of a run, against those counted by hand.
-#include "integrate/step_count.hpp"
-
 #include <gtest/gtest.h>
+
+#include "integrate/step_size_control.hpp"
 
 namespace traverse::integrate {
 namespace {

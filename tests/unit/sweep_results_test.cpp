@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "results/run_model.hpp"
+#include "results/study_table.hpp"
 #include "results/sweep.hpp"
 
 namespace traverse::results {

@@ -1,10 +1,9 @@
 // The least and the greatest of the wheels' forces, step by step.
-#include "run/wheel_extremes.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "run/wheel_unloading.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::run {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "norm/load_models.hpp"
-#include "norm/static_effects.hpp"
+#include "norm/en1991.hpp"
+#include "norm/static_bridge.hpp"
 #include "support/beam_model.hpp"
 #include "support/paths.hpp"
 #include "support/record.hpp"

@@ -1,6 +1,4 @@
 // The moment under a passing force, on a beam with stiffness-proportional damping: it follows b behind the force.
-#include "recovery/viscous_lag.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <complex>
 #include <numbers>
 
+#include "recovery/load_movement.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::test {

@@ -9,8 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traverse/beam/distribution.hpp"
-#include "traverse/beam/foundation_law.hpp"
+#include "traverse/beam/foundation.hpp"
 
 namespace traverse::beam {
 

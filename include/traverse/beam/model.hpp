@@ -1,5 +1,5 @@
-// A bridge, track or rail as the user describes it (sections 2 and 3 of the paper). Units are SI; x is measured from
-// the left end of the first span.
+// A bridge, track or rail as the user describes it (sections 2 and 3 of the paper), also a bridge by natural modes from
+// another program's model or from a measurement. Units are SI; x is measured from the left end of the first span.
 #pragma once
 
 #include <array>
@@ -8,10 +8,28 @@
 #include <vector>
 
 #include "traverse/beam/foundation.hpp"
-#include "traverse/beam/given_modes.hpp"
 #include "traverse/beam/layered_track.hpp"
 
 namespace traverse::beam {
+
+struct GivenModes {
+  /// A further result that follows from the modal coordinates: a stress, a moment, a bearing's force.
+  struct Output {
+    std::string name, unit;
+    std::vector<double> of_mode;  // value for each mode at a modal coordinate of 1 m kg^(1/2), in `unit`
+  };
+
+  std::string source;                      // the file of the modes, for messages
+  std::vector<double> x;                   // m, ascending from 0, the left end of the bridge, to its right end
+  std::vector<double> omega, ratio;        // rad/s, ascending, above 0; damping ratios
+  std::vector<std::vector<double>> shape;  // [mode][station]: upward, m for 1 m kg^(1/2) of the mode's coordinate
+  std::vector<std::vector<double>> slope;  // slope of the shapes, 1/m
+  std::vector<Output> outputs;
+};
+
+/// Slopes of a cubic spline through values at x. The curvature is continuous. The slope at each end is the slope of the
+/// cubic through the four stations there, or of the polynomial through all stations if there are fewer than four.
+std::vector<double> spline_slopes(const std::vector<double>& x, const std::vector<double>& values);
 
 /// Kinematic conditions at a span end (section 3.1 of the paper), with the displacements that each condition fixes.
 enum class Support {

@@ -1,4 +1,5 @@
-// Vehicles, trains and moving forces on the track.
+// Vehicles, trains and moving forces on the track. The part of a moving force that changes over time is a Fourier
+// series of one frequency, a table, or both.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,13 +12,31 @@
 #include <vector>
 
 #include "traverse/base/speed_law.hpp"
+#include "traverse/base/time_function.hpp"
 #include "traverse/contact/body_contact.hpp"
 #include "traverse/multibody/model.hpp"
 #include "traverse/track/profile.hpp"
 #include "traverse/track/wheel_shape.hpp"
-#include "traverse/train/force_variation.hpp"
 
 namespace traverse::train {
+
+/// sum_k amplitude_k sin(2 pi k f t + phase_k) + table(t), added to the constant part of each force (N) or line load
+/// (N/m) of a group; positive downward.
+struct ForceVariation {
+  double frequency = 0.0;                   // f, Hz
+  std::vector<double> amplitudes;           // amplitudes of the harmonics k = 1, 2, ..., N or N/m
+  std::vector<double> phases;               // rad, one for each amplitude
+  std::optional<base::TimeFunction> table;  // piecewise linear
+
+  /// Whether the force varies.
+  bool varies() const { return table || !amplitudes.empty(); }
+  /// The value at t (s), N or N/m.
+  double at(double t) const;
+  /// The frequency of the highest harmonic with an amplitude, Hz; 0 without harmonics.
+  double highest_frequency() const;
+  /// Times at which the rate of the force jumps.
+  std::vector<double> kinks() const { return table ? table->kinks() : std::vector<double>(); }
+};
 
 /// A circle around the centre of mass of a body, in contact with the running surface.
 struct Wheel {

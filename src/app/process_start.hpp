@@ -1,0 +1,19 @@
+// The start of the program: settings of MPI before its initialisation, with which a single process starts fast, and
+// standard output whose failure (a full disk, a reader that has ended) does not affect the run and its results.
+#pragma once
+
+namespace traverse::app {
+
+/// Call before MPI_Init. Sets the variables that are not set in the environment.
+void start_lightly();
+/// Call after MPI_Init. Removes the variable that would prevent this process from starting mpirun.
+void started();
+
+/// Call before anything is written or opened. From then on writing to stdout always succeeds, and the first error is
+/// stored. Closed standard streams are opened as /dev/null, so that no file of the program gets their numbers.
+void guard_standard_output();
+
+/// Writes the buffered output. Returns the errno of the first failed write; 0 if no output was lost.
+int lost_output();
+
+}  // namespace traverse::app
