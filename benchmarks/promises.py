@@ -90,7 +90,7 @@ RESONANT = beam(30.0, 8e10, 2e4, SIMPLE, 0.005)  # with coaches of 25.835 m at 9
 SIX, SEVEN, TEN = [beam(f"30.0*{count}", 2e11, 2e4, f"roller*{count + 1}", 0.01, "  continuity: simply_supported\n")
                    for count in (6, 7, 10)]
 FORCES = "load:\n  forces: 3.0e5*12\n  positions: [" + ", ".join(str(-25.0 * i) for i in range(12)) + "]\n  speed: 87.3\n"
-# What trial runs of the beginning do not show: supports and stops that are touched late, resonance, wheels that go on
+# What the beginning of a run does not show: supports and stops that are touched late, resonance, wheels that go on
 # striking.
 LATE = {
     "gap at resonance": RESONANT
@@ -167,7 +167,7 @@ def judge(build, name, text, accuracies, longest=LONGEST):
             certain = [q for q in errors if doubt[q] <= JUDGED * accuracy]
             judged = [q for q in certain if promised[q]]
             small = [q for q in certain if errors[q] < 0.5 * accuracy]
-            trials = re.search(r"accuracy \S+: (.*?);.*trial runs of \S+ s took (\S+) s", run.text)
+            trials = re.search(r"accuracy \S+: (.*?);.*trial runs took (\S+) s", run.text)
             rows.append({
                 "scene": name, "accuracy": accuracy, "worst": max((errors[q] / accuracy for q in judged), default=0.0),
                 "of": max(judged, key=lambda q: errors[q], default=""), "judged": len(judged),

@@ -21,7 +21,7 @@ struct FirstRun {
   std::vector<std::string> notes;   // notes on the model
   std::vector<std::string> choice;  // choice of mesh and step
   bool has_trial_runs = false;      // trial runs choose mesh and step, starting from mesh and step of `scene`
-  double first_step = 0.0, longest_step = 0.0, trial_window = 0.0;  // s; trial_window: duration of a trial run
+  double first_step = 0.0, longest_step = 0.0;  // s
   std::unique_ptr<run::SharedBeam> shared;
   std::unique_ptr<run::Simulation> simulation;  // at its start; null for an analysis of modes
   std::vector<double> frequencies;              // Hz, the first distinct ones of the bridge

@@ -67,20 +67,6 @@ TEST(ResponseExtremes, AJumpMakesNoParabola) {
   EXPECT_NEAR(peaks.largest(wheel_force).value, after, 0.3 * (after - before));
 }
 
-// A sine of frequency omega bends by (omega h)^2 of itself within steps of h.
-TEST(ResponseExtremes, BendsOfAWave) {
-  const double h = 0.01, omega = 20.0;
-  ResponseExtremes peaks = peaks_of_curve([&](double t) { return 3.0 * std::sin(omega * t); }, h);
-  const SecondDifference slow = peaks.roughness();
-  EXPECT_NEAR(slow.acceleration, omega * omega * h * h, 0.01 * omega * omega * h * h);
-  EXPECT_NEAR(slow.wheel_force, slow.acceleration, 1e-3 * slow.acceleration);
-  const SecondDifference fast =
-      peaks_of_curve([&](double t) { return 3.0 * std::sin(2.0 * omega * t); }, h).roughness();
-  EXPECT_NEAR(fast.ratio_to(slow), 4.0, 0.05);
-  peaks.reset_roughness();
-  EXPECT_EQ(peaks.roughness().ratio_to(slow), 0.0);
-}
-
 // The error falls with the sixth power of the interval, wherever the samples lie.
 TEST(ResponseExtremes, LieBetweenSamples) {
   double before = 0.0;
