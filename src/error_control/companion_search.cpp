@@ -33,6 +33,7 @@ void CompanionSearch::add_last(const Discretisation& last) {
 
 void CompanionSearch::refine(Leave leave) {
   open_ = false;
+  reject_given();
   while (!within_accuracy(rungs_.back())) {
     const Discretisation next = finer();
     if (next == fine_) {
@@ -124,32 +125,36 @@ bool CompanionSearch::expected_last(const Discretisation& next) const {
 bool CompanionSearch::add(Discretisation next) {
   for (int i = 0; !runs_.run(next); ++i, next.step *= 0.5)
     if (!task_.open_step || i == search::max_halvings) return false;
-  const double shorter = fine_.step / next.step;
-  const double denser = fine_.elements > 0 ? static_cast<double>(next.elements) / fine_.elements : 1.0;
-  const PeakErrors last = runs_.change(fine_, next);
-  const bool far = std::max(shorter, denser) >= search::least_ratio;
-  const PeakErrors& total = far ? last : runs_.change(coarse_, next);
-  Change time = time_, space = space_;
+  const auto ratio_of_steps = [&](const Discretisation& coarse) { return coarse.step / next.step; };
+  const auto ratio_of_meshes = [&](const Discretisation& coarse) {
+    return coarse.elements > 0 ? static_cast<double>(next.elements) / coarse.elements : 1.0;
+  };
+  const double refinement = std::max(ratio_of_steps(fine_), ratio_of_meshes(fine_));
+  const bool far = refinement >= search::least_ratio;
+  const Discretisation& companion = far ? fine_ : coarse_;
+  const Change time{runs_.change(companion, next), ratio_of_steps(companion)},
+      space{time.by, ratio_of_meshes(companion)};
+  // The parts of step and mesh are as expected: as before from the same companion, otherwise the whole error.
+  const auto expected = [&](const Change& former, bool same_companion, const Change& now, std::size_t q) {
+    return now.ratio == 1.0 ? 0.0 : same_companion ? former.by[q] : former.error(q);
+  };
+  const bool same_time = !far && coarse_.step > fine_.step, same_space = !far && coarse_.elements < fine_.elements;
+  PeakErrors part{};  // of the step
   for (std::size_t q = 0; q < run::quantities; ++q) {
-    // The parts of step and mesh are as before, of what was refined.
-    const double in_time = !far            ? time_.by[q]
-                           : shorter > 1.0 ? time_.error(q)
-                                           : 0.0,
-                 in_space = !far           ? space_.by[q]
-                            : denser > 1.0 ? space_.error(q)
-                                           : 0.0;
-    const double part = in_time + in_space > 0.0 ? in_time / (in_time + in_space) : 0.5;
-    if (!far || shorter > 1.0) time.by[q] = part * total[q];
-    if (!far || denser > 1.0) space.by[q] = (1.0 - part) * total[q];
+    const double in_time = expected(time_, same_time, time, q), in_space = expected(space_, same_space, space, q);
+    part[q] = in_time + in_space > 0.0 ? in_time / (in_time + in_space) : space.ratio == 1.0 ? 1.0 : 0.5;
   }
-  if (!far || shorter > 1.0) time.ratio = (far ? 1.0 : time_.ratio) * shorter;
-  if (!far || denser > 1.0) space.ratio = (far ? 1.0 : space_.ratio) * denser;
-  time_ = time;
-  space_ = space;
+  const PeakErrors least = far ? PeakErrors{} : runs_.change(fine_, next);  // runs may agree by chance
+  if (time.ratio > 1.0) time_ = time;
+  if (space.ratio > 1.0) space_ = space;
+  for (std::size_t q = 0; q < run::quantities; ++q) {
+    if (time.ratio > 1.0) time_.by[q] *= part[q];
+    if (space.ratio > 1.0) space_.by[q] *= 1.0 - part[q];
+  }
   if (far) coarse_ = fine_;
   fine_ = next;
-  record(far ? PeakErrors{} : last);  // two runs close to each other may agree by chance
-  reject_stalled(std::max(shorter, denser));
+  record(least);
+  reject_stalled(refinement);
   return true;
 }
 
@@ -167,6 +172,23 @@ bool CompanionSearch::within_accuracy(const Rung& rung) const {
   return true;
 }
 
+std::string CompanionSearch::text_of_model() const {
+  return fmt::format("steps of {:.2g} s{}", fine_.step,
+                     fine_.elements > 0 ? fmt::format(" and {} {}", fine_.elements, task_.unit) : "");
+}
+
+/// Rejects quantities whose errors by a given step or mesh are too large.
+void CompanionSearch::reject_given() {
+  for (std::size_t q = 0; q < run::quantities; ++q) {
+    const double in_time = runs_.weight(q) * time_.error(q), in_space = runs_.weight(q) * space_.error(q);
+    if (!sought(q)) continue;
+    if (!task_.open_step && in_time > task_.accuracy)
+      why_not_[q] = fmt::format("the error with the given step of {:g} s is {:.1g}", fine_.step, in_time);
+    else if (!task_.open_mesh && in_space > task_.accuracy)
+      why_not_[q] = fmt::format("the error with the given {} {} is {:.1g}", fine_.elements, task_.unit, in_space);
+  }
+}
+
 /// Rejects all quantities that are not within the accuracy.
 void CompanionSearch::reject_missed(const std::string& why) {
   for (std::size_t q = 0; q < run::quantities; ++q) {
@@ -174,9 +196,7 @@ void CompanionSearch::reject_missed(const std::string& why) {
     if (rungs_.empty())
       why_not_[q] = why;
     else if (rungs_.back().errors[q] > task_.accuracy)
-      why_not_[q] = fmt::format("the error with steps of {:.2g} s{} is {:.1g}{}", fine_.step,
-                                fine_.elements > 0 ? fmt::format(" and {} elements", fine_.elements) : "",
-                                rungs_.back().errors[q], why);
+      why_not_[q] = fmt::format("the error with {} is {:.1g}{}", text_of_model(), rungs_.back().errors[q], why);
   }
 }
 
@@ -187,9 +207,8 @@ void CompanionSearch::reject_stalled(double refinement) {
     if (!sought(q) || now[q] <= task_.accuracy) continue;
     stalls_[q] = now[q] > before[q] * std::pow(refinement, -search::stall_order) ? stalls_[q] + 1 : 0;
     if (stalls_[q] >= search::max_stalls)
-      why_not_[q] =
-          fmt::format("it does not converge as steps and elements are refined ({:.1g} with {:.2g} s{})", now[q],
-                      fine_.step, fine_.elements > 0 ? fmt::format(" and {} elements", fine_.elements) : "");
+      why_not_[q] = fmt::format("it does not converge as steps and elements are refined ({:.1g} with {})", now[q],
+                                text_of_model());
   }
 }
 

@@ -41,6 +41,7 @@ struct SearchTask {
   Discretisation coarse, fine;                 // the first two runs; what is the same in both has no estimate
   bool open_mesh = true, open_step = true;     // what may be refined further
   int most_elements = 0;
+  const char* unit = "elements a span";
 };
 
 class CompanionSearch {
@@ -87,6 +88,8 @@ class CompanionSearch {
   double largest(const Change& change) const;
   bool sought(std::size_t q) const { return task_.wanted[q] && why_not_[q].empty(); }
   bool within_accuracy(const Rung& rung) const;
+  std::string text_of_model() const;
+  void reject_given();
   void reject_missed(const std::string& why);
   void reject_stalled(double refinement);
   void answer();

@@ -55,6 +55,7 @@ SearchTask task_of(const Scene& scene, const FirstSteps& steps) {
   task.accuracy = scene.accuracy;
   task.open_mesh = scene.mesh_open;
   task.open_step = !scene.model.step;
+  if (scene.beam->track) task.unit = "elements a sleeper bay";
   const int elements = scene.by_given_modes() ? 0 : mesh_of(scene);
   const double longest = 2.0 * steps.longest;
   task.coarse.step = task.open_step ? two_digits(std::min(search::first_ratio * steps.first, longest))
@@ -63,7 +64,7 @@ SearchTask task_of(const Scene& scene, const FirstSteps& steps) {
   task.coarse.elements = elements % 2 == 0 ? elements / 2 : elements;
   const int dense = search::max_in_all / static_cast<int>(std::min<std::size_t>(scene.beam->spans.size(), 1000));
   task.most_elements =
-      std::max(scene.beam->track ? search::max_in_a_bay : std::clamp(dense, 32, search::max_in_a_span), 4 * elements);
+      std::max(scene.beam->track ? search::max_in_a_bay : std::clamp(dense, 32, search::max_in_a_span), 8 * elements);
   return task;
 }
 

@@ -23,6 +23,16 @@ constexpr double max_excess =
 constexpr double interval_ratio = 2.1;
 constexpr double max_shift = 3.0;  // steps of the coarser run: largest time difference of the same peak in two runs
 
+/// Whether supports have dampers that act only in contact, so that accelerations jump.
+bool has_contact_dampers(const scene::Scene& scene) {
+  bool found = false;
+  for_points(scene.beam->foundation, [&](const beam::FoundationKind&, const auto& points) {
+    for (const beam::PointFoundation& point : points)
+      found = found || (point.c > 0.0 && (point.law.one_sided || point.law.gap > 0.0));
+  });
+  return found;
+}
+
 /// Whether the acceleration, the wheel force or the low-passed acceleration is meant, which impacts determine.
 bool is_of_impacts(std::size_t q) { return q == run::acceleration || q == run::wheel_force || q == run::low_passed; }
 
@@ -76,8 +86,9 @@ PeakErrors TrialRuns::change(const Discretisation& coarse, const Discretisation&
 double TrialRuns::weight(std::size_t q) const {
   const bool sum_of_modes =
       q == run::moment && !damps_high_modes(scene_) && !scene_.beam->track && !scene_.by_given_modes();
-  return (lost_contact_ && is_of_impacts(q) ? search::weight_of_impacts : 1.0) *
-         (sum_of_modes ? search::weight_of_undamped_sum : 1.0);
+  return ((lost_contact_ || has_contact_dampers(scene_)) && is_of_impacts(q) ? search::weight_of_impacts : 1.0) *
+         (sum_of_modes ? search::weight_of_undamped_sum : 1.0) *
+         (q == run::acceleration && !scene_.load.forces.empty() ? search::weight_of_forces : 1.0);
 }
 
 double TrialRuns::seconds(const Discretisation& model) const {

@@ -43,8 +43,8 @@ class TrialRuns : public Companions {
   /// residual is too large.
   bool run(const Discretisation& model) override { return !stored(model).peaks.failed(); }
   PeakErrors change(const Discretisation& coarse, const Discretisation& fine) override;
-  /// Impacts are pulses that two runs may show alike by chance; the modes of an undamped bridge are a slowly converging
-  /// sum.
+  /// Impacts are pulses that two runs may show alike by chance. A force that enters a beam excites all modes, the nth
+  /// with an acceleration proportional to 1/n; moments of an undamped bridge are such a sum, too.
   double weight(std::size_t q) const override;
   double seconds(const Discretisation& model) const override;
   int mesh_of_at_least(int elements) const override;

@@ -189,18 +189,6 @@ TEST(Accuracy, FixedMeshIsNotPromised) {
   EXPECT_TRUE(expected(fine, "acceleration"));
 }
 
-// Where a method of one solve a step keeps the accuracy for less, it is taken, but for what the user has fixed.
-TEST(Accuracy, TakesTheMethodThatCostsLess) {
-  const std::string scene = "beam: {spans: 25.0, EI: 2.87e9, mass: 2303.0}\nsupport: {types: [pinned, roller]}\n" +
-                            quarter_car_with(5750.0, 100.0, 1.595e6, 0.0, "law: linear, stiffness: 1.0e9") +
-                            "train: {vehicles: car, positions: 0.0, speed: 27.8}\n";
-  const Results truth = run_yaml(scene, {{"ts_dt", "1e-4"}, {"beam_elements_per_span", "80"}, {"step_probes", "true"}});
-  const Results chosen = run_yaml(scene, {{"accuracy", "1e-2"}, {"accuracy_of", "deflection"}});
-  const Results given = run_yaml(scene, {{"accuracy", "1e-2"}, {"accuracy_of", "deflection"}, {"ts_type", "esdirk4"}});
-  EXPECT_LT(chosen.attribute("/summary", "solves"), 0.8 * given.attribute("/summary", "solves"));
-  EXPECT_LE(std::abs(peak_of(chosen, "deflection") / peak_of(truth, "deflection") - 1.0), 1e-2);
-}
-
 // A step of EI is met by nodes: errors of the mesh fall as fast as without it.
 TEST(Accuracy, StepOfStiffnessFarFromTheStart) {
   const TemporaryFolder folder;

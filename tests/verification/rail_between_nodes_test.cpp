@@ -98,7 +98,7 @@ TEST(RailBetweenNodes, AccuracyTakesFewElements) {
   testing::internal::CaptureStdout();
   Results run = run_yaml(scene, {{"accuracy", "1e-3"}});
   const std::string said = testing::internal::GetCapturedStdout();
-  EXPECT_NE(said.find("accuracy 0.001: 2 elements a sleeper bay"), std::string::npos) << said;
+  EXPECT_NE(said.find("accuracy 0.001: 4 elements a sleeper bay"), std::string::npos) << said;
   for (const std::string quantity : {"deflection", "acceleration", "moment", "wheel_force"}) {
     const std::string name = quantity == "wheel_force" ? "greatest_wheel_force" : quantity;
     const double true_error = std::abs(run.attribute("/summary", name) / fine.attribute("/summary", name) - 1.0);
