@@ -22,6 +22,22 @@ error_control::Choice try_models(MPI_Comm comm, scene::Scene scene, std::vector<
   return choice;
 }
 
+/// Continues the search of a stored choice, if it is open. False if that is not possible.
+bool continue_search(MPI_Comm comm, scene::Scene scene, const error_control::Choice& choice, bool leaves_last,
+                     std::shared_ptr<error_control::ModelSearch>& search) {
+  if (choice.open_search.empty()) return true;
+  if (!leaves_last) return false;
+  if (choice.low_pass) scene.output.low_pass = choice.low_pass;
+  error_control::set_first_mesh(scene);
+  try {
+    search = std::make_shared<error_control::ModelSearch>(comm, scene, choice.open_search);
+    return search->open();
+  } catch (const FileError&) {  // damaged content
+    search.reset();
+    return false;
+  }
+}
+
 }  // namespace
 
 bool OpenChoice::add(const scene::NumericalModel& model, error_control::RunPeaks run) {
@@ -32,6 +48,7 @@ bool OpenChoice::add(const scene::NumericalModel& model, error_control::RunPeaks
   choice_.accuracy.seconds = seconds;
   choice_.model.elements = now.model.elements;
   choice_.model.step = now.model.step;
+  choice_.open_search = search_->open() ? search_->state() : "";
   if (search_->open()) return false;
   for (const std::string& line : choice_.accuracy.lines()) notes_.push_back(line);
   cache_.write(notes_, choice_);
@@ -43,15 +60,17 @@ error_control::Accuracy choose_model(MPI_Comm comm, scene::Scene& scene, std::ve
   error_control::ChoiceCache kept(comm, scene);
   error_control::Choice choice;
   std::vector<std::string> own;
-  if (!kept.read(scene, own, choice)) {
-    std::shared_ptr<error_control::ModelSearch> search;
+  std::shared_ptr<error_control::ModelSearch> search;
+  if (kept.read(scene, own, choice) && continue_search(comm, scene, choice, open != nullptr, search)) {
+    notes.emplace_back(error_control::ChoiceCache::said);
+  } else {
+    own.clear();
     choice = try_models(comm, scene, own, open != nullptr ? &search : nullptr);
-    if (search)
-      open->emplace(std::move(search), std::move(kept), choice, own);
-    else if (choice.accuracy.measured)
-      kept.write(own, choice);
+    if (search) choice.open_search = search->state();
+    if (choice.accuracy.measured) kept.write(own, choice);
   }
   notes.insert(notes.end(), own.begin(), own.end());
+  if (search) open->emplace(std::move(search), std::move(kept), choice, std::move(own));
   scene = error_control::with(scene, choice.model);
   if (choice.low_pass) scene.output.low_pass = choice.low_pass;
   return choice.accuracy;

@@ -4,15 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
 #include <optional>
 
 #include "analyses.hpp"
 #include "base/archive.hpp"
-#include "error_control/multibody_step_search.hpp"
-#include "error_control/trial_runs.hpp"
 #include "prepare.hpp"
 #include "results/recorder.hpp"
 #include "results/stage.hpp"
@@ -99,32 +95,6 @@ ReadyRun::ReadyRun(Job& given)
     job.notes.push_back(fmt::format("goes on from t = {:g} s", job.earlier->time));
   }
   run::print_notes(job.comm, scene, job.notes);
-}
-
-/// Compares the error estimates with the results of a refined run. Returns false if an estimate is exceeded.
-bool report(MPI_Comm comm, const scene::Scene& scene, const error_control::Accuracy& accuracy,
-            const run::ResponseExtremes& peaks) {
-  if (!scene.beam) return error_control::report_multibody(comm, scene, accuracy);
-  const scene::Scene fine = error_control::refined(scene);
-  const run::ResponseExtremes truth = [&] {
-    const results::Stage stage("the refined run of -accuracy_report");
-    const options::WithoutMonitors without_monitors;
-    return error_control::peaks_of(comm, fine).peaks;
-  }();
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  int all_kept = 1;
-  if (rank == 0) error_control::report_head("half the step and elements half as long", "peak of");
-  for (std::size_t i = 0; i < run::quantities; ++i) {
-    const auto q = static_cast<run::Quantity>(i);
-    if (truth.largest(q).value == 0.0) continue;
-    const double error = run::peak_difference(peaks, truth, q);
-    const bool kept =
-        error_control::report_row(run::quantity_names[i], accuracy.estimates[i], scene.accuracy, error, rank == 0);
-    all_kept = kept ? all_kept : 0;
-  }
-  MPI_Bcast(&all_kept, 1, MPI_INT, 0, comm);  // only the first rank has the low-passed accelerations
-  return all_kept != 0;
 }
 
 /// Creates the results file, or opens the file of the run that this run continues.
@@ -352,7 +322,7 @@ RunEnd RecordedRun::run() {
   if (finer_) return {0, Retry::finer, {}, 0.0};
   run::check_deflection(comm, scene_, result_.summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
-      !report(comm, scene_, ready_.accuracy, result_.peaks))
+      !error_control::report(comm, scene_, ready_.accuracy, result_.peaks))
     throw SolverError(fmt::format(
         "the error exceeds the accuracy of {:g} (above); use a smaller -accuracy, and please report the scene",
         scene_.accuracy));

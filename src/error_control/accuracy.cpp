@@ -127,7 +127,7 @@ bool damps_all_modes(const Scene& scene) {
 }
 
 Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<ModelSearch>* open) {
-  Choice none{scene.model, {}, {}};
+  Choice none{scene.model, {}, {}, {}};
   if (takes_modes_for_damping(scene))
     if (Choice by_modes = modes_for_damping(comm, scene, notes); by_modes.model.modes > 0) return by_modes;
   const bool without_bridge = chooses_multibody_step(scene);
@@ -169,6 +169,9 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   return choice;
 }
 
+namespace {
+
+/// The scene with twice the elements in every span (or sleeper bay) and half the step.
 Scene refined(const Scene& scene) {
   Scene fine = scene;
   if (fine.beam->track)
@@ -177,6 +180,31 @@ Scene refined(const Scene& scene) {
     for (int& elements : fine.beam->elements) elements *= 2;
   fine.model.step = 0.5 * *scene.model.step;
   return fine;
+}
+
+}  // namespace
+
+bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const run::ResponseExtremes& peaks) {
+  if (!scene.beam) return report_multibody(comm, scene, accuracy);
+  const Scene fine = refined(scene);
+  const run::ResponseExtremes truth = [&] {
+    const results::Stage stage("the refined run of -accuracy_report");
+    const options::WithoutMonitors without_monitors;
+    return peaks_of(comm, fine).peaks;
+  }();
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  int all_kept = 1;
+  if (rank == 0) report_head("half the step and elements half as long", "peak of");
+  for (std::size_t i = 0; i < run::quantities; ++i) {
+    const auto q = static_cast<run::Quantity>(i);
+    if (truth.largest(q).value == 0.0) continue;
+    const double error = run::peak_difference(peaks, truth, q);
+    const bool kept = report_row(run::quantity_names[i], accuracy.estimates[i], scene.accuracy, error, rank == 0);
+    all_kept = kept ? all_kept : 0;
+  }
+  MPI_Bcast(&all_kept, 1, MPI_INT, 0, comm);  // only the first rank has the low-passed accelerations
+  return all_kept != 0;
 }
 
 }  // namespace traverse::error_control

@@ -55,7 +55,8 @@ const options::Entry* adaptive_step_option(const scene::Scene& scene);
 Choice choose(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes,
               std::shared_ptr<ModelSearch>* open = nullptr);
 
-/// The scene with twice the elements in every span (or sleeper bay) and half the step.
-scene::Scene refined(const scene::Scene& scene);
+/// Collective. Compares the error estimates with the peaks of a refined run, and prints a table. False if an estimate
+/// is exceeded.
+bool report(MPI_Comm comm, const scene::Scene& scene, const Accuracy& accuracy, const run::ResponseExtremes& peaks);
 
 }  // namespace traverse::error_control

@@ -178,7 +178,7 @@ Choice search_batches(const scene::Scene& scene) {
   CompanionSearch search(runs, task);
   search.run();
   PeakErrors errors = search.errors();
-  Choice choice{with_cheaper_method(runs, search.model(), errors), {}, {}};
+  Choice choice{with_cheaper_method(runs, search.model(), errors), {}, {}, {}};
   if (any_contact_loss(runs.trials().run(choice.model))) throw NotChosen{"wheels lose contact"};
   if (scene.model.vehicles == scene::VehicleModel::automatic) {
     const double residual = runs.trials().residual(choice.model);

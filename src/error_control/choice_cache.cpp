@@ -87,7 +87,7 @@ bool ChoiceCache::read(const scene::Scene& scene, std::vector<std::string>& note
     return false;
   }
   choice = std::move(found);
-  notes = {"stored choice for the same scene; -accuracy_cache false repeats the trial runs"};
+  notes.clear();
   for (const std::string& note : stored_notes) {
     const std::string text = printable(base::text_of_note(note));
     notes.push_back(base::is_detail(note) ? base::detail(text) : text);

@@ -17,6 +17,9 @@ bool is_possible(const Choice& choice, const scene::Scene& scene);
 
 class ChoiceCache {
  public:
+  /// The note that a stored choice is used.
+  static constexpr const char* said = "stored choice for the same scene; -accuracy_cache false repeats the trial runs";
+
   /// Collective. The cache entry of this scene for this build of the program. Scenes without a results file, or with
   /// `accuracy_cache` false, have none.
   ChoiceCache(MPI_Comm comm, const scene::Scene& scene);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "error_control/peak_errors.hpp"
 
 namespace traverse::error_control {
@@ -16,6 +17,7 @@ struct Discretisation {
   double step = 0.0;  // s
 
   friend bool operator==(const Discretisation&, const Discretisation&) = default;
+  void keep(base::Bytes& bytes) { bytes(elements, step); }
 };
 
 /// The runs of a search.
@@ -58,6 +60,13 @@ class CompanionSearch {
   /// After the last run was computed elsewhere, so that `runs` knows it: determines its errors. If they are not within
   /// the accuracy, the search is open again, with a finer model.
   void add_last(const Discretisation& last);
+  /// Present run and companion.
+  std::array<Discretisation, 2> latest() const { return {fine_, coarse_}; }
+  /// The state of an open search.
+  void keep(base::Bytes& bytes) {
+    bytes(task_.wanted, task_.open_mesh, task_.open_step, coarse_, fine_, time_, space_, rungs_, answer_, open_,
+          stalls_, why_not_);
+  }
   /// The model of the answer.
   const Discretisation& model() const { return answer_.model; }
   /// The relative errors of the answer.
@@ -72,10 +81,13 @@ class CompanionSearch {
     double ratio = 1.0;  // of the lengths; 1: not measured
 
     double error(std::size_t q) const;
+    void keep(base::Bytes& bytes) { bytes(by, ratio); }
   };
   struct Rung {
     Discretisation model;
     PeakErrors errors{};
+
+    void keep(base::Bytes& bytes) { bytes(model, errors); }
   };
   bool start();
   void attribute();

@@ -76,7 +76,7 @@ bool chooses_mode_mesh(const scene::Scene& scene) {
 Choice choose_mode_mesh(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("search for the mesh of the modes");
   const auto begin = std::chrono::steady_clock::now();
-  Choice choice{scene.model, {}, {}};
+  Choice choice{scene.model, {}, {}, {}};
   Accuracy& accuracy = choice.accuracy;
   Frequencies frequencies(comm, scene);
   int elements = scene.beam->track ? first_in_bay : first_in_span;

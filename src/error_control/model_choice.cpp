@@ -32,7 +32,7 @@ bool is_node(const beam::BeamModel& beam, double x) {
 void Choice::keep(base::Bytes& bytes) {
   bytes(model.modes, model.elements, model.step, model.method, model.vehicles, model.residual_limit,
         model.trials_lost_contact, model.window_tolerance, model.local_compliance, model.step_kinks, model.step_probes,
-        accuracy, low_pass);
+        accuracy, low_pass, open_search);
 }
 
 Scene with(Scene scene, const scene::NumericalModel& model) {

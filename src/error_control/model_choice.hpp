@@ -13,6 +13,7 @@ struct Choice {
   scene::NumericalModel model;
   Accuracy accuracy;
   std::optional<double> low_pass;  // Hz, cut-off frequency of deck accelerations, if the scene leaves it open
+  std::string open_search;         // state of the search if the run is its last one; empty: it is complete
 
   void keep(base::Bytes& bytes);
 };

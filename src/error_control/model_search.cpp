@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "error_control/accuracy.hpp"
@@ -92,6 +93,23 @@ ModelSearch::ModelSearch(MPI_Comm comm, const Scene& scene, const run::SharedBea
           reasons_against(scene, steps_, shared.rayleigh.b <= 0.0 && !scene.beam->track && !scene.by_given_modes())),
       search_(trials_, task()) {}
 
+ModelSearch::ModelSearch(MPI_Comm comm, const Scene& scene, const std::string& state)
+    : scene_(scene), trials_(comm, scene, 0.0), search_(trials_, task_of(scene, FirstSteps())) {
+  base::Bytes bytes{std::span<const char>(state)};
+  keep(bytes);
+}
+
+std::string ModelSearch::state() {
+  base::Bytes bytes;
+  keep(bytes);
+  return bytes.written();
+}
+
+void ModelSearch::keep(base::Bytes& bytes) {
+  bytes(scene_.model.vehicles, why_not_, search_);
+  trials_.keep(bytes, search_.latest());
+}
+
 SearchTask ModelSearch::task() {
   SearchTask task = task_of(scene_, steps_);
   if (trials_.seconds(task.coarse) > search::max_seconds)
@@ -118,7 +136,8 @@ void ModelSearch::add_last(const scene::NumericalModel& model, RunPeaks run) {
 }
 
 Choice ModelSearch::choice() {
-  Choice choice{scene_.model, {}, {}};
+  Choice choice;
+  choice.model = scene_.model;
   if (search_.model().elements > 0) choice.model.elements = search_.model().elements;
   choice.model.step = search_.model().step;
   choice.model.step_probes = true;

@@ -20,6 +20,12 @@ class ModelSearch {
   /// the first trial run would be too expensive.
   ModelSearch(MPI_Comm comm, const scene::Scene& scene, const run::SharedBeam& shared, double end);
 
+  /// Continues an open search for the same scene from the state that `state` returned. Throws FileError if it is
+  /// damaged.
+  ModelSearch(MPI_Comm comm, const scene::Scene& scene, const std::string& state);
+  /// The state of an open search.
+  std::string state();
+
   /// Collective. Throws ResidualTooLarge if linear vehicles are not accurate enough. leaves_last: as for
   /// CompanionSearch.
   void run(bool leaves_last) { search_.run(leaves_last); }
@@ -33,6 +39,7 @@ class ModelSearch {
 
  private:
   SearchTask task();
+  void keep(base::Bytes& bytes);
 
   scene::Scene scene_;
   FirstSteps steps_;

@@ -55,7 +55,7 @@ bool takes_modes_for_damping(const scene::Scene& scene) {
 
 Choice modes_for_damping(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("choice of the bridge's modes");
-  Choice choice{scene.model, {}, {}};
+  Choice choice{scene.model, {}, {}, {}};
   const auto keep_elements = [&] {
     notes.push_back(fmt::format("the bridge keeps its elements: it has more than {} modes", most_modes));
     return choice;

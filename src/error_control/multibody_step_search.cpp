@@ -145,7 +145,7 @@ Choice choose_multibody_step(MPI_Comm comm, const scene::Scene& scene, std::vect
   CompanionSearch search(runs, task);
   search.run();
 
-  Choice choice{scene.model, {}, {}};
+  Choice choice{scene.model, {}, {}, {}};
   Accuracy& result = choice.accuracy;
   result.measured = true;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

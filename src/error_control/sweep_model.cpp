@@ -49,7 +49,7 @@ std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::stri
     notes.insert(notes.end(), own.begin(), own.end());
     one.model.trials_lost_contact = one.accuracy.lost_contact;
     if (all) one.accuracy.merge(all->accuracy);
-    all = Choice{all ? finer(all->model, one.model) : one.model, one.accuracy, {}};
+    all = Choice{all ? finer(all->model, one.model) : one.model, one.accuracy, {}, {}};
   }
   return all;
 }
@@ -109,7 +109,7 @@ Choice choose_unbatched(const Scene& given, std::vector<std::string>& notes) {
     notes.push_back(fmt::format(
         "errors are not estimated: model_modes = {} is given, and trial runs do not determine the truncation error",
         given.model.modes));
-  if (!all) return {given.model, {}, {}};
+  if (!all) return {given.model, {}, {}, {}};
   const Scene scene = with(scene_of_trials, all->model);
   describe(scene, all->accuracy, notes);
   if (given.by_given_modes()) return *all;

@@ -113,6 +113,15 @@ const RunPeaks& TrialRuns::stored(const Discretisation& model) {
   return known != stored_.end() ? known->run : stored_.emplace_back(StoredRun{model, computed(model)}).run;
 }
 
+void TrialRuns::keep(base::Bytes& bytes, std::span<const Discretisation> models) {
+  bytes(*scene_.end_time, residual_limit_, measured_linearisation_, lost_contact_);
+  for (const Discretisation& model : models) {
+    RunPeaks run = bytes.reads() ? RunPeaks() : stored(model);
+    bytes(run);
+    if (bytes.reads()) store(model, std::move(run));
+  }
+}
+
 RunPeaks TrialRuns::computed(const Discretisation& model) {
   Scene scene = with_model(model);
   const bool open = scene.model.vehicles == scene::VehicleModel::automatic;

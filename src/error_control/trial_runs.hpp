@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <deque>
+#include <span>
 #include <utility>
 
 #include "error_control/companion_search.hpp"
@@ -23,6 +24,8 @@ struct RunPeaks {
   bool lost_contact = false;
   double residual = 0.0;        // residual of linear vehicles, coupling::System::linearisation_residual
   double energy_missing = 0.0;  // relative to the change of the energies
+
+  void keep(base::Bytes& bytes) { bytes(peaks, lost_contact, residual, energy_missing); }
 };
 
 /// Collective. A run of the scene, whose step is given, sampled at every step. Its accelerations are low-passed if the
@@ -53,6 +56,8 @@ class TrialRuns : public Companions {
   const RunPeaks& stored(const Discretisation& model);
   /// Stores a run that was computed elsewhere.
   void store(const Discretisation& model, RunPeaks run) { stored_.push_back({model, std::move(run)}); }
+  /// Writes or reads the runs of these models, with the other results of all runs.
+  void keep(base::Bytes& bytes, std::span<const Discretisation> models);
   std::size_t count() const { return stored_.size(); }
   double end() const { return *scene_.end_time; }  // s
   /// The limit of the linearisation residual.

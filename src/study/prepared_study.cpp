@@ -108,7 +108,10 @@ error_control::Choice PreparedStudy::chosen(MPI_Comm comm, const scene::Scene& g
     scenes.base(base);  // checks all input before the first computation
   error_control::Choice found;
   error_control::ChoiceCache cache(comm, given);
-  if (cache.read(given, notes, found)) return found;
+  if (cache.read(given, notes, found)) {
+    notes.insert(notes.begin(), error_control::ChoiceCache::said);
+    return found;
+  }
   found = choose_for_study(scenes, notes);
   if (found.accuracy.measured) cache.write(notes, found);
   return found;
