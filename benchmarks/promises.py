@@ -218,6 +218,10 @@ def main():
           f"than 100 times smaller" if judged else "no run could be judged")
     print(f"of {sum(row['small'] for row in rows)} peaks whose true error is below half of what was asked "
           f"{sum(len(row['small but refused']) for row in rows)} were not promised")
+    ratios = sorted(row["trials"] / row["loop"] for row in rows if row["trials"] and row["loop"])
+    if ratios:
+        print(f"trial runs over the run: median {ratios[len(ratios) // 2]:.2g}, nine of ten at most "
+              f"{ratios[9 * len(ratios) // 10]:.2g}")
     path = os.path.join(given.out, "promises.csv")
     with open(path, "w", newline="") as file:
         table = csv.DictWriter(file, list(rows[0]) + [q for q in QUANTITIES if q not in rows[0]], restval="")

@@ -232,7 +232,7 @@ void RecordedRun::summarise(const std::string& ended) {
   progress_.done();
   if (prints() && counts) results::print_summary(summary, scene_.output.file);
   for (const std::string& line : errors_)
-    if (prints() && counts && !scene_.quiet) fmt::print("  {}\n", line);
+    if (prints() && counts) fmt::print("  {}\n", line);
   if (prints() && counts && !unsettled.empty()) fmt::print("  note: {}\n", unsettled);
   if (prints() && check) check->print();
   if (prints()) results::print_verdicts(verdicts, scene_.unusual);
@@ -379,7 +379,7 @@ int run_in_time(Job job) {
       repeated.step = *finer.step;
       refine(scene, repeated);
       job.notes = {fmt::format(
-          "the run is repeated with {}steps of {:g} s: its errors were not within the "
+          "the run is repeated with {}steps of {:.3g} s: its errors were not within the "
           "accuracy of {:g}",
           finer.elements > 0 ? fmt::format("{} elements and ", finer.elements) : "", *finer.step, scene.accuracy)};
     } else {

@@ -24,7 +24,6 @@ namespace traverse::error_control {
 
 using run::acceleration;
 using run::low_passed;
-using run::quantities;
 using run::shear_force;
 using run::wheel_force;
 using scene::Scene;
@@ -42,7 +41,7 @@ void limit_to_active_window(const Scene& scene, scene::NumericalModel& model) {
 void describe(const Scene& scene, const ModelSearch& search, const Choice& choice, std::vector<std::string>& notes) {
   const std::string mesh =
       scene.by_given_modes() ? "" : fmt::format("{} elements a {}, ", choice.model.elements, unit_of_mesh(scene));
-  notes.push_back(fmt::format("accuracy {:g}: {}steps of {:g} s; {} trial runs took {:.2g} s", scene.accuracy, mesh,
+  notes.push_back(fmt::format("accuracy {:g}: {}steps of {:.3g} s; {} trial runs took {:.2g} s", scene.accuracy, mesh,
                               *choice.model.step, search.trials(), choice.accuracy.seconds));
   if (search.open()) return;
   std::vector<std::string> lines = choice.accuracy.lines();

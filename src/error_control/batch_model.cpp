@@ -215,7 +215,7 @@ std::optional<Choice> choose_batch_model(const scene::Scene& scene, std::vector<
   };
   try {
     Choice choice = search_batches(scene);
-    notes.push_back(fmt::format("batched runs: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
+    notes.push_back(fmt::format("batched runs: {} elements a span, linear vehicles, {} with steps of {:.3g} s or less",
                                 choice.model.elements, choice.model.method, *choice.model.step));
     std::ranges::move(choice.accuracy.lines(), std::back_inserter(notes));
     return choice;

@@ -25,7 +25,7 @@ void describe(const Scene& scene, const Accuracy& all, std::vector<std::string>&
   const std::string mesh = scene.by_given_modes() ? "given modes"
                                                   : fmt::format("{} elements a {}", mesh_of(scene),
                                                                 scene.beam->track ? "sleeper bay" : "span");
-  notes.push_back(fmt::format("all runs: {}, steps of {:g} s", mesh, *scene.model.step));
+  notes.push_back(fmt::format("all runs: {}, steps of {:.3g} s", mesh, *scene.model.step));
   if (scene.model.vehicles == scene::VehicleModel::linear && !scene.vehicles.empty())
     notes.emplace_back(
         "vehicles are linearised; a run whose residual exceeds its limit is repeated with the mechanisms");
@@ -100,7 +100,7 @@ std::optional<Choice> choose_batched(const Scene& given, std::vector<std::string
 
 Choice choose_unbatched(const Scene& given, std::vector<std::string>& notes) {
   if (takes_modes_for_damping(given)) {
-    const Choice by_modes = modes_for_damping(PETSC_COMM_SELF, given, notes);
+    Choice by_modes = modes_for_damping(PETSC_COMM_SELF, given, notes);
     if (by_modes.model.modes > 0) return by_modes;
   }
   const Scene scene_of_trials = trial_scene(given, notes);

@@ -74,7 +74,8 @@ class Promises(unittest.TestCase):
     def test_a_late_scene(self):
         name = "stop on a rough track"
         row, = promises.judge(str(BUILD), name, promises.LATE[name], [1e-2], longest=float("inf"))
-        self.assertEqual(row["not promised"], ["deflection", "acceleration", "moment", "wheel force"])
+        self.assertEqual(row["not promised"], [])
+        self.assertLessEqual(row["worst"], 1.0)
 
     def test_drawn_scenes_are_always_the_same(self):
         self.assertEqual(scene_texts.drawn(3), scene_texts.drawn(3))

@@ -51,8 +51,8 @@ KINDS = [
 ]
 
 OUT_OF_BALANCE = f"""
-beam: {{spans: 24.0, EI: 2.07006e+10, mass: 2969.06, damping_ratios: 0.0251}}
-support: {{types: [clamped, roller]}}
+beam: {{spans: [24.0, 24.0], EI: 2.07006e+10, mass: 2969.06, damping_ratios: 0.0251, continuity: simply_supported}}
+support: {{types: roller*3}}
 vehicle: {{coach: {{file: {SOURCE}/options/vehicles/s300.yml}}}}
 train: {{vehicles: coach*3, speed: 74.0}}
 scene: {{tail: 1.0}}
@@ -133,10 +133,21 @@ class Stopped(Folder):
         """Linear vehicles that prove out of balance, where the run has stopped before and after that."""
         scene = self.folder / "out_of_balance.yml"
         scene.write_text(OUT_OF_BALANCE)
-        for steps in (200, 2500):
-            self.stop_and_go_on(scene, ["-accuracy", "3e-4"], steps)
+        for steps in (200, 1500):
+            self.stop_and_go_on(scene, ["-accuracy", "3e-4", "-beam_elements_per_span", "16", "-ts_dt", "1e-3"], steps)
             with h5py.File(self.folder / "whole.h5") as whole:
                 self.assertIn("repeated with the mechanisms", str(whole["model/notes"][()]))
+
+    def test_last_run_of_a_search(self):
+        """The errors of a run that has gone on are those of a run in one piece, without trial runs again."""
+        scene, options = "three_span_train", ["-accuracy", "1e-2"]
+        self.run_it(self.command(scene, [*options, "-ts_max_steps", "300"], "parts.h5"))
+        self.run_it(self.command(scene, [*options, "-restart", "parts.h5.checkpoint"], "parts.h5"))
+        self.run_it(self.command(scene, [*options, "-accuracy_cache", "false"], "whole.h5"))
+        self.assert_same("whole.h5", "parts.h5")
+        with h5py.File(self.folder / "parts.h5") as parts:
+            self.assertIn("stored choice", str(parts["model/notes"][()]))
+            self.assertIn("expected_error_deflection", parts["summary"].attrs)
 
     def test_on_two_ranks(self):
         for _, scene, options, steps in (KINDS[0], KINDS[4]):

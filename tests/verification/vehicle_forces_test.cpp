@@ -28,7 +28,12 @@ TEST(VehicleForces, HalfCarsOnThreeSpans) {
 }
 
 TEST(VehicleForces, ACoachWithStopsOverABump) {
-  expect_newton(run_scene("coach_over_a_bump", {{"ts_max_time", "1.0"}, {"output_interval", "0.01"}}), 1);
+  expect_newton(run_scene("coach_over_a_bump", {{"ts_max_time", "1.0"},
+                                                {"output_interval", "0.01"},
+                                                {"beam_elements_per_span", "64"},
+                                                {"ts_dt", "5e-4"},
+                                                {"contact_seats", "true"}}),
+                1);
 }
 
 // The train's drive holds the first body: here not the one with the wheel.

@@ -40,10 +40,10 @@ struct NumericalModel {
   /// Largest permitted residual of linear vehicles over their weight, above which the run is repeated with mechanisms.
   double residual_limit = std::numeric_limits<double>::infinity();
   bool trials_lost_contact = false;  // wheels lost contact in trial runs
-  double window_tolerance = -1.0;  // relative motion below which parts far from the train are excluded; -1: auto
-  bool local_compliance = false;   // bridge elements deflect between their nodes under wheels
-  bool step_kinks = true;          // steps end where wheels pass kinks of the surface
-  bool step_probes = false;        // steps end where wheels pass probes
+  double window_tolerance = -1.0;    // relative motion below which parts far from the train are excluded; -1: auto
+  bool local_compliance = false;     // bridge elements deflect between their nodes under wheels
+  bool step_kinks = true;            // steps end where wheels pass kinks of the surface
+  bool step_probes = false;          // steps end where wheels pass probes
 
   bool operator==(const NumericalModel&) const = default;
 };
