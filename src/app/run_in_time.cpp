@@ -226,6 +226,7 @@ void RecordedRun::summarise(const std::string& ended) {
     check = judge_by_norm(verdicts);
   }
   recorder_.change_beside();
+  if (ready_.job.open != nullptr) run::record_notes(ready_.job.notes, recorder_);
   result_.record(recorder_);
   results::record_verdicts(recorder_, verdicts);
   recorder_.finish(summary);
@@ -238,10 +239,11 @@ void RecordedRun::summarise(const std::string& ended) {
   if (prints()) results::print_verdicts(verdicts, scene_.unusual);
 }
 
-/// Determines the errors of a run that is the last one of its search, and records them with the other notes.
+/// Determines the errors of a run that is the last one of its search, and adds them to the notes.
 void RecordedRun::find_errors() {
   Job& job = ready_.job;
-  if (reaches_end_ && result_.summary.linearisation_residual <= scene_.model.residual_limit) {
+  if (reaches_end_ && !simulation_.passage().stopped_at_limit() &&
+      result_.summary.linearisation_residual <= scene_.model.residual_limit) {
     scene::NumericalModel model = scene_.model;
     model.step = simulation_.plan().time_step;
     finer_ = !job.open->add(model, {result_.peaks, result_.lost_contact, result_.summary.linearisation_residual, 0.0});
@@ -250,7 +252,6 @@ void RecordedRun::find_errors() {
     if (!finer_) errors_ = ready_.accuracy.lines();
   }
   job.notes.insert(job.notes.end(), errors_.begin(), errors_.end());
-  run::record_notes(job.notes, recorder_);
 }
 
 /// The comparison with EN 1991-2 if the scene requests it; its verdicts are appended to `verdicts`.

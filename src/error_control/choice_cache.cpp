@@ -32,8 +32,8 @@ namespace {
 
 constexpr const char* folder_name = ".traverse_choices";
 constexpr std::string_view signature = "Traverse choice\n";  // followed by a digest and the content
-constexpr std::size_t max_bytes = 1 << 20;
-constexpr int max_in_a_bay = 1600;  // sixteen times the largest track_elements_per_bay
+constexpr std::size_t max_bytes = 1 << 26;                   // an open search contains the peaks of two runs
+constexpr int max_in_a_bay = 1600;                           // sixteen times the largest track_elements_per_bay
 constexpr std::array<std::string_view, 10> free_options = {
     "scene_name",   "restart",      "checkpoint_interval", "checkpoint_file", "output_file",
     "output_quiet", "options_file", "ts_max_steps",        "study_resume",    "accuracy_report"};
