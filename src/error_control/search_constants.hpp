@@ -14,6 +14,7 @@ namespace traverse::error_control::search {
 inline constexpr double order = 2.0;                   // P S: the assumed order; most errors decrease faster
 inline constexpr double safety = 1.5;                  // P S: factor of the error
 inline constexpr double weight_of_impacts = 3.0;       // P: factor of errors if wheels lose contact
+inline constexpr double weight_of_jumps = 8.0;         // P: the same if dampers act in contact only
 inline constexpr double weight_of_undamped_sum = 4.0;  // P S: factor of errors of moments of undamped bridges
 inline constexpr double weight_of_forces = 2.0;        // P: factor of errors of accelerations under moving forces
 inline constexpr double one_solve = 1.5;               // S: factor of changes by methods with one solve a step

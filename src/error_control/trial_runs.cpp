@@ -86,8 +86,10 @@ PeakErrors TrialRuns::change(const Discretisation& coarse, const Discretisation&
 double TrialRuns::weight(std::size_t q) const {
   const bool sum_of_modes =
       q == run::moment && !damps_high_modes(scene_) && !scene_.beam->track && !scene_.by_given_modes();
-  return ((lost_contact_ || has_contact_dampers(scene_)) && is_of_impacts(q) ? search::weight_of_impacts : 1.0) *
-         (sum_of_modes ? search::weight_of_undamped_sum : 1.0) *
+  const double of_impacts = has_contact_dampers(scene_) ? search::weight_of_jumps
+                            : lost_contact_             ? search::weight_of_impacts
+                                                        : 1.0;
+  return (is_of_impacts(q) ? of_impacts : 1.0) * (sum_of_modes ? search::weight_of_undamped_sum : 1.0) *
          (q == run::acceleration && !scene_.load.forces.empty() ? search::weight_of_forces : 1.0);
 }
 
