@@ -31,7 +31,7 @@ constexpr double spans_of_load = 4.0;    // number of active spans at the ends o
 // springs change, so that the matrix is factored again.
 constexpr double sliding_solves = 6.0, sliding_factors = 0.3;
 constexpr double petsc_factor = 2.0;     // ratio of the cost to the cost of the program's own integrators
-constexpr double equivalent_runs = 8.0;  // number of runs with the first step that cost as much as all trial runs
+constexpr double equivalent_runs = 2.5;  // number of runs with the first step that cost as much as all trial runs
 // Ratio of the necessary number of modes to the number of EN 1990, with and without low-pass of the accelerations.
 constexpr double modes_low_passed = 4.0, modes_unfiltered = 10.0;
 constexpr double bytes_per_number = 8.0;

@@ -6,8 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <numbers>
+#include <iterator>
 
 #include "error_control/initial_guess.hpp"
 #include "error_control/model_search.hpp"

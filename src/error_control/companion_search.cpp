@@ -72,13 +72,15 @@ bool CompanionSearch::start() {
   return true;
 }
 
-/// Divides the change between the first two runs into the parts of step and mesh.
+/// Divides the change between the first two runs into the parts of step and mesh; both are the whole change if the run
+/// that tells them apart fails.
 void CompanionSearch::attribute() {
   if (coarse_.step == fine_.step || coarse_.elements == fine_.elements) return;
   const Discretisation corner{fine_.elements, coarse_.step};
+  space_ = {time_.by, static_cast<double>(fine_.elements) / coarse_.elements};
   if (!runs_.run(corner)) return;
   time_.by = runs_.change(corner, fine_);
-  space_ = {runs_.change(coarse_, corner), static_cast<double>(fine_.elements) / coarse_.elements};
+  space_.by = runs_.change(coarse_, corner);
 }
 
 /// The largest error by this cause, of the quantities that are sought.
