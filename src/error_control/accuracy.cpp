@@ -149,15 +149,18 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
   set_low_pass(comm, known, ignored);
   const double end = run::Passage(known, shared, ignored).plan().end_time;
-  auto search = std::make_shared<ModelSearch>(comm, known, shared, end);
-  try {
+  std::shared_ptr<ModelSearch> search;
+  const auto find = [&] {
+    search = std::make_shared<ModelSearch>(comm, known, shared, end);
     search->run(open != nullptr);
+  };
+  try {
+    find();
   } catch (const ResidualTooLarge& linear) {
     notes.push_back(
         fmt::format("vehicles are not linearised: the residual would be {:.1g} of their weights", linear.residual));
     known.model.vehicles = scene::VehicleModel::full;
-    search = std::make_shared<ModelSearch>(comm, known, shared, end);
-    search->run(open != nullptr);
+    find();
   }
   Choice choice = search->choice();
   limit_to_active_window(scene, choice.model);

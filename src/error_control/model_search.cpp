@@ -125,7 +125,12 @@ SearchTask ModelSearch::task() {
     why_not_[acceleration] =
         fmt::format("the beam vibrates with the first period of {:.3g} s, which steps of {:.2g} s do not resolve",
                     trial_steps_per_period * steps_.of_period, task.fine.step);
-  for (std::size_t q = 0; q < quantities; ++q) task.wanted[q] = why_not_[q].empty();
+  const double amplification = trials_.stored(task.coarse).amplification;
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (why_not_[q].empty() && q != wheel_force && amplification < search::at_rest)
+      why_not_[q] = fmt::format("in this run the bridge moves by {:.1g} of its static deflection only", amplification);
+    task.wanted[q] = why_not_[q].empty();
+  }
   return task;
 }
 

@@ -17,7 +17,7 @@ namespace traverse::error_control {
 class ModelSearch {
  public:
   /// The scene must have its first mesh, and its Rayleigh damping as a and b. end: of the run, s. Throws InputError if
-  /// the first trial run would be too expensive.
+  /// the first trial run would be too expensive, and ResidualTooLarge as `run`.
   ModelSearch(MPI_Comm comm, const scene::Scene& scene, const run::SharedBeam& shared, double end);
 
   /// Continues an open search for the same scene from the state that `state` returned. Throws FileError if it is

@@ -29,6 +29,7 @@ inline constexpr double max_refinement = 2.0;   // P
 inline constexpr double least_ratio = 1.9;      // P: of a run to its companion
 inline constexpr double share_of_vibration = 0.2;   // P: share of the vibration that long steps may damp at once
 inline constexpr double energy_step_factor = 0.25;  // W: reduction of a step that dissipates too much energy
+inline constexpr double at_rest = 1e-6;  // P: largest deflection over the static one, below which the bridge is at rest
 
 // Limits.
 inline constexpr int max_halvings = 14;          // P S: of a step that fails

@@ -2,6 +2,7 @@
 #include "error_control/trial_runs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "error_control/accuracy.hpp"
 #include "error_control/search_constants.hpp"
@@ -59,6 +60,10 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene) {
   run.run({&limit});
   RunPeaks result;
   run::Result found = run.result();
+  const run::Extreme& largest = found.peaks.largest(run::deflection);
+  const double at_rest =
+      largest.value != 0.0 ? run.static_deflection(scene.output.probes[static_cast<std::size_t>(largest.place)]) : 0.0;
+  if (at_rest > 0.0) result.amplification = std::abs(largest.value) / at_rest;
   result.peaks = std::move(found.peaks);
   result.lost_contact = found.lost_contact;
   result.residual = found.summary.linearisation_residual;

@@ -24,8 +24,9 @@ struct RunPeaks {
   bool lost_contact = false;
   double residual = 0.0;        // residual of linear vehicles, coupling::System::linearisation_residual
   double energy_missing = 0.0;  // relative to the change of the energies
+  double amplification = 1.0;   // largest deflection over the largest static one
 
-  void keep(base::Bytes& bytes) { bytes(peaks, lost_contact, residual, energy_missing); }
+  void keep(base::Bytes& bytes) { bytes(peaks, lost_contact, residual, energy_missing, amplification); }
 };
 
 /// Collective. A run of the scene, whose step is given, sampled at every step. Its accelerations are low-passed if the

@@ -61,11 +61,13 @@ Result Simulation::result() {
   return result;
 }
 
+double Simulation::static_deflection(double x) {
+  return caught_signal() == 0 ? system().weights().static_peak(x, evaluation_->paths(), evaluation_->time()) : 0.0;
+}
+
 std::vector<double> Simulation::static_deflections() {
   std::vector<double> deflections;
-  for (const double x : scene_.output.probes)
-    deflections.push_back(
-        caught_signal() == 0 ? system().weights().static_peak(x, evaluation_->paths(), evaluation_->time()) : 0.0);
+  for (const double x : scene_.output.probes) deflections.push_back(static_deflection(x));
   return deflections;
 }
 

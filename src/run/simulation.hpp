@@ -59,7 +59,10 @@ class Simulation {
   /// Collective. After the last step, once.
   Result result();
 
-  /// After the last step: the largest static deflection at each probe while the same loads pass, m; 0 after a signal.
+  /// Collective, after the last step: the largest static deflection at x (m along the bridge) while the same loads
+  /// pass, m; 0 after a signal.
+  double static_deflection(double x);
+  /// The same at each probe.
   std::vector<double> static_deflections();
 
   /// Collective. Writes the state between two steps, or reads it after the start.
