@@ -11,7 +11,7 @@
 #include "beam/layered_track.hpp"
 #include "ensemble/case_runner.hpp"
 #include "error_control/accuracy.hpp"
-#include "error_control/mode_choice.hpp"
+#include "error_control/mode_search.hpp"
 #include "error_control/search_constants.hpp"
 #include "error_control/trial_runs.hpp"
 #include "results/terminal.hpp"

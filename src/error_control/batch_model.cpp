@@ -89,7 +89,7 @@ class BatchCompanions : public Companions {
     // Without damping a moment is a sum of 1/n^2 over all modes, of which a step resolves those below a frequency.
     return q == run::moment && !damps_high_modes(trials_.scene()) ? search::weight_of_undamped_sum : 1.0;
   }
-  double seconds(const Discretisation& model) const override {
+  double seconds(const Discretisation& model) override {
     return duration_ / model.step * run::step_seconds(fastest_, {}, model.elements);
   }
   int mesh_of_at_least(int elements) const override { return aligned_mesh(fastest_, 2 * ((elements + 1) / 2)); }

@@ -39,7 +39,7 @@ void CompanionSearch::refine(Leave leave) {
     if (next == fine_) {
       reject_missed("");
     } else if (runs_.seconds(next) >
-               std::max(search::cheap_seconds, search::max_price * runs_.seconds(rungs_.front().model))) {
+               std::max(task_.affordable, search::max_price * runs_.seconds(rungs_.front().model))) {
       reject_missed(", and a more accurate run would be too expensive");
     } else if (leave == Leave::any || (leave == Leave::last && expected_last(next))) {
       answer_ = {next, {}};
@@ -66,7 +66,7 @@ bool CompanionSearch::start() {
       return false;
     }
   }
-  time_ = {runs_.change(coarse_, fine_), coarse_.step / fine_.step};
+  time_ = {runs_.change(coarse_, fine_), fine_.step > 0.0 ? coarse_.step / fine_.step : 1.0};
   if (time_.ratio == 1.0 && coarse_.elements > 0)
     space_ = {time_.by, static_cast<double>(fine_.elements) / coarse_.elements};
   return true;
@@ -116,7 +116,7 @@ Discretisation CompanionSearch::finer() const {
 
 /// Whether the errors will be within the accuracy.
 bool CompanionSearch::expected_last(const Discretisation& next) const {
-  const double shorter = fine_.step / next.step,
+  const double shorter = next.step > 0.0 ? fine_.step / next.step : 1.0,
                denser = fine_.elements > 0 ? static_cast<double>(next.elements) / fine_.elements : 1.0;
   return largest(time_) / std::pow(shorter, search::order) + largest(space_) / std::pow(denser, search::order) <=
          task_.accuracy;
@@ -127,7 +127,9 @@ bool CompanionSearch::expected_last(const Discretisation& next) const {
 bool CompanionSearch::add(Discretisation next) {
   for (int i = 0; !runs_.run(next); ++i, next.step *= 0.5)
     if (!task_.open_step || i == search::max_halvings) return false;
-  const auto ratio_of_steps = [&](const Discretisation& coarse) { return coarse.step / next.step; };
+  const auto ratio_of_steps = [&](const Discretisation& coarse) {
+    return next.step > 0.0 ? coarse.step / next.step : 1.0;
+  };
   const auto ratio_of_meshes = [&](const Discretisation& coarse) {
     return coarse.elements > 0 ? static_cast<double>(next.elements) / coarse.elements : 1.0;
   };
@@ -175,8 +177,9 @@ bool CompanionSearch::within_accuracy(const Rung& rung) const {
 }
 
 std::string CompanionSearch::text_of_model() const {
-  return fmt::format("steps of {:.2g} s{}", fine_.step,
-                     fine_.elements > 0 ? fmt::format(" and {} {}", fine_.elements, task_.unit) : "");
+  const std::string steps = fine_.step > 0.0 ? fmt::format("steps of {:.2g} s", fine_.step) : "",
+                    mesh = fine_.elements > 0 ? fmt::format("{} {}", fine_.elements, task_.unit) : "";
+  return steps + (steps.empty() || mesh.empty() ? "" : " and ") + mesh;
 }
 
 /// Rejects quantities whose errors by a given step or mesh are too large.

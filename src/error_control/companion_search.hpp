@@ -9,12 +9,13 @@
 
 #include "base/bytes.hpp"
 #include "error_control/peak_errors.hpp"
+#include "error_control/search_constants.hpp"
 
 namespace traverse::error_control {
 
 struct Discretisation {
-  int elements = 0;   // in the longest span, or in a sleeper bay; 0: no mesh
-  double step = 0.0;  // s
+  int elements = 0;   // in the longest span, or in a sleeper bay; 0: no mesh; or the number of modes
+  double step = 0.0;  // s; 0: exact in time
 
   friend bool operator==(const Discretisation&, const Discretisation&) = default;
   void keep(base::Bytes& bytes) { bytes(elements, step); }
@@ -31,7 +32,7 @@ class Companions {
   /// Factor of the errors of a quantity that converges less regularly than others.
   virtual double weight(std::size_t /*q*/) const { return 1.0; }
   /// The estimated cost of a run, s. It is computed from counts, because decisions must not depend on the clock.
-  virtual double seconds(const Discretisation& model) const = 0;
+  virtual double seconds(const Discretisation& model) = 0;
   /// The next mesh of at least this number of elements.
   virtual int mesh_of_at_least(int elements) const { return elements; }
 };
@@ -43,6 +44,7 @@ struct SearchTask {
   Discretisation coarse, fine;                 // the first two runs; what is the same in both has no estimate
   bool open_mesh = true, open_step = true;     // what may be refined further
   int most_elements = 0;
+  double affordable = search::cheap_seconds;  // s, cost of a run that is always allowed
   const char* unit = "elements a span";
 };
 

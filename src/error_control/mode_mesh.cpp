@@ -97,4 +97,12 @@ Choice choose_mode_mesh(MPI_Comm comm, const scene::Scene& scene, std::vector<st
   return choice;
 }
 
+int mesh_for(MPI_Comm comm, const scene::Scene& scene, int modes) {
+  scene::Scene of_modes = scene;
+  of_modes.analysis = options::Analysis::modes;
+  of_modes.mode_count = modes;
+  std::vector<std::string> ignored;
+  return choose_mode_mesh(comm, of_modes, ignored).model.elements;
+}
+
 }  // namespace traverse::error_control

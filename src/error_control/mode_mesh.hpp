@@ -18,4 +18,7 @@ bool chooses_mode_mesh(const scene::Scene& scene);
 /// mesh to `notes`, or the reason why the accuracy is not reached.
 Choice choose_mode_mesh(MPI_Comm comm, const scene::Scene& scene, std::vector<std::string>& notes);
 
+/// Collective. A mesh for the frequencies of this number of modes.
+int mesh_for(MPI_Comm comm, const scene::Scene& scene, int modes);
+
 }  // namespace traverse::error_control

@@ -33,15 +33,6 @@ std::size_t count_up_to(const beam::Beam& beam, double limit) {
   }
 }
 
-/// A mesh for the frequencies of this number of modes.
-int mesh_for(MPI_Comm comm, const scene::Scene& scene, int modes) {
-  scene::Scene of_modes = scene;
-  of_modes.analysis = options::Analysis::modes;
-  of_modes.mode_count = modes;
-  std::vector<std::string> ignored;
-  return choose_mode_mesh(comm, of_modes, ignored).model.elements;
-}
-
 }  // namespace
 
 bool takes_modes_for_damping(const scene::Scene& scene) {

@@ -66,7 +66,7 @@ class Runs : public Companions {
       changes[q] = difference(coarse.step, fine.step, static_cast<MultibodyQuantity>(q));
     return changes;
   }
-  double seconds(const Discretisation& model) const override {
+  double seconds(const Discretisation& model) override {
     return *scene_.end_time / model.step * run::step_seconds(scene_);
   }
   std::size_t count() const { return curves_.size(); }

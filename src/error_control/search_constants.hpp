@@ -32,17 +32,20 @@ inline constexpr double energy_step_factor = 0.25;  // W: reduction of a step th
 inline constexpr double at_rest = 1e-6;  // P: largest deflection over the static one, below which the bridge is at rest
 
 // Limits.
-inline constexpr int max_halvings = 14;          // P S: of a step that fails
-inline constexpr double stall_order = 0.75;      // P: below this order an error hardly decreases
-inline constexpr int max_stalls = 3;             // P: refinements with little change, after which an error is rejected
-inline constexpr double rejected_factor = 10.0;  // P: a rejected error is at most this factor times the accuracy, or
-inline constexpr double rejected_limit = 1e-3;   // P: this value, if it can be reached
-inline constexpr int max_in_a_bay = 8;           // W: elements
-inline constexpr int max_in_a_span = 256;        // W S: elements
-inline constexpr int max_in_all = 1200;          // W: elements of all spans
-inline constexpr double max_seconds = 75.0;      // W: s, estimated cost of the first run
-inline constexpr double cheap_seconds = 0.75;    // W: s, cost that is always allowed
-inline constexpr double max_price = 64.0;        // W: cost of a run over the cost of the second one
+inline constexpr int max_halvings = 14;           // P S: of a step that fails
+inline constexpr double stall_order = 0.75;       // P: below this order an error hardly decreases
+inline constexpr int max_stalls = 3;              // P: refinements with little change, after which an error is rejected
+inline constexpr double rejected_factor = 10.0;   // P: a rejected error is at most this factor times the accuracy, or
+inline constexpr double rejected_limit = 1e-3;    // P: this value, if it can be reached
+inline constexpr int max_in_a_bay = 8;            // W: elements
+inline constexpr int max_in_a_span = 256;         // W S: elements
+inline constexpr int max_in_all = 1200;           // W: elements of all spans
+inline constexpr int first_modes = 2;             // W: modes of each span in the first run by modes
+inline constexpr int max_modes = 128;             // W
+inline constexpr std::size_t mode_samples = 128;  // S: runs of a sweep that are computed in its search
+inline constexpr double max_seconds = 75.0;       // W: s, estimated cost of the first run
+inline constexpr double cheap_seconds = 0.75;     // W: s, cost that is always allowed
+inline constexpr double max_price = 64.0;         // W: cost of a run over the cost of the second one
 
 // Other causes of errors.
 inline constexpr double share_of_linear = 0.1;  // P: share of the linearisation residual

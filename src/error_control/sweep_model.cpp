@@ -10,7 +10,7 @@
 
 #include "error_control/accuracy.hpp"
 #include "error_control/batch_model.hpp"
-#include "error_control/mode_choice.hpp"
+#include "error_control/mode_search.hpp"
 #include "error_control/modes_for_damping.hpp"
 #include "error_control/trial_runs.hpp"
 #include "run/deck_acceleration.hpp"
@@ -104,18 +104,14 @@ Choice choose_unbatched(const Scene& given, std::vector<std::string>& notes) {
     if (by_modes.model.modes > 0) return by_modes;
   }
   const Scene scene_of_trials = trial_scene(given, notes);
+  if (std::optional<Choice> by_modes = choose_modes(scene_of_trials, notes)) return *by_modes;
   std::optional<Choice> all = choose_at_speeds(scene_of_trials, notes);
   if (!all && given.model.modes > 0 && !given.by_given_modes())
     notes.push_back(fmt::format(
         "errors are not estimated: model_modes = {} is given, and trial runs do not determine the truncation error",
         given.model.modes));
   if (!all) return {given.model, {}, {}, {}};
-  const Scene scene = with(scene_of_trials, all->model);
-  describe(scene, all->accuracy, notes);
-  if (given.by_given_modes()) return *all;
-  const ModesChoice modes = choose_mode_count(scene, all->accuracy, notes);
-  all->model.modes = modes.modes;
-  for (ErrorEstimate& estimate : all->accuracy.estimates) estimate.expected += modes.error;
+  describe(with(scene_of_trials, all->model), all->accuracy, notes);
   return *all;
 }
 

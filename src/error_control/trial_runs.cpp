@@ -98,7 +98,7 @@ double TrialRuns::weight(std::size_t q) const {
          (q == run::acceleration && !scene_.load.forces.empty() ? search::weight_of_forces : 1.0);
 }
 
-double TrialRuns::seconds(const Discretisation& model) const {
+double TrialRuns::seconds(const Discretisation& model) {
   return *scene_.end_time / model.step * run::step_seconds(scene_, {}, model.elements);
 }
 

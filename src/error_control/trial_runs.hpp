@@ -50,7 +50,7 @@ class TrialRuns : public Companions {
   /// Impacts are pulses that two runs may show alike by chance. A force that enters a beam excites all modes, the nth
   /// with an acceleration proportional to 1/n; moments of an undamped bridge are such a sum, too.
   double weight(std::size_t q) const override;
-  double seconds(const Discretisation& model) const override;
+  double seconds(const Discretisation& model) override;
   int mesh_of_at_least(int elements) const override;
 
   /// Collective. The run with its peaks.

@@ -13,7 +13,7 @@
 #include "base/broadcast.hpp"
 #include "base/notes.hpp"
 #include "engine/processor.hpp"
-#include "error_control/mode_choice.hpp"
+#include "error_control/mode_search.hpp"
 #include "results/sweep.hpp"
 #include "results/terminal.hpp"
 #include "run/deflection_check.hpp"

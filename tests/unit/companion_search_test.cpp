@@ -28,7 +28,7 @@ class KnownRuns : public Companions {
     changes[1] += noise;
     return changes;
   }
-  double seconds(const Discretisation& model) const override { return (10.0 + model.elements) / model.step; }
+  double seconds(const Discretisation& model) override { return (10.0 + model.elements) / model.step; }
   double error(const Discretisation& model) const {
     return in_time * std::pow(model.step / 0.05, order) + in_space * std::pow(8.0 / model.elements, order);
   }
