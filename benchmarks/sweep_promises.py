@@ -80,7 +80,7 @@ def judge(build, name, text, accuracies):
                 broken += (errors[counts] > 1.0).sum()
                 if counts.any() and errors[counts].max() > worst:
                     of, worst, where = q, errors[counts].max(), speeds[np.where(counts, errors, 0.0).argmax()]
-            chosen = re.search(r"(batched runs|all runs): (.*)", run.text)
+            chosen = re.search(r"((batched runs|all runs|accuracy [^:]*): .*)", run.text)
             yield [name, accuracy, worst, of, where, judged, broken, "; ".join(q for q in truth if q not in named),
                    chosen[0] if chosen else ""]
 

@@ -87,7 +87,7 @@ class BatchCompanions : public Companions {
   }
   double weight(std::size_t q) const override {
     // Without damping a moment is a sum of 1/n^2 over all modes, of which a step resolves those below a frequency.
-    return q == run::moment && !damps_high_modes(trials_.scene()) ? search::weight_of_undamped_sum : 1.0;
+    return q == run::moment && !damps_high_modes(trials_.scene()) ? search::weight_of_sum : 1.0;
   }
   double seconds(const Discretisation& model) override {
     return duration_ / model.step * run::step_seconds(fastest_, {}, model.elements);

@@ -58,7 +58,7 @@ bool modes_allowed(const Scene& scene) {
 /// trains and speeds.
 class ModeCompanions : public Companions {
  public:
-  explicit ModeCompanions(const Scene& scene) : scene_(scene), damped_(damps_high_modes(scene)) {}
+  explicit ModeCompanions(const Scene& scene) : scene_(scene) {}
 
   bool run(const Discretisation& model) override {
     Passages& passages = passages_[model.elements];
@@ -89,10 +89,9 @@ class ModeCompanions : public Companions {
     }
     return changes;
   }
+  // The omitted modes follow a force without delay; with damping, their moment follows it with one.
   double weight(std::size_t q) const override {
-    return q == run::acceleration         ? search::weight_of_forces
-           : q == run::moment && !damped_ ? search::weight_of_undamped_sum
-                                          : 1.0;
+    return q == run::acceleration ? search::weight_of_forces : q == run::moment ? search::weight_of_sum : 1.0;
   }
   double seconds(const Discretisation& model) override { return runner_of(model.elements).cost_of_all(); }
   /// The cost of all passages by elements with the first mesh and step that a search would try.
@@ -125,7 +124,6 @@ class ModeCompanions : public Companions {
   }
 
   const Scene& scene_;
-  bool damped_;
   std::map<int, Passages> passages_;
 };
 
@@ -184,8 +182,9 @@ std::optional<Choice> choose_modes(const Scene& scene, std::vector<std::string>&
     }
     choice.accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     notes.push_back(
-        fmt::format("accuracy {:g}: {} modes, by {} elements a span, exact in time; trial runs took {:.2g} s; "
-                    "-model_modes 0 selects the elements",
+        fmt::format("accuracy {:g}: {} modes instead of the elements, of {} elements a span; trial runs took {:.2g} s; "
+                    "-model_modes 0 "
+                    "selects the elements",
                     scene.accuracy, choice.model.modes, choice.model.elements, choice.accuracy.seconds));
     std::vector<std::string> lines = choice.accuracy.lines();
     std::ranges::move(lines, std::back_inserter(notes));

@@ -11,14 +11,14 @@
 namespace traverse::error_control::search {
 
 // Errors from the changes between a run and its companion (companion_search.cpp).
-inline constexpr double order = 2.0;                   // P S: the assumed order; most errors decrease faster
-inline constexpr double safety = 1.5;                  // P S: factor of the error
-inline constexpr double weight_of_impacts = 3.0;       // P: factor of errors if wheels lose contact
-inline constexpr double weight_of_jumps = 8.0;         // P: the same if dampers act in contact only
-inline constexpr double weight_of_undamped_sum = 4.0;  // P S: factor of errors of moments of undamped bridges
-inline constexpr double weight_of_forces = 2.0;        // P: factor of errors of accelerations under moving forces
-inline constexpr double one_solve = 1.5;               // S: factor of changes by methods with one solve a step
-inline constexpr double one_solve_force = 2.0;         // S: additional factor for wheel forces
+inline constexpr double order = 2.0;              // P S: the assumed order; most errors decrease faster
+inline constexpr double safety = 1.5;             // P S: factor of the error
+inline constexpr double weight_of_impacts = 3.0;  // P: factor of errors if wheels lose contact
+inline constexpr double weight_of_jumps = 8.0;    // P: the same if dampers act in contact only
+inline constexpr double weight_of_sum = 4.0;      // P S: factor of errors of moments of undamped bridges, and by modes
+inline constexpr double weight_of_forces = 2.0;   // P: factor of errors of accelerations under moving forces
+inline constexpr double one_solve = 1.5;          // S: factor of changes by methods with one solve a step
+inline constexpr double one_solve_force = 2.0;    // S: additional factor for wheel forces
 
 // The first runs, and the next one.
 inline constexpr double first_ratio = 5.6;      // W: of the first run's step to the step of initial_guess.cpp
@@ -52,8 +52,6 @@ inline constexpr double share_of_linear = 0.1;  // P: share of the linearisation
 inline constexpr double max_growth = 4.0;       // P: growth of that residual from the trial runs to the run
 inline constexpr double share_of_active_window =
     0.02;  // P: share of motion outside the active window; accelerations have a larger error than that
-inline constexpr double share_of_truncation =
-    0.25;  // S: share of the truncation error of modes; other runs may have a larger one
 
 // Orders of natural frequencies as elements are halved (mode_mesh.cpp).
 inline constexpr double full_order = 4.0;  // theory

@@ -94,7 +94,7 @@ double TrialRuns::weight(std::size_t q) const {
   const double of_impacts = has_contact_dampers(scene_) ? search::weight_of_jumps
                             : lost_contact_             ? search::weight_of_impacts
                                                         : 1.0;
-  return (is_of_impacts(q) ? of_impacts : 1.0) * (sum_of_modes ? search::weight_of_undamped_sum : 1.0) *
+  return (is_of_impacts(q) ? of_impacts : 1.0) * (sum_of_modes ? search::weight_of_sum : 1.0) *
          (q == run::acceleration && !scene_.load.forces.empty() ? search::weight_of_forces : 1.0);
 }
 
