@@ -48,9 +48,9 @@ double CaseSet::duration(std::size_t train, double speed) const {
 }
 
 double CaseSet::seconds_by_modes() const {
-  const std::vector<double>& omega = beam_->modal->omega();
-  const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
-  return instants * run::modal_instant_seconds(scene_, static_cast<double>(omega.size()), dampers_couple_modes());
+  const structure::ModalBridge& modal = *beam_->modal;
+  const double instants = scene_.sweep->instants * modal.fastest_oscillation() / (2.0 * std::numbers::pi);
+  return instants * run::modal_instant_seconds(scene_, static_cast<double>(modal.modes()), dampers_couple_modes());
 }
 
 double CaseSet::seconds_in_batches() const {

@@ -165,7 +165,7 @@ std::optional<Choice> choose_modes(const Scene& scene, std::vector<std::string>&
   if (task.fine.elements > task.most_elements) return {};
   try {
     ModeCompanions runs(scene);
-    task.affordable = runs.seconds_by_elements(task.coarse.elements);
+    task.affordable = search::max_price * runs.seconds_by_elements(task.coarse.elements);
     CompanionSearch search(runs, task);
     search.run();
     Choice choice{scene.model, {}, {}, {}};

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -104,8 +105,17 @@ Choice choose_unbatched(const Scene& given, std::vector<std::string>& notes) {
     if (by_modes.model.modes > 0) return by_modes;
   }
   const Scene scene_of_trials = trial_scene(given, notes);
-  if (std::optional<Choice> by_modes = choose_modes(scene_of_trials, notes)) return *by_modes;
-  std::optional<Choice> all = choose_at_speeds(scene_of_trials, notes);
+  const auto keeps_acceleration = [&](const Choice& choice) {
+    return choice.accuracy.estimates[run::acceleration].accepted ||
+           !is_controlled(scene_of_trials, run::acceleration) || !damps_high_modes(scene_of_trials);
+  };
+  std::vector<std::string> of_modes, of_elements;
+  const std::optional<Choice> by_modes = choose_modes(scene_of_trials, of_modes);
+  std::optional<Choice> all;
+  if (!by_modes || !keeps_acceleration(*by_modes)) all = choose_at_speeds(scene_of_trials, of_elements);
+  const bool takes_modes = by_modes && (!all || !keeps_acceleration(*all));
+  std::ranges::move(takes_modes ? of_modes : of_elements, std::back_inserter(notes));
+  if (takes_modes) return *by_modes;
   if (!all && given.model.modes > 0 && !given.by_given_modes())
     notes.push_back(fmt::format(
         "errors are not estimated: model_modes = {} is given, and trial runs do not determine the truncation error",

@@ -97,8 +97,7 @@ std::vector<std::vector<base::ProbePeaks>> MovingForcePassages::run(
   task.runs = static_cast<int>(speeds.size());
   task.speed = speed.data();
   task.end = end.data();
-  const double fastest = *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
-  task.instant = 2.0 * std::numbers::pi / fastest / samples_per_period;
+  task.instant = 2.0 * std::numbers::pi / bridge_.fastest_oscillation() / samples_per_period;
   task.ds = task.instant * engine::speed_of_class(engine::speed_class(speeds.front()));
   task.intervals = static_cast<long>(history_.start.size());
   task.channels = static_cast<int>(history_.channels);

@@ -37,7 +37,6 @@ class ForcedModes : Lanes<W> {
     for (Lane** own : of_modes) *own = allocate_from<Lane>(work, used, W, modes_);
     regular_ = allocate_from<Advance>(work, used, W, modes_);
     by_length_ = allocate_from<Advance>(work, used, W, static_cast<long>(modes_) * task_.lengths);
-    parts_of_length_ = allocate_from<double>(work, used, W, task_.lengths);
     series_ = allocate_from<Series>(work, used, W, modes_);
     for (double*& power : g_) power = allocate_from<double>(work, used, W, modes_);
   }
@@ -45,11 +44,9 @@ class ForcedModes : Lanes<W> {
   void begin() {
     speed_ = *Own::lanes(task_.speed);
     set_series();
-    for (int k = 0; k < task_.lengths; ++k) {
-      parts_of_length_[k] = long_parts(task_.length[k]);
-      const Lane part = fill(task_.length[k] / parts_of_length_[k]) / speed_;
-      for (int i = 0; i < modes_; ++i) by_length_[k * modes_ + i] = advance_by(i, part, series_[i].long_terms);
-    }
+    for (int k = 0; k < task_.lengths; ++k)
+      for (int i = 0; i < modes_; ++i)
+        by_length_[k * modes_ + i] = advance_by(i, fill(task_.length[k]) / speed_, task_.length[k] / task_.least_speed);
     for (int i = 0; i < modes_; ++i) {
       q[i] = fill(task_.q[i]);
       r[i] = Lane{};
@@ -61,8 +58,7 @@ class ForcedModes : Lanes<W> {
   void set_step(double step) {
     if (step == step_) return;
     step_ = step;
-    const Lane part = fill(step / parts_) / speed_;
-    for (int i = 0; i < modes_; ++i) regular_[i] = advance_by(i, part, series_[i].terms);
+    for (int i = 0; i < modes_; ++i) regular_[i] = advance_by(i, fill(step) / speed_, task_.instant);
   }
 
   /// The distance travelled at the next event, m; infinite after the last event.
@@ -80,30 +76,25 @@ class ForcedModes : Lanes<W> {
 
   /// Moves from a sample to the next one, without an event between them.
   void move_regularly(double to) {
-    const double from = s;
-    for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < modes_; ++i) move(i, regular_[i], g_[1][i], g_[2][i], g_[3][i]);
-      place(part_of(from, to, k, parts_));
-    }
+    for (int i = 0; i < modes_; ++i) move(i, regular_[i], g_[1][i], g_[2][i], g_[3][i]);
+    place(to);
   }
 
   /// Moves to a distance at most one sampling interval away, not beyond the next event.
   void move_to(double to) {
-    const double from = s;
-    const Lane part = fill((to - from) / parts_) / speed_;
-    for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < modes_; ++i) move(i, advance_by(i, part, series_[i].terms), g_[1][i], g_[2][i], g_[3][i]);
-      place(part_of(from, to, k, parts_));
-    }
+    move_all(to, task_.instant);
+    place(to);
   }
 
   /// Makes one move of the windows, up to the distance `to` in the same interval; place_again() follows after the last.
   void make_move(long number, double to) {
     const int length = task_.move_length[number];
-    if (length >= 0 && parts_of_length_[length] == 1.0 && s == task_.start[interval])
+    if (length >= 0 && s == task_.start[interval]) {
       move_from_start(by_length_ + length * modes_);
-    else
-      move_in_parts(length, to);
+    } else {
+      place(s);
+      move_all(to, (to - s) / task_.least_speed);
+    }
     s = to;
     if (to == next_event()) ++interval;
   }
@@ -131,20 +122,17 @@ class ForcedModes : Lanes<W> {
 
   /// Moves every lane to a separate distance; move_back() reverses this.
   void move_lanes(Lane to) {
-    const Lane step = (to - s) / parts_, part = step / speed_;
+    const Lane step = to - s, time = step / speed_, d = step + (s - task_.start[interval]);
+    const double begin = s - task_.start[interval];
     for (int i = 0; i < modes_; ++i) {
       q_stored_[i] = q[i];
       r_stored_[i] = r[i];
       a_stored_[i] = a[i];
-      const Advance by = advance_by(i, part, series_[i].terms);
       const double* c = task_.coefficients + 4 * task_.channels * interval + i;
       const double c0 = c[0], c1 = c[task_.channels], c2 = c[2 * task_.channels], c3 = c[3 * task_.channels];
-      Lane d = fill(s - task_.start[interval]);
-      for (double k = 1.0; k <= parts_; k += 1.0) {
-        move(i, by, c1 + d * (2.0 * c2 + 3.0 * d * c3), c2 + 3.0 * d * c3, c3);
-        d += step;
-        a[i] = c0 + d * (c1 + d * (c2 + d * c3)) - task_.omega2[i] * q[i] - task_.damping[i] * r[i];
-      }
+      move(i, advance_by(i, time, task_.instant), c1 + begin * (2.0 * c2 + 3.0 * begin * c3), c2 + 3.0 * begin * c3,
+           c3);
+      a[i] = c0 + d * (c1 + d * (c2 + d * c3)) - task_.omega2[i] * q[i] - task_.damping[i] * r[i];
     }
   }
   void move_back() {
@@ -160,11 +148,9 @@ class ForcedModes : Lanes<W> {
   Lane *q = nullptr, *r = nullptr, *a = nullptr;  // coordinates, rates and accelerations of the modes
 
  private:
-  static constexpr double most_phase =
-      2.0;  // largest phase of a part of a sampling interval: up to this phase series are short
-  static constexpr double most_long_phase = 8.0;  // of a part of a move of the windows
-  static constexpr int most_terms = 48;           // limit of terms of a series
-  static constexpr double last_term = 1e-19;      // last term of a series over its first term
+  static constexpr double most_phase = 2.0;   // largest phase of a series: up to this phase series are short
+  static constexpr int most_terms = 28;       // limit of terms of a series
+  static constexpr double last_term = 1e-19;  // last term of a series over its first term
 
   /// The coefficients of q', q'', j and the second and third powers of the distance in g, with which one step changes a
   /// mode's q and q'.
@@ -172,21 +158,18 @@ class ForcedModes : Lanes<W> {
     Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
   };
   struct Series {
-    int terms, long_terms;                      // in a sampling interval, and in a move of the windows
+    double rate;                                // of the mode's fastest change, 1/s
+    int terms, long_terms;                      // in a sampling interval, and in any part
     double by_2[most_terms], by_3[most_terms];  // coefficients of Q_2 and Q_3
   };
 
-  /// Computes the series' coefficients for the longest part of a sampling interval, and the number of parts.
+  /// Computes the series' coefficients.
   void set_series() {
-    double fastest = 0.0;
-    for (int i = 0; i < modes_; ++i)
-      if (rate_of(i) > fastest) fastest = rate_of(i);
-    parts_ = __builtin_ceil(fastest * task_.instant / most_phase);
-    long_phase_per_metre_ = fastest / task_.least_speed;
     for (int i = 0; i < modes_; ++i) {
       Series& own = series_[i];
-      own.terms = terms_for(rate_of(i) * task_.instant / parts_);
-      own.long_terms = terms_for(most_long_phase * rate_of(i) / fastest);
+      own.rate = rate_of(i);
+      own.terms = terms_for(own.rate * task_.instant);
+      own.long_terms = terms_for(most_phase);
       double before = 0.0, impulse = 1.0;  // derivatives of O at t = 0
       double by_2 = 1.0 / 24.0, by_3 = 1.0 / 120.0;
       for (int k = 0; k < most_terms; ++k) {
@@ -201,19 +184,14 @@ class ForcedModes : Lanes<W> {
     }
   }
 
-  /// The number of terms of a series up to this phase.
+  /// The number of terms of a series up to this phase, at most most_phase.
   static int terms_for(double phase) {
+    phase = phase < most_phase ? phase : most_phase;
     double size = 1.0;
     int terms = 0;
     for (; terms < most_terms && (terms < 2 || size > last_term); ++terms)
       size *= phase / (terms + 5.0) * (terms + 2.0) / (terms + 1.0);
     return terms;
-  }
-
-  /// The number of parts of a move of the windows.
-  double long_parts(double length) const {
-    const double parts = __builtin_ceil(length * long_phase_per_metre_ / most_long_phase);
-    return parts > 1.0 ? parts : 1.0;
   }
 
   /// The rate of a mode's fastest change, 1/s.
@@ -222,20 +200,35 @@ class ForcedModes : Lanes<W> {
     return square > 0.0 ? sigma + __builtin_sqrt(square) : __builtin_sqrt(task_.omega2[i]);
   }
 
-  Advance advance_by(int i, Lane time, int terms) const {
+  /// The step of a mode in a time, which is at most `longest` in any lane, s: by series for a power of two of its
+  /// parts, and from each part to twice this part by superposition.
+  Advance advance_by(int i, Lane time, double longest) const {
     const Series& own = series_[i];
-    Lane Q2{}, Q3{};
-    for (int k = terms - 1; k >= 0; --k) {
-      Q2 = Q2 * time + own.by_2[k];
-      Q3 = Q3 * time + own.by_3[k];
-    }
-    const Lane square = time * time;
-    Q2 *= square * square;
-    Q3 *= square * square * time;
     const double c = task_.damping[i], w = task_.omega2[i];
-    const Lane Q1 = time * square * (1.0 / 6.0) - c * Q2 - w * Q3;
-    const Lane Q0 = 0.5 * square - c * Q1 - w * Q2;
-    const Lane impulse = time - c * Q0 - w * Q1;
+    double phase = own.rate * longest;
+    int doublings = 0;
+    for (; phase > most_phase; phase *= 0.5) ++doublings;
+    Lane t = time * (1.0 / static_cast<double>(1L << doublings)), Q2{}, Q3{};
+    const int terms = longest <= task_.instant ? own.terms : own.long_terms;
+    for (int k = terms - 1; k >= 0; --k) {
+      Q2 = Q2 * t + own.by_2[k];
+      Q3 = Q3 * t + own.by_3[k];
+    }
+    Lane square = t * t;
+    Q2 *= square * square;
+    Q3 *= square * square * t;
+    Lane Q1 = t * square * (1.0 / 6.0) - c * Q2 - w * Q3;
+    Lane Q0 = 0.5 * square - c * Q1 - w * Q2;
+    Lane impulse = t - c * Q0 - w * Q1;
+    for (; doublings > 0; --doublings) {
+      const Lane free = 1.0 - w * Q0, rate = free - c * impulse;  // after a unit displacement; of the impulse response
+      Q3 = Q3 * free + Q2 * impulse + Q3 + t * (Q2 + t * (0.5 * Q1 + t * (1.0 / 6.0) * Q0));
+      Q2 = Q2 * free + Q1 * impulse + Q2 + t * (Q1 + 0.5 * t * Q0);
+      Q1 = Q1 * free + Q0 * impulse + Q1 + t * Q0;
+      Q0 = Q0 * free + impulse * impulse + Q0;
+      impulse = impulse * (free + rate);
+      t += t;
+    }
     const Lane by_2 = 2.0 * speed_ * speed_, by_3 = 3.0 * by_2 * speed_;
     return {time, impulse, Q0, Q1, by_2 * Q2, by_3 * Q3, by_2 * Q1, by_3 * Q2};
   }
@@ -257,21 +250,10 @@ class ForcedModes : Lanes<W> {
       move(i, by[i], c[task_.channels], c[2 * task_.channels], c[3 * task_.channels]);
     }
   }
-  void move_in_parts(int length, double to) {
-    const double from = s, parts = length < 0 ? long_parts(to - from) : parts_of_length_[length];
-    const Lane part = fill((to - from) / parts) / speed_;
-    for (double k = 1.0; k <= parts; k += 1.0) {
-      place(s);
-      for (int i = 0; i < modes_; ++i)
-        move(i, length < 0 ? advance_by(i, part, series_[i].long_terms) : by_length_[length * modes_ + i], g_[1][i],
-             g_[2][i], g_[3][i]);
-      s = part_of(from, to, k, parts);
-    }
-  }
-
-  /// The end of the k-th part of a step.
-  static double part_of(double from, double to, double k, double parts) {
-    return k < parts ? from + (to - from) * (k / parts) : to;
+  /// Moves all lanes to this distance, in at most this time (s) in any lane.
+  void move_all(double to, double longest) {
+    const Lane time = fill(to - s) / speed_;
+    for (int i = 0; i < modes_; ++i) move(i, advance_by(i, time, longest), g_[1][i], g_[2][i], g_[3][i]);
   }
 
   /// Sets the distance, within this interval: modal forces and accelerations.
@@ -293,13 +275,10 @@ class ForcedModes : Lanes<W> {
   const ForceTask& task_;
   const int modes_;
   Lane speed_{};
-  double parts_ = 1.0;                 // number of parts of the longest sampling interval
-  double long_phase_per_metre_ = 0.0;  // largest phase of the fastest mode in any lane
   Lane *q_stored_ = nullptr, *r_stored_ = nullptr, *a_stored_ = nullptr;
   double step_ = -1.0;            // m: sampling interval
   Advance* regular_ = nullptr;    // for one sampling interval
-  Advance* by_length_ = nullptr;  // for a part of a move of each length: [length][mode]
-  double* parts_of_length_ = nullptr;
+  Advance* by_length_ = nullptr;  // for a move of each length: [length][mode]
   Series* series_ = nullptr;
   double* g_[4] = {};  // coefficients of g of the modes, by powers of the distance from the present position
 };

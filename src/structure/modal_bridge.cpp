@@ -133,6 +133,12 @@ void ModalBridge::add_forces_on_others(const double* rates, double* nodal) const
       forces_on_others_ * Eigen::Map<const Eigen::VectorXd>(rates, forces_on_others_.cols());
 }
 
+double ModalBridge::fastest_oscillation() const {
+  double square = 0.0;
+  for (std::size_t i = 0; i < modes(); ++i) square = std::max(square, omega()[i] * omega()[i] - sigma_[i] * sigma_[i]);
+  return square > 0.0 ? std::sqrt(square) : omega().back();
+}
+
 const ComplexModes& ModalBridge::complex_modes() const {
   if (!complex_modes_) complex_modes_.emplace(omega(), sigma(), cross_damping());
   return *complex_modes_;

@@ -103,6 +103,8 @@ class ModalBridge {
   const std::vector<double>& omega() const { return basis_.omega; }  // rad/s
   /// Half of the diagonal of the modes' damping phi^T C* phi, given ratios included, 1/s: decay rates unless coupled.
   const std::vector<double>& sigma() const { return sigma_; }
+  /// The highest frequency of free oscillations, rad/s; overdamped modes do not oscillate.
+  double fastest_oscillation() const;
   /// The part of it by dampers, 1/s.
   const std::vector<double>& damper_sigma() const { return damper_sigma_; }
   /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 if it is diagonal.
