@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "base/spline.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::base {
@@ -31,32 +32,6 @@ void check_table(const std::vector<double>& times, const std::vector<double>& va
                        std::to_string(times[i]) + " after " + std::to_string(times[i - 1]));
     }
   }
-}
-
-/// Second derivatives of the spline: a tridiagonal, diagonally dominant system, eliminated downwards. rests: whether
-/// the first and the last end have no rate, instead of no curvature.
-std::vector<double> spline_curvatures(const std::vector<double>& t, const std::vector<double>& y,
-                                      const std::array<bool, 2>& rests) {
-  const std::size_t last = t.size() - 1;
-  const auto chord = [&](std::size_t i) { return (y[i + 1] - y[i]) / (t[i + 1] - t[i]); };
-  std::vector<double> curvature(last + 1, 0.0);
-  std::vector<double> above(last + 1, 0.0);  // the upper diagonal after elimination
-  if (rests[0]) {
-    above[0] = 0.5;
-    curvature[0] = 3.0 * chord(0) / (t[1] - t[0]);
-  }
-  for (std::size_t i = 1; i < last; ++i) {
-    const double left = t[i] - t[i - 1];
-    const double right = t[i + 1] - t[i];
-    const double pivot = 2.0 * (left + right) - left * above[i - 1];
-    above[i] = right / pivot;
-    curvature[i] = (6.0 * (chord(i) - chord(i - 1)) - left * curvature[i - 1]) / pivot;
-  }
-  if (rests[1])
-    curvature[last] =
-        (-6.0 * chord(last - 1) / (t[last] - t[last - 1]) - curvature[last - 1]) / (2.0 - above[last - 1]);
-  for (std::size_t i = last; i-- > 0;) curvature[i] -= above[i] * curvature[i + 1];
-  return curvature;
 }
 
 constexpr double rounding = 1e-12;     // relative to the terms of a rate
@@ -83,16 +58,18 @@ TimeFunction::TimeFunction(std::vector<double> times, std::vector<double> values
   const double first_rate = pieces_[1].rate, last_rate = pieces_[last].rate_at(times_[last]);
   double greatest = std::max(std::abs(first_rate), std::abs(last_rate));
   for (const Piece& piece : pieces_) greatest = std::max(greatest, std::abs(piece.rate));
-  const std::array<bool, 2> rests = {values[0] == values[1] || std::abs(first_rate) < least_rate * greatest,
-                                     values[last - 1] == values[last] || std::abs(last_rate) < least_rate * greatest};
-  if (rests[0] || rests[1]) set_spline(values, rests);
+  std::array<std::optional<double>, 2> rates;
+  if (values[0] == values[1] || std::abs(first_rate) < least_rate * greatest) rates[0] = 0.0;
+  if (values[last - 1] == values[last] || std::abs(last_rate) < least_rate * greatest) rates[1] = 0.0;
+  if (rates[0] || rates[1]) set_spline(values, rates);
   find_kinks_at_ends();
   check_overshoot();
 }
 
-// Sets the pieces of the spline; rests: whether it has no rate at its first and at its last end.
-void TimeFunction::set_spline(const std::vector<double>& values, const std::array<bool, 2>& rests) {
-  const std::vector<double> curvatures = spline_curvatures(times_, values, rests);
+// Sets the pieces of the spline, which has no curvature at an end without a rate.
+void TimeFunction::set_spline(const std::vector<double>& values,
+                              const std::array<std::optional<double>, 2>& end_rates) {
+  const std::vector<double> curvatures = spline_curvatures(times_, values, end_rates);
   pieces_.assign(1, {times_.front(), values.front()});
   for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
     const double h = times_[k + 1] - times_[k];
@@ -101,7 +78,7 @@ void TimeFunction::set_spline(const std::vector<double>& values, const std::arra
                        curvatures[k], (curvatures[k + 1] - curvatures[k]) / h});
   }
   pieces_.push_back({times_.back(), values.back()});
-  if (rests[0]) pieces_[1].rate = 0.0;
+  if (end_rates[0]) pieces_[1].rate = *end_rates[0];
 }
 
 // Each piece is a cubic between two rows, whose extremes are at the roots of its rate.

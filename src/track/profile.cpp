@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/spline.hpp"
 #include "traverse/base/error.hpp"
 #include "two_pi.hpp"
 
@@ -25,26 +26,6 @@ constexpr double max_overshoot =
     0.3;  // limit relative to a table's range of heights; three rows per wave cause an overshoot of a tenth
 constexpr int wave_count = 240;
 static_assert(wave_count % Waves::lanes == 0);
-
-/// Slopes of the natural cubic spline at its knots, from its second derivatives (Thomas algorithm).
-std::vector<double> natural_spline(const std::vector<double>& x, const std::vector<double>& h) {
-  const std::size_t n = x.size();
-  std::vector<double> second(n, 0.0), upper(n, 0.0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double a = x[i] - x[i - 1], b = x[i + 1] - x[i];
-    const double pivot = 2.0 * (a + b) - a * upper[i - 1];
-    upper[i] = b / pivot;
-    const double right = 6.0 * ((h[i + 1] - h[i]) / b - (h[i] - h[i - 1]) / a);
-    second[i] = (right - a * second[i - 1]) / pivot;
-  }
-  for (std::size_t i = n - 1; i-- > 1;) second[i] -= upper[i] * second[i + 1];
-  std::vector<double> slope(n);
-  for (std::size_t i = 0; i + 1 < n; ++i)
-    slope[i] = (h[i + 1] - h[i]) / (x[i + 1] - x[i]) - (x[i + 1] - x[i]) * (2.0 * second[i] + second[i + 1]) / 6.0;
-  const double d = x[n - 1] - x[n - 2];
-  slope[n - 1] = (h[n - 1] - h[n - 2]) / d + d * (second[n - 2] + 2.0 * second[n - 1]) / 6.0;
-  return slope;
-}
 
 /// The corners of straight lines through a table's rows. At a distance s from its row, within `reach`, the curve of a
 /// corner deviates from the lines by -turn/2 s (1 - s/reach)^2: it passes through the row with the mean of both slopes
@@ -145,7 +126,7 @@ Profile Profile::spline(std::vector<double> x, std::vector<double> h, const std:
   check_table(x, h, name);
   Profile p;
   p.kind_ = Kind::table;
-  p.slope_ = natural_spline(x, h);
+  p.slope_ = base::spline_slopes(x, h);
   p.kinks_ = {x.front(), x.back()};
   p.x_ = std::move(x);
   p.h_ = std::move(h);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace traverse::base {
@@ -68,7 +69,7 @@ class TimeFunction {
   const Piece& piece(double t) const { return pieces_[std::clamp(piece_at(t), first_, last_)]; }
   bool jumps_at(std::size_t row) const;  // whether rate or acceleration jumps
   static TimeFunction table(std::vector<double> times);
-  void set_spline(const std::vector<double>& values, const std::array<bool, 2>& rests);
+  void set_spline(const std::vector<double>& values, const std::array<std::optional<double>, 2>& end_rates);
   void find_kinks_at_ends();
   void check_overshoot() const;
 
