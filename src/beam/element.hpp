@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "base/gauss.hpp"
 #include "beam/mesh.hpp"
 #include "traverse/beam/model.hpp"
 
@@ -26,19 +27,12 @@ inline std::optional<double> constant_value(const Distribution& d, double a, dou
 /// breaks. It is exact for d(x) times a polynomial of degree 6.
 template <class Sum>
 void integrate(const Distribution& d, double from, double to, Sum sum) {
-  constexpr std::array<double, 4> points{-0.86113631159405257522, -0.33998104358485626480, 0.33998104358485626480,
-                                         0.86113631159405257522};
-  constexpr std::array<double, 4> weights{0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263,
-                                          0.34785484513745385737};
   auto ends = d.breaks(from, to);
   ends.push_back(to);
   double left = from;
   for (double right : ends) {
-    const double half = 0.5 * (right - left), middle = 0.5 * (left + right);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double x = middle + half * points[i];
-      sum(x, weights[i] * half * d.at(x, middle));
-    }
+    const double middle = 0.5 * (left + right);
+    base::at_gauss_points<4>(left, right, [&](double x, double weight) { sum(x, weight * d.at(x, middle)); });
     left = right;
   }
 }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/gauss.hpp"
 #include "beam/shape.hpp"
 
 namespace traverse::coupling {
@@ -44,22 +45,15 @@ struct QuasiStaticResponse::InfluenceLine {
     if (length == 0.0) return at(mesh, x);
     const double from = std::max(x - 0.5 * length, mesh.start()), to = std::min(x + 0.5 * length, mesh.end());
     if (!(to > from)) return 0.0;
-    constexpr double position = 0.7745966692414834;  // position of the outer points of Gauss' rule with three points
     double sum = 0.0;
-    const auto add = [&](double left, double right) {
-      const double middle = 0.5 * (left + right), half = 0.5 * (right - left);
-      sum += half *
-             (5.0 * at(mesh, middle - position * half) + 8.0 * at(mesh, middle) +
-              5.0 * at(mesh, middle + position * half)) /
-             9.0;
-    };
+    const auto add = [&](double place, double weight) { sum += weight * at(mesh, place); };
     for (int e = mesh.locate(from).element; e <= mesh.locate(to).element; ++e) {
       const beam::Element& element = mesh.element(e);
       const double left = std::max(from, element.x), right = std::min(to, element.x + element.length);
       if (!(right > left)) continue;
       const double middle = std::clamp(station, left, right);
-      if (middle > left) add(left, middle);
-      if (right > middle) add(middle, right);
+      if (middle > left) base::at_gauss_points<3>(left, middle, add);
+      if (right > middle) base::at_gauss_points<3>(middle, right, add);
     }
     return sum / length;
   }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/gauss.hpp"
+
 namespace traverse::integrate {
 namespace {
 
@@ -14,11 +16,9 @@ double value(const std::array<double, 4>& c, double t) { return c[0] + t * (c[1]
 double first(const std::array<double, 4>& c, double t) { return c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]); }
 double second(const std::array<double, 4>& c, double t) { return 2.0 * c[2] + 6.0 * t * c[3]; }
 
-// Gauss points on (0, 1), exact to the power 9, and the end; weights of the points.
-constexpr std::array<double, 6> instants = {0.046910077030668004, 0.23076534494715845, 0.5,
-                                            0.76923465505284155,  0.953089922969332,   1.0};
-constexpr std::array<double, 5> weights = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
-                                           0.23931433524968324, 0.11846344252809454};
+// Weights of the Gauss points of a part of a step; these points and its end, for a part of length 1.
+constexpr std::array<double, 5> weights = base::gauss_rule<5>.weights;
+constexpr double instant(std::size_t k) { return k < 5 ? 0.5 * (1.0 + base::gauss_rule<5>.points[k]) : 1.0; }
 constexpr double energy_phase = 0.5;  // rad of the fastest mode in one integration interval of the energies
 
 /// Zero instead of the rest of a decayed motion, whose square is a denormal number: with those processors are slow.
@@ -165,13 +165,13 @@ double ModalMotion::energy_part(double dt) const { return dt / std::ceil(highest
 ModalMotion::Inside<FreeOscillation> ModalMotion::inside(std::size_t mode, double part) const {
   Inside<FreeOscillation> factors;
   for (std::size_t k = 0; k < factors.size(); ++k)
-    factors[k] = free_oscillation(bridge_.omega()[mode], bridge_.sigma()[mode], instants[k] * part);
+    factors[k] = free_oscillation(bridge_.omega()[mode], bridge_.sigma()[mode], instant(k) * part);
   return factors;
 }
 
 ModalMotion::Inside<Eigen::VectorXcd> ModalMotion::coupled_inside(double part) const {
   Inside<Eigen::VectorXcd> factors;
-  for (std::size_t k = 0; k < factors.size(); ++k) factors[k] = coupled_->propagator(instants[k] * part);
+  for (std::size_t k = 0; k < factors.size(); ++k) factors[k] = coupled_->propagator(instant(k) * part);
   return factors;
 }
 
@@ -195,7 +195,7 @@ void ModalMotion::move_with_energy(double dt, bool prepared) {
       const double from = begin + static_cast<double>(part) * h;
       const double u = modes_[i].u, w = modes_[i].w;
       for (std::size_t k = 0; k < weights.size(); ++k) {
-        const double t = from + instants[k] * h;
+        const double t = from + instant(k) * h;
         const double rate = first(p, t) + factors[k].wu * u + factors[k].ww * w;
         lost += weights[k] * rate * rate;
         supplied += weights[k] * value(force, t) * rate;
@@ -204,8 +204,8 @@ void ModalMotion::move_with_energy(double dt, bool prepared) {
       modes_[i].u = flushed(whole.uu * u + whole.uw * w);
       modes_[i].w = flushed(whole.wu * u + whole.ww * w);
     }
-    dissipated_ += h * 2.0 * sigma * lost;
-    work_ += h * supplied;
+    dissipated_ += h * sigma * lost;
+    work_ += 0.5 * h * supplied;
   }
 }
 
@@ -219,7 +219,7 @@ void ModalMotion::move_coupled_with_energy(double dt, bool prepared) {
   std::vector<double> force(modes_.size());
   for (long part = 0; part < parts; ++part) {
     for (std::size_t k = 0; k < weights.size(); ++k) {
-      const double t = begin + (static_cast<double>(part) + instants[k]) * h;
+      const double t = begin + (static_cast<double>(part) + instant(k)) * h;
       coupled_->evaluate_after(factors[k], u_, w_);
       force.assign(modes_.size(), 0.0);
       add_channels_at(speed_ * t, 0, modes_.size(), force.data());
@@ -227,8 +227,8 @@ void ModalMotion::move_coupled_with_energy(double dt, bool prepared) {
       lost.noalias() = bridge_.cross_damping() * rate;
       for (Eigen::Index i = 0; i < m; ++i) {
         const auto mode = static_cast<std::size_t>(i);
-        dissipated_ += h * weights[k] * rate[i] * (2.0 * bridge_.sigma()[mode] * rate[i] + lost[i]);
-        work_ += h * weights[k] * force[mode] * rate[i];
+        dissipated_ += 0.5 * h * weights[k] * rate[i] * (2.0 * bridge_.sigma()[mode] * rate[i] + lost[i]);
+        work_ += 0.5 * h * weights[k] * force[mode] * rate[i];
       }
     }
     coupled_->move(factors.back());

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/gauss.hpp"
 #include "beam/beam.hpp"
 #include "beam/section.hpp"
 
@@ -144,22 +145,15 @@ class Recovery {
 template <class F>
 void for_points(const ElementLoad& load, double kink, F f) {
   if (load.extent == 0.0) return f(load);
-  constexpr std::array<double, 3> place = {-0.7745966692414834, 0.0, 0.7745966692414834};
-  constexpr std::array<double, 3> weight = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   const double left = load.xi - 0.5 * load.extent, right = load.xi + 0.5 * load.extent;
   const double middle = std::clamp(kink, left, right);
   for (const auto& [from, to] : {std::array{left, middle}, std::array{middle, right}}) {
     if (!(to > from)) continue;
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      const double part = weight[i] * (to - from) / load.extent;
-      ElementLoad point = load;
-      point.xi = 0.5 * (from + to) + 0.5 * (to - from) * place[i];
-      point.fx *= part;
-      point.fy *= part;
-      point.moment *= part;
-      point.extent = 0.0;
-      f(point);
-    }
+    base::at_gauss_points<3>(from, to, [&](double xi, double weight) {
+      const double part = weight / load.extent;
+      f(ElementLoad{load.element, xi, part * load.fx, part * load.fy, part * load.moment, load.speed, 0.0,
+                    load.source});
+    });
   }
 }
 

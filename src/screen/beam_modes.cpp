@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/gauss.hpp"
+
 namespace traverse::screen {
 namespace {
 
@@ -94,13 +96,10 @@ std::vector<SpanShape> shape_of(std::span<const double> spans, double beta) {
 /// The integral of phi^2 along a span, by Gauss's rule of three points on short parts.
 double square_of(const SpanShape& shape, double beta, double L) {
   const int parts = 16 + static_cast<int>(32.0 * beta * L);
-  const double h = L / parts, offset = 0.5 * h * std::sqrt(0.6);
+  const double h = L / parts;
   double sum = 0.0;
-  for (int i = 0; i < parts; ++i) {
-    const double middle = (i + 0.5) * h;
-    const auto square = [&](double xi) { return std::pow(shape_at(shape, beta, L, xi), 2); };
-    sum += h / 18.0 * (8.0 * square(middle) + 5.0 * (square(middle - offset) + square(middle + offset)));
-  }
+  const auto add = [&](double xi, double weight) { sum += weight * std::pow(shape_at(shape, beta, L, xi), 2); };
+  for (int i = 0; i < parts; ++i) base::at_gauss_points<3>(i * h, (i + 1) * h, add);
   return sum;
 }
 

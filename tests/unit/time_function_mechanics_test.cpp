@@ -1,5 +1,5 @@
 // Functions of time that are straight lines, splines or piecewise linear tables: values, derivatives, sides of kinks,
-// order of convergence and refused tables.
+// order of convergence and refused tables; splines and Gauss' rules.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/gauss.hpp"
+#include "base/spline.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/base/time_function.hpp"
 
@@ -111,6 +113,37 @@ TEST(TimeFunction, SplineConvergesToASineAtFourthOrder) {
     return largest;
   };
   EXPECT_GT(std::log2(error(8) / error(16)), 3.9);
+}
+
+// A cubic is its own spline between its end slopes; the natural spline through (0, 0), (1, 1), (3, 0) has the second
+// derivative -3/2 in the middle, since 2 (1 + 2) y'' = 6 (-1/2 - 1).
+TEST(Spline, HasTheClosedFormOfSmallTables) {
+  const std::vector<double> x = {-1.0, 0.5, 0.7, 2.0, 2.1};
+  std::vector<double> y;
+  for (const double at : x) y.push_back(at * at * at - at);
+  const std::vector<double> slopes = spline_slopes(x, y, {2.0, 3.0 * 2.1 * 2.1 - 1.0});
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(slopes[i], 3.0 * x[i] * x[i] - 1.0, 1e-13);
+  const std::vector<double> three = {0.0, 1.0, 3.0}, values = {0.0, 1.0, 0.0};
+  EXPECT_NEAR(spline_curvatures(three, values)[1], -1.5, 1e-15);
+  EXPECT_NEAR(spline_slopes(three, values)[0], 1.25, 1e-15);  // 1 + 1.5/6
+  EXPECT_NEAR(spline_slopes(three, values)[2], -1.0, 1e-15);  // -1/2 - 2*1.5/6
+}
+
+// A rule of N points integrates x^(2N - 1) + x^(2N - 2) over [1, 2] exactly.
+template <std::size_t N>
+void expect_exact_rule() {
+  double sum = 0.0;
+  at_gauss_points<N>(1.0, 2.0,
+                     [&](double x, double weight) { sum += weight * (1.0 + x) * std::pow(x, 2.0 * N - 2.0); });
+  const double exact =
+      (std::pow(2.0, 2.0 * N) - 1.0) / (2.0 * N) + (std::pow(2.0, 2.0 * N - 1.0) - 1.0) / (2.0 * N - 1.0);
+  EXPECT_NEAR(sum / exact, 1.0, 4e-16) << N << " points";
+}
+
+TEST(GaussRule, IsExactForItsDegree) {
+  expect_exact_rule<3>();
+  expect_exact_rule<4>();
+  expect_exact_rule<5>();
 }
 
 TEST(TimeFunction, RefusesBadTables) {
