@@ -15,35 +15,6 @@ namespace {
 constexpr int max_trials = 30;            // number of trial solutions
 constexpr double min_determinant = 1e-6;  // determinant of the system for lambda; without friction it is 1
 
-/// Gauss-Jordan inversion with partial pivoting and without memory allocation; `matrix` is overwritten. Returns the
-/// determinant.
-double invert(Eigen::MatrixXd& matrix, Eigen::MatrixXd& inverse) {
-  double determinant = 1.0;
-  inverse.setIdentity();
-  for (int k = 0; k < matrix.rows(); ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < matrix.rows(); ++i)
-      if (std::abs(matrix(i, k)) > std::abs(matrix(pivot, k))) pivot = i;
-    if (pivot != k) {
-      matrix.row(k).swap(matrix.row(pivot));
-      inverse.row(k).swap(inverse.row(pivot));
-      determinant = -determinant;
-    }
-    const double size = matrix(k, k);
-    determinant *= size;
-    if (size == 0.0) return 0.0;
-    matrix.row(k) /= size;
-    inverse.row(k) /= size;
-    for (int i = 0; i < matrix.rows(); ++i) {
-      if (i == k) continue;
-      const double factor = matrix(i, k);
-      matrix.row(i) -= factor * matrix.row(k);
-      inverse.row(i) -= factor * inverse.row(k);
-    }
-  }
-  return determinant;
-}
-
 }  // namespace
 
 /// Computes the quantities of friction that depend on positions and velocities only.
@@ -90,7 +61,9 @@ void Mechanism::solve_normal_forces(MechanismState& s) const {
     for (int k = 0; k < count; ++k) r.by_lambda[k] = std::signbit(r.normal_force[k]) ? -slope(k) : slope(k);
     for (int k = 0; k < count; ++k) r.system.col(k) = r.by_lambda[k] * r.gain.col(k);
     r.system.diagonal().array() += 1.0;
-    const double determinant = invert(r.system, r.inverse);
+    r.lu.compute(r.system);
+    r.system.setIdentity();
+    r.inverse = r.lu.solve(r.system);  // lu.inverse() would allocate memory
     bool same = true;
     for (int k = 0; k < count; ++k) {
       const double lambda = r.inverse.row(k).dot(r.start);
@@ -98,7 +71,7 @@ void Mechanism::solve_normal_forces(MechanismState& s) const {
       r.normal_force[k] = lambda;
     }
     if (!same) continue;
-    if (!(determinant > min_determinant)) r.jammed = true;
+    if (!(r.lu.determinant() > min_determinant)) r.jammed = true;
     return;
   }
   r.jammed = true;

@@ -278,6 +278,7 @@ MechanismState Mechanism::make_state() const {
     FrictionState& friction = s.friction;
     for (Eigen::MatrixXd* matrix : {&friction.A, &friction.H}) matrix->setZero(n, r);
     for (Eigen::MatrixXd* matrix : {&friction.gain, &friction.system, &friction.inverse}) matrix->setZero(r, r);
+    friction.lu = Eigen::PartialPivLU<Eigen::MatrixXd>(r);
     for (Eigen::VectorXd* v : {&friction.speed, &friction.share, &friction.force, &friction.normal_force,
                                &friction.start, &friction.by_lambda})
       v->setZero(r);

@@ -53,6 +53,7 @@ struct FrictionState {
   Eigen::VectorXd by_lambda;          // r: df = -by_lambda d(lambda)
   Eigen::MatrixXd gain;               // r x r: d(lambda)/df
   Eigen::MatrixXd system, inverse;    // r x r: 1 + gain by_lambda, and its inverse
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu;
 
   void keep(base::Bytes& bytes) {
     bytes(A, H, speed, share, force, normal_force, jammed, by_lambda, gain, system, inverse);
