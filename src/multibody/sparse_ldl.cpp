@@ -1,6 +1,6 @@
 // Minimum-degree ordering and symbolic factorisation, then numerical factorisation and solution on the planned
 // non-zeros. For the choice of pivots, one column at a time is eliminated from the remaining sparse rows by merging
-// their sorted entries, and the non-zeros of every column are counted.
+// their sorted entries, and the non-zeros of every column are counted. Decision 041 compares this with Eigen's.
 #include "multibody/sparse_ldl.hpp"
 
 #include <algorithm>

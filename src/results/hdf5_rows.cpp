@@ -3,7 +3,8 @@
 //
 // Each dataset has unit, long name and dimension scales as netCDF-4 has them. Its readers look for the coordinates of a
 // dataset in the dataset's group and in the parents of it. REFERENCE_LIST, the way back from a scale, is left out: no
-// reader needs it, and it would be rewritten for each of the fifty thousand datasets of a long train.
+// reader needs it, and H5DSattach_scale would rewrite it for each of the fifty thousand datasets of a long train, for
+// two minutes (decision 041).
 #include <algorithm>
 #include <array>
 #include <functional>
