@@ -70,7 +70,6 @@ MODELS = {  # name: the train, more options
     "masses": ("masses", {}),
     "sprung masses": ("sprung masses", {}),
     "coaches": ("coaches", {}),
-    "coaches, IMEX": ("coaches", {"ts_type": "arkimex", "ts_arkimex_type": "4", "ts_arkimex_fully_implicit": "0"}),
 }
 SHORT = {"none": "smooth", "german_low": "low", "german_high": "high"}
 
@@ -131,7 +130,7 @@ class Passages:
 def try_all(passages, speeds, ratios):
     """{(model, roughness, ratio, speed): run}; forces feel no roughness and run once."""
     keys = [(m, r, ratio, v) for r in ROUGHNESS for ratio in ratios for v in speeds for m in MODELS
-            if (not m.startswith("forces") or r == "none") and ("IMEX" not in m or ratio == 0.1)]
+            if not m.startswith("forces") or r == "none"]
     with ThreadPoolExecutor(2) as pool:
         found = dict(zip(keys, pool.map(lambda k: passages.fixed(k[0], k[3], k[2], k[1]), keys)))
     for (model, _, ratio, speed), run in list(found.items()):

@@ -11,9 +11,6 @@ FIXED = {
     "genalpha": {"ts_type": "genalpha"},
     "arkimex 3": {"ts_type": "arkimex", "ts_arkimex_type": "3"},
     "arkimex 4": {"ts_type": "arkimex", "ts_arkimex_type": "4"},
-    "arkimex 3, contacts explicit": {"ts_type": "arkimex", "ts_arkimex_type": "3", "ts_arkimex_fully_implicit": "0"},
-    "arkimex 4, contacts explicit": {"ts_type": "arkimex", "ts_arkimex_type": "4", "ts_arkimex_fully_implicit": "0"},
-    "cn": {"ts_type": "cn"},
     "bdf": {"ts_type": "bdf"},
 }
 ADAPTIVE = {  # by tolerances, from the scene's longest step on

@@ -103,32 +103,24 @@ void System::share_coordinates(const double* y) {
 
 // --- the right-hand side -------------------------------------------------------------------------------------------
 
-void System::rate(double t, const double* y, double* ydot, Terms terms) {
-  const double* v = y;
+void System::rate(double t, const double* y, double* ydot) {
   const double* w = y + n_;
   std::fill_n(ydot, local_size(), 0.0);
-  if (terms != Terms::beam) {
-    evaluate_fleet(t, y);
-    const int f = fleet_.freedom();
-    if (rank_ == 0) {
-      std::copy_n(p_.data() + f, f, ydot + 2 * n_);
-      std::copy_n(pdd_.data(), f, ydot + 2 * n_ + f);
-    }
+  evaluate_fleet(t, y);
+  const int f = fleet_.freedom();
+  if (rank_ == 0) {
+    std::copy_n(p_.data() + f, f, ydot + 2 * n_);
+    std::copy_n(pdd_.data(), f, ydot + 2 * n_ + f);
   }
   if (structure_) {
-    const bool own = terms != Terms::contact;
-    if (own) {
-      std::copy_n(w, n_, ydot);
-      load_structure(t);
-    }
-    const structure::ElementLoads contacts = contact_loads();
-    structure_->accelerations(v, w, own, terms != Terms::beam ? &contacts : nullptr, ydot + n_);
+    std::copy_n(w, n_, ydot);
+    load_structure(t);
+    structure_->accelerations(y, w, contact_loads(), ydot + n_);
   }
-  double dissipation = 0.0, work = 0.0;
-  powers(w, terms, dissipation, work);
+  const auto [dissipation, work] = powers(w);
   if (rank_ == 0) {
-    ydot[2 * (n_ + fleet_.freedom())] = dissipation;
-    ydot[2 * (n_ + fleet_.freedom()) + 1] = work;
+    ydot[2 * (n_ + f)] = dissipation;
+    ydot[2 * (n_ + f) + 1] = work;
   }
 }
 
@@ -170,21 +162,13 @@ void System::evaluate_fleet(double t, const double* y) {
   is_evaluated_ = true;
 }
 
-// Rates of D and W for the last state of fleet and structure.
-void System::powers(const double* w, Terms terms, double& dissipation, double& work) {
-  dissipation = work = 0.0;
-  if (structure_ && terms != Terms::contact) {
-    std::array<double, 2> sums = structure_->powers(w);
-    MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
-    dissipation = sums[0];
-    work = sums[1];
-  }
-  if (terms == Terms::beam) return;
-  Powers fleet = fleet_powers();
-  double sums[2] = {fleet.dissipation, fleet.work};
-  if (share_.distributed()) MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
-  dissipation += sums[0];
-  work += sums[1];
+// Rates of D and W for the last state of fleet and structure. Vehicles that are not shared count on rank 0.
+System::Powers System::powers(const double* w) {
+  const Powers fleet = fleet_powers();
+  std::array<double, 2> sums = structure_ ? structure_->powers(w) : std::array<double, 2>{};
+  if (share_.distributed() || rank_ == 0) sums = {sums[0] + fleet.dissipation, sums[1] + fleet.work};
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
+  return {sums[0], sums[1]};
 }
 
 // Powers of this rank's vehicles and contacts at their last state.
@@ -200,42 +184,31 @@ System::Powers System::fleet_powers() {
 
 // --- implicit stages -----------------------------------------------------------------------------------------------
 
-bool System::solve_stage(double t, double shift, const double* c, double* y, Terms terms) {
+bool System::solve_stage(double t, double shift, const double* c, double* y) {
   if (structure_) {
     load_structure(t);
     structure_->begin_stage(shift, c, c + n_, y + n_);
   }
   const int f = fleet_.freedom();
-  if (terms == Terms::all) {
-    share_coordinates(y);
-    c_p_.resize(2 * static_cast<std::size_t>(f));
-    if (rank_ == 0) std::copy_n(c + 2 * n_, 2 * f, c_p_.begin());
-    MPI_Bcast(c_p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
-    for (std::vector<double>* predicted : {&p_predicted_, &pd_predicted_, &x_}) predicted->assign(f, 0.0);
-    for (int i = 0; i < f; ++i) {
-      if (shift > 0.0) {
-        pd_predicted_[i] = -c_p_[f + i] / shift;
-        p_predicted_[i] = (pd_predicted_[i] - c_p_[i]) / shift;
-        // The guess moves with its velocity, so that wheels are placed near their new positions.
-        x_[i] = (p_[f + i] - pd_predicted_[i]) / shift;
-      } else {
-        x_[i] = p_[i];
-      }
-    }
+  share_coordinates(y);
+  c_p_.resize(2 * static_cast<std::size_t>(f));
+  if (rank_ == 0) std::copy_n(c + 2 * n_, 2 * f, c_p_.begin());
+  MPI_Bcast(c_p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
+  for (std::vector<double>* predicted : {&p_predicted_, &pd_predicted_, &x_}) predicted->assign(f, 0.0);
+  for (int i = 0; i < f; ++i) {
+    pd_predicted_[i] = -c_p_[f + i] / shift;
+    p_predicted_[i] = (pd_predicted_[i] - c_p_[i]) / shift;
+    // The guess moves with its velocity, so that wheels are placed near their new positions.
+    x_[i] = (p_[f + i] - pd_predicted_[i]) / shift;
   }
-  if (solve_coupled({t, shift, shift * shift}, terms) != Solution::found) return false;
+  if (solve_coupled({t, shift, shift * shift}) != Solution::found) return false;
   if (structure_) structure_->end_stage(y, y + n_);
-  if (shift == 0.0) {
-    if (rank_ == 0) std::copy_n(p_.data(), f, y + 2 * n_);
-    return true;
-  }
-  double dissipation = 0.0, work = 0.0;
-  powers(y + n_, terms, dissipation, work);
+  const auto [dissipation, work] = powers(y + n_);
   if (rank_ != 0) return true;
   double* p = y + 2 * n_;
   for (int i = 0; i < f; ++i) {
-    p[i] = terms == Terms::all ? p_[i] : -c[2 * n_ + i] / shift;
-    p[f + i] = terms == Terms::all ? pd_predicted_[i] + shift * x_[i] : -c[2 * n_ + f + i] / shift;
+    p[i] = p_[i];
+    p[f + i] = pd_predicted_[i] + shift * x_[i];
   }
   p[2 * f] = (dissipation - c[2 * (n_ + f)]) / shift;
   p[2 * f + 1] = (work - c[2 * (n_ + f) + 1]) / shift;
@@ -243,14 +216,14 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Ter
 }
 
 // Solves the stage that the structure has begun and the fleet's p, repeatedly until the structure's own forces agree.
-System::Solution System::solve_coupled(const StageTime& at, Terms terms) {
+System::Solution System::solve_coupled(const StageTime& at, bool with_fleet) {
   for (;;) {
     if (structure_) structure_->solve_free();
-    if (terms == Terms::all && !(by_passes_ ? stage_by_passes(at) : stage_of_fleet(at))) return Solution::fleet_failed;
+    if (with_fleet && !(by_passes_ ? stage_by_passes(at) : stage_of_fleet(at))) return Solution::fleet_failed;
     if (!structure_) return Solution::found;
     if (by_passes_)
       structure_->apply_pass_loads();
-    else if (terms == Terms::all && !fleet_.elements().empty())
+    else if (with_fleet && !fleet_.elements().empty())
       structure_->apply_contact_loads(newton_.element_loads());
     const structure::Structure::Verdict verdict = structure_->check_stage();
     if (verdict == structure::Structure::Verdict::converged) return Solution::found;

@@ -62,10 +62,6 @@ struct SystemInput {
   bool local_compliance = false;  // whether a bridge's elements deflect between their nodes under wheels
 };
 
-/// The included terms of G: all terms, or for implicit-explicit integrators the terms of the beam with the moving
-/// forces (implicit) or of the vehicles and contacts (explicit).
-enum class Terms { all, beam, contact };
-
 /// Stored energies and the integrals of the powers, J.
 struct Energy {
   double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0;
@@ -136,11 +132,11 @@ class System {
     return largest;
   }
 
-  /// Collective. ydot = G(t, y), or a part of it.
-  void rate(double t, const double* y, double* ydot, Terms terms);
+  /// Collective. ydot = G(t, y).
+  void rate(double t, const double* y, double* ydot);
 
   /// Collective. y with G(t, y) = shift*y + c; the input y is the initial guess. False if no solution is found.
-  bool solve_stage(double t, double shift, const double* c, double* y, Terms terms);
+  bool solve_stage(double t, double shift, const double* c, double* y);
 
   // Second-order form without a PETSc stage: the steps of the program's own integrators.
 
@@ -289,9 +285,9 @@ class System {
   bool uses_local_compliance() const;
   void record_weights();
   void share_coordinates(const double* y);
-  Solution solve_statics(Terms terms, double tie = 0.0);
+  Solution solve_statics(double tie = 0.0, bool with_fleet = true);
   Solution solve_statics_slowly();
-  Solution solve_coupled(const StageTime& at, Terms terms);
+  Solution solve_coupled(const StageTime& at, bool with_fleet = true);
   bool stage_of_fleet(const StageTime& at);
   bool stage_by_passes(const StageTime& at);
   bool solve_stages(double t, const double* v, const double* w);
@@ -314,7 +310,7 @@ class System {
   void share_step();
   void record_touched();
   bool contacts_are_known(double t) const;
-  void powers(const double* w, Terms terms, double& dissipation, double& work);
+  Powers powers(const double* w);
   Powers fleet_powers();
   void move_supports(double t);
   Energy energy(const double* y);

@@ -61,7 +61,7 @@ void System::restart_motion(double t, double h, double* y) {
   Motion& m = *motion_;
   if (std::abs(h - m.length) > same_length * m.length) set_step(h);
   m.rate.resize(static_cast<std::size_t>(local_size()));
-  rate(t, y, m.rate.data(), Terms::all);
+  rate(t, y, m.rate.data());
   const int f = fleet_.freedom();
   m.p.assign(p_.begin(), p_.begin() + f);
   m.pd.assign(p_.begin() + f, p_.end());
@@ -146,7 +146,7 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
     load_structure(t);
     structure_->begin_stage(stage, v, w);
   }
-  if (solve_coupled({t, shift, shift2}, Terms::all) != Solution::found) return false;
+  if (solve_coupled({t, shift, shift2}) != Solution::found) return false;
   if (structure_) structure_->end_stage(stage, v, w);
   if (by_passes_) {
     train_->accelerations(m.pdd[rule.known].data());

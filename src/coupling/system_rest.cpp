@@ -27,7 +27,7 @@ void System::find_equilibrium(double* y) {
   train::Fleet moving = std::move(fleet_);
   freeze_fleet(input_.train);
   if (structure_) load_structure(0.0);
-  Solution found = solve_statics(Terms::all);
+  Solution found = solve_statics();
   if (found == Solution::fleet_failed) {
     freeze_fleet(input_.train);
     found = solve_statics_slowly();
@@ -59,7 +59,7 @@ void System::set_rail_velocity(double* w) {
       for (Eigen::Index i = 0; i < vehicle.state.q.size(); i += 3) vehicle.state.q[i] += offset;
     fleet_.coordinates_of_state(0.0, p_predicted_.data(), pd_predicted_.data());
     load_structure(offset / speed);
-    found = found && solve_statics(Terms::all, rigid_tie) == Solution::found;
+    found = found && solve_statics(rigid_tie) == Solution::found;
     v[after].resize(static_cast<std::size_t>(n_));
     structure_->end_stage(v[after].data(), w);
   }
@@ -88,9 +88,9 @@ void System::freeze_fleet(const train::Train& train) {
 }
 
 // Statics from p_predicted_. `tie`: stiffness per mass of the springs that tie all masses to their positions, 1/s2.
-System::Solution System::solve_statics(Terms terms, double tie) {
+System::Solution System::solve_statics(double tie, bool with_fleet) {
   if (structure_) structure_->begin_statics(structure_->deformed_without_traffic() || !loads_.empty());
-  return solve_coupled({0.0, 0.0, tie}, terms);
+  return solve_coupled({0.0, 0.0, tie}, with_fleet);
 }
 
 // Newton's method does not converge from a loose spring or an open contact to a loaded one, because the force has no
@@ -100,7 +100,7 @@ System::Solution System::solve_statics_slowly() {
   Solution found = Solution::fleet_failed;
   double tie = first_tie;
   for (int i = 0; i < most_ties && tie >= last_tie; ++i) {
-    found = solve_statics(Terms::all, tie);
+    found = solve_statics(tie);
     if (found == Solution::structure_failed) return found;
     if (found == Solution::fleet_failed) {
       if ((tie *= stiffer) > rigid_tie) return found;
@@ -115,7 +115,7 @@ System::Solution System::solve_statics_slowly() {
     tie *= softer;
     if (tie_acceleration > balanced_acceleration * std::max(input_.gravity, 1.0)) continue;
     const std::vector<double> last_positions = p_predicted_;
-    if (solve_statics(Terms::all) == Solution::found) return Solution::found;
+    if (solve_statics() == Solution::found) return Solution::found;
     restart_from(last_positions);
   }
   return Solution::fleet_failed;

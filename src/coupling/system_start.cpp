@@ -19,7 +19,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) 
     find_equilibrium(y);
   } else if (structure_ && structure_->deformed_without_traffic()) {
     structure_->load({});
-    if (const Solution found = solve_statics(Terms::beam); found != Solution::found) throw_no_equilibrium(found);
+    if (const Solution found = solve_statics(0.0, false); found != Solution::found) throw_no_equilibrium(found);
     structure_->end_stage(y, y + n_);
   }
   if (structure_) structure_->update_slip(y, loaded(0.0, 0.0));

@@ -76,8 +76,7 @@ void set_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) 
 
 const options::Entry* adaptive_step_option(const Scene& scene) {
   const options::Entry* control = scene.find_option("ts_adapt_type");
-  if (control != nullptr && control->value != "none") return control;
-  return scene.find_option("ts_arkimex_fully_implicit");
+  return control != nullptr && control->value != "none" ? control : nullptr;
 }
 
 namespace {

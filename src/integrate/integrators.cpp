@@ -23,10 +23,7 @@ constexpr bool implicitly = true, explicitly = false, multistep = true, one_step
 
 constexpr PetscType types[] = {
     {TSARKIMEX, implicitly, one_step, 4, "the numbers of esdirk4 at twice the cost; takes -ts_adapt_type basic"},
-    {TSCN, implicitly, one_step, 2, "for comparison"},
     {TSBDF, implicitly, multistep, 2, "for comparison; -ts_bdf_order 1 or 2"},
-    {TSTHETA, implicitly, one_step, 2, "for comparison"},
-    {TSBEULER, implicitly, one_step, 1, "for comparison"},
     {TSRK, explicitly, one_step, 3, "small scenes, mechanisms without stiff springs and contacts"},
 };
 
@@ -113,12 +110,11 @@ std::string integrators_help() {
 
 std::string chosen_type(const std::string& by_accuracy) {
   const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
-  const bool for_arkimex = (adapt != TSADAPTNONE && adapt != step_level_adapt) || is_given("-ts_arkimex_type") ||
-                           is_given("-ts_arkimex_fully_implicit");
+  const bool for_arkimex = (adapt != TSADAPTNONE && adapt != step_level_adapt) || is_given("-ts_arkimex_type");
   const std::string otherwise = by_accuracy.empty() ? base::methods().front().name : by_accuracy;
   std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : otherwise.c_str());
   if (base::find_method(type) == nullptr && find_petsc_type(type) == nullptr)
-    throw InputError("ts_type = " + type + ": does not integrate this system rightly; allowed: " + allowed_types());
+    throw InputError("ts_type = " + type + ": not among the integrators of this program; allowed: " + allowed_types());
   check_adapt(adapt, type);
   PetscInt order = 2;
   check(PetscOptionsGetInt(nullptr, nullptr, "-ts_bdf_order", &order, nullptr));
@@ -130,8 +126,7 @@ std::string chosen_type(const std::string& by_accuracy) {
 }
 
 bool type_is_given() {
-  constexpr std::array options = {"-ts_type", "-ts_arkimex_type", "-ts_arkimex_fully_implicit"};
-  return std::any_of(options.begin(), options.end(), is_given) || option("-ts_adapt_type", TSADAPTNONE) != TSADAPTNONE;
+  return is_given("-ts_type") || is_given("-ts_arkimex_type") || option("-ts_adapt_type", TSADAPTNONE) != TSADAPTNONE;
 }
 
 std::optional<base::Method> own_method(const std::string& by_accuracy) {

@@ -19,7 +19,6 @@ namespace traverse::integrate {
 namespace {
 
 using base::check;
-using coupling::Terms;
 
 constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // number of steps; TS requires a limit
 constexpr int most_rejections = 12;        // limit for one step; each rejection reduces its length to a quarter
@@ -96,15 +95,7 @@ void Stepper::set_up_type() {
   implicit_ = type.implicit;
   multistep_ = type.multistep;
   high_order_ = type.order > 2;
-  bool imex = false;
-  if (has_type(ts_, TSARKIMEX)) {
-    PetscBool fully = PETSC_TRUE;
-    check(TSARKIMEXGetFullyImplicit(ts_, &fully));
-    imex = fully != PETSC_TRUE;
-  }
-  if (!implicit_ || imex) check(TSSetRHSFunction(ts_, nullptr, rhs_function, this));
-  if (!implicit_) return;
-  implicit_terms_ = imex ? Terms::beam : Terms::all;
+  if (!implicit_) return check(TSSetRHSFunction(ts_, nullptr, rhs_function, this));
   check(VecDuplicate(y_, residual_.out()));
   check(VecSet(residual_, 0.0));
   const PetscInt n = system_.local_size();
@@ -143,7 +134,7 @@ std::string Stepper::method() const {
   if (has_type(ts_, TSARKIMEX)) {
     TSARKIMEXType which = nullptr;
     check(TSARKIMEXGetType(ts_, &which));
-    text = std::string("arkimex ") + which + (implicit_terms_ == Terms::all ? ", implicit" : ", beam implicit");
+    text = std::string("arkimex ") + which + ", implicit";
   } else if (multistep_) {
     PetscInt order = 0;
     check(TSBDFGetOrder(ts_, &order));
@@ -294,7 +285,7 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purp
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
   const bool known = second_order_ && steps_ > 0 && system_.provides_acceleration();
-  if (!known) rate(t, y_, rate_, Terms::all);
+  if (!known) rate(t, y_, rate_);
   ReadArray y(y_);
   ReadArray ydot(rate_);
   if (is_stored(purpose)) check_bounds(t, y.data);

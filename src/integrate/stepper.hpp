@@ -109,7 +109,7 @@ class Stepper {
   double end_at_kink(double from, double at, const coupling::KinkEvents::KinkEvent& kink_event);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y) const;
-  void rate(double t, Vec y, Vec ydot, coupling::Terms terms);
+  void rate(double t, Vec y, Vec ydot);
   bool is_last_stage(double t, const double* y) const;
   void implicit_residual(double t, Vec y, Vec ydot, Vec residual);
   void solve_stage(SNES snes, Vec x);
@@ -126,7 +126,6 @@ class Stepper {
   base::Handle<Vec> before_, residual_;  // y at the start of the step, and the residual F; for PETSc's types only
   base::Handle<Mat> jacobian_;
   Request request_;
-  coupling::Terms implicit_terms_ = coupling::Terms::all;
   bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false, high_order_ = false;
   bool monitored_ = false;                       // monitors of -ts_monitor and similar options are active
   std::optional<StepSizeControl> step_control_;  // for adaptive steps of the program's own types

@@ -11,7 +11,6 @@ namespace traverse::integrate {
 
 using base::check;
 using base::guard;
-using coupling::Terms;
 
 // Whether the last solved stage is the given state: its rate is known then.
 bool Stepper::is_last_stage(double t, const double* y) const {
@@ -23,13 +22,13 @@ bool Stepper::is_last_stage(double t, const double* y) const {
   return same != 0;
 }
 
-void Stepper::rate(double t, Vec y, Vec ydot, Terms terms) {
+void Stepper::rate(double t, Vec y, Vec ydot) {
   ReadArray in(y);
   Array out(ydot);
-  if (terms == implicit_terms_ && is_last_stage(t, in.data))
+  if (is_last_stage(t, in.data))
     std::copy(known_rate_.begin(), known_rate_.end(), out.data);
   else
-    system_.rate(t, in.data, out.data, terms);
+    system_.rate(t, in.data, out.data);
 }
 
 // Computes F = y' - G, or during a stage solution only records the request.
@@ -40,13 +39,13 @@ void Stepper::implicit_residual(double t, Vec y, Vec ydot, Vec residual) {
     if (request_.start) {  // PETSc 3.20 and later: ARKIMEX needs y' of its first explicit stage
       PetscReal now = 0.0;
       check(TSGetTime(ts_, &now));
-      return rate(now, y, residual, implicit_terms_);
+      return rate(now, y, residual);
     }
     ReadArray xdot(ydot);
     std::copy_n(xdot.data, stage_c_.size(), stage_c_.begin());
     return;
   }
-  rate(t, y, residual, implicit_terms_);
+  rate(t, y, residual);
   check(VecAYPX(residual, -1.0, ydot));
 }
 
@@ -69,7 +68,7 @@ void Stepper::solve_stage(SNES snes, Vec x) {
     ReadArray b(right_side);
     for (std::size_t i = 0; i < n; ++i) stage_c_[i] -= b.data[i];
   }
-  if (!system_.solve_stage(request_.t, request_.shift, stage_c_.data(), y.data, implicit_terms_)) {
+  if (!system_.solve_stage(request_.t, request_.shift, stage_c_.data(), y.data)) {
     known_ = false;
     check(SNESSetConvergedReason(snes, SNES_DIVERGED_MAX_IT));
     return;
@@ -92,10 +91,7 @@ PetscErrorCode Stepper::ijacobian(TS, PetscReal, Vec, Vec, PetscReal shift, Mat,
 }
 
 PetscErrorCode Stepper::rhs_function(TS, PetscReal t, Vec y, Vec ydot, void* context) {
-  return guard([&] {
-    auto& self = *static_cast<Stepper*>(context);
-    self.rate(t, y, ydot, self.implicit_ ? Terms::contact : Terms::all);
-  });
+  return guard([&] { static_cast<Stepper*>(context)->rate(t, y, ydot); });
 }
 
 PetscErrorCode Stepper::shell_solve(SNES snes, Vec x) {

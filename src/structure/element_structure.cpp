@@ -61,21 +61,16 @@ void ElementStructure::external_load(double* nodal) const {
 
 // --- at a state ----------------------------------------------------------------------------------------------------
 
-void ElementStructure::accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts,
-                                     double* a) {
-  if (own) {
-    statics_->multiply(-1.0, nullptr, w, v, a);
-    external_load(work_.data());
-    add_support_inertia(work_.data());
-    for (int i = 0; i < n_; ++i) a[i] += work_[i];
-    if (nonlinear_) {
-      nonlinear_->evaluate(v, w);
-      nonlinear_->add_forces(a);
-    }
-  } else {
-    std::fill_n(a, n_, 0.0);
+void ElementStructure::accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) {
+  statics_->multiply(-1.0, nullptr, w, v, a);
+  external_load(work_.data());
+  add_support_inertia(work_.data());
+  for (int i = 0; i < n_; ++i) a[i] += work_[i];
+  if (nonlinear_) {
+    nonlinear_->evaluate(v, w);
+    nonlinear_->add_forces(a);
   }
-  if (contacts != nullptr) add_contacts(*contacts, a);
+  add_contacts(contacts, a);
   release_held(a);
   statics_->solve_mass(a);
 }

@@ -36,7 +36,7 @@ class ElementStructure final : public Structure {
   void set_reference_loads(double sum, double greatest) override;
 
   void load(const std::vector<recovery::ElementLoad>& forces) override;
-  void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
+  void accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) override;
   std::array<double, 2> powers(const double* w) override;
 
   void begin_statics(bool loaded) override;

@@ -85,16 +85,14 @@ void ModalStructure::add_modal_forces(const ElementLoads& contacts, double* to) 
   }
 }
 
-void ModalStructure::accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts,
-                                   double* a) {
-  if (n_ == 0) return;
-  std::fill_n(a, n_, 0.0);
-  for (int i = 0; own && i < n_; ++i) {
+void ModalStructure::accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) {
+  for (int i = 0; i < n_; ++i) {
     const double omega = bridge_.omega()[i];
     a[i] = modal_force_[i] - 2.0 * bridge_.sigma()[i] * w[i] - omega * omega * v[i];
   }
-  if (own) subtract_cross_damping(w, a);
-  if (contacts != nullptr) add_modal_forces(*contacts, a);
+  if (n_ == 0) return;
+  subtract_cross_damping(w, a);
+  add_modal_forces(contacts, a);
 }
 
 /// Subtracts the cross damping forces at the rates w from the modal forces.

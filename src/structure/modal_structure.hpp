@@ -26,7 +26,7 @@ class ModalStructure final : public Structure {
 
   bool uses_local_compliance(bool /*asked*/) const override { return false; }
   void load(const std::vector<recovery::ElementLoad>& forces) override;
-  void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
+  void accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) override;
   std::array<double, 2> powers(const double* w) override;
 
   void begin_statics(bool loaded) override;

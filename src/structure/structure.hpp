@@ -123,8 +123,8 @@ class Structure {
   /// v and w of elements at a state, on all ranks.
   void gather(const std::vector<int>& elements, const double* v, const double* w, std::vector<double>& v_elements,
               std::vector<double>& w_elements);
-  /// w' of a state due to all loads but contacts (`own`), and due to contacts (null: none).
-  virtual void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) = 0;
+  /// w' of a state due to all loads, with those of contacts.
+  virtual void accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) = 0;
   /// Power lost in damping, and power of the moving forces, W: this rank's share at the state whose accelerations were
   /// computed last, or of the stage that was solved last.
   virtual std::array<double, 2> powers(const double* w) = 0;

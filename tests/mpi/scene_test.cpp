@@ -100,15 +100,6 @@ TEST(Ranks, MovingForces) {
                            12);
 }
 
-TEST(Ranks, ExplicitContact) {
-  expect_same_on_all_ranks("r4_hertz_wheel",
-                           {{"beam_elements_per_span", "5"},
-                            {"ts_arkimex_fully_implicit", "false"},
-                            {"ts_dt", "1e-3"},
-                            {"output_interval", "0.02"}},
-                           20);
-}
-
 // At rest accelerations are rounding: they are zero on any number of ranks.
 TEST(Ranks, StaticResponse) {
   const Values options = {{"scene_analysis", "static"}, {"train_positions", "33,12"}};

@@ -62,7 +62,7 @@ TEST(Ranks, SweepOfVehicles) {
   expect_same_bits("options_file: " TRAVERSE_SOURCE_DIR
                    "/options/scenes/three_span_train.yml\n"
                    "train_vehicles: coach\nscene_tail: 0\n",
-                   {{"ts_dt", "5e-3"}, {"ts_type", "cn"}, {"sweep_speed", "60,80,5"}}, with_wheels);
+                   {{"ts_dt", "5e-3"}, {"ts_type", "bdf"}, {"sweep_speed", "60,80,5"}}, with_wheels);
 }
 
 // Every rank takes all steps of a single run of linear vehicles over modes.

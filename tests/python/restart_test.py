@@ -47,7 +47,7 @@ KINDS = [
      ["-beam_elements_per_span", "4", "-ts_dt", "2e-3", "-ts_adapt_type", "ladder", "-ts_type", "esdirk4",
       "-ts_max_time", "0.6"], 100),
     ("a type of PETSc", "three_span_half_car",
-     ["-beam_elements_per_span", "4", "-ts_dt", "2e-3", "-ts_type", "cn", "-ts_max_time", "0.4"], 70),
+     ["-beam_elements_per_span", "4", "-ts_dt", "2e-3", "-ts_type", "arkimex", "-ts_max_time", "0.4"], 70),
 ]
 
 OUT_OF_BALANCE = f"""

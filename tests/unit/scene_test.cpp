@@ -320,7 +320,7 @@ TEST(SceneSweep, BridgesByModes) {
   EXPECT_PRED2(contains, refused(moving + "model_modes: many\n"), "a number of modes");
   EXPECT_PRED2(contains, refused(moving + "model: {modes: 3, damping_ratios: [0.01, 0.02]}\n"), "2 ratios for 3 modes");
   EXPECT_PRED2(contains, refused(moving + "model_damping_ratios: 0.01\n"), "needs model_modes");
-  EXPECT_PRED2(contains, refused(moving + "model_modes: 3\nts_type: cn\n"), "exact in time");
+  EXPECT_PRED2(contains, refused(moving + "model_modes: 3\nts_type: bdf\n"), "exact in time");
   EXPECT_PRED2(contains, refused(beam_yaml + "ts_max_time: 1\nmodel_modes: 3\n"),
                "needs vehicles (train_vehicles) or moving forces");
   EXPECT_PRED2(contains, refused(moving + "model_modes: 3\nfoundation_vertical: {x: 5, k: 1e6, gap: 1e-3}\n"), "gap");

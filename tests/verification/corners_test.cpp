@@ -57,11 +57,9 @@ TEST(Corners, EnergyIsOfHighOrderWhereWheelsTurnAboutThem) {
   }
 }
 
-TEST(Corners, EnergyIsOfSecondOrderByMethodsOfThat) {
-  for (const char* method : {"cn", "genalpha"}) {
-    double left = 0.0;
-    EXPECT_NEAR(order(two_wheels(one_span, "[pinned, roller]", soft), method, left), 2.0, 0.25) << method;
-  }
+TEST(Corners, EnergyIsOfSecondOrderByAMethodOfThat) {
+  double left = 0.0;
+  EXPECT_NEAR(order(two_wheels(one_span, "[pinned, roller]", soft), "genalpha", left), 2.0, 0.25);
 }
 
 // The bridge of the first measurement: 1.3e-2 J at 1 ms, and half of it at half the step.

@@ -32,7 +32,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"steps_at_probes", {{"ts_dt", "2e-3"}, {"output_interval", "1.1e-2"}, {"step_probes", "true"}}},
         Case{"from_the_accuracy", {{"accuracy", "1e-2"}}},
         Case{"control_of_steps", {{"ts_dt", "7e-3"}, {"output_interval", "7e-3"}, {"ts_adapt_type", "ladder"}}},
-        Case{"of_petsc", {{"ts_dt", "2e-3"}, {"ts_type", "cn"}, {"output_interval", "7e-3"}}},
+        Case{"of_petsc", {{"ts_dt", "2e-3"}, {"ts_type", "bdf"}, {"output_interval", "7e-3"}}},
         Case{"by_modes", {{"model_modes", "4"}, {"output_interval", "7e-3"}}}),
     [](const auto& set) { return set.param.name; });
 

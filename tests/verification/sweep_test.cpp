@@ -220,7 +220,7 @@ TEST(Sweep, VehiclesHaveTheirLeastWheelForce) {
   const std::string coaches =
       std::string("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n") +
       "train_vehicles: coach\nscene_tail: 0\n";
-  const Values options = {{"ts_dt", "5e-3"}, {"ts_type", "cn"}, {"beam_elements_per_span", "8"}};
+  const Values options = {{"ts_dt", "5e-3"}, {"ts_type", "bdf"}, {"beam_elements_per_span", "8"}};
   Results sweep = run_yaml(coaches, options + Values{{"sweep_speed", "60,80,20"}});
   const auto& least = sweep("/sweep/least_wheel_force");
   ASSERT_EQ(least.size(), 2u);
