@@ -12,17 +12,18 @@ namespace traverse::coupling {
 namespace {
 
 constexpr int most_placements = 4;  // limit of assignments of wheels to elements in one stage
+const std::vector<double> no_loads;
 
 }  // namespace
 
-std::unique_ptr<structure::Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
-                                                  std::shared_ptr<structure::BeamOperator> shared) {
+std::unique_ptr<structure::MovingStructure> by_elements(const beam::Beam* beam, const SystemInput& input,
+                                                        std::shared_ptr<structure::BeamOperator> shared) {
   if (beam == nullptr) return nullptr;
   return std::make_unique<structure::ElementStructure>(*beam, input.self_weight ? input.gravity : 0.0,
                                                        std::move(shared));
 }
 
-System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, SystemInput input)
+System::System(MPI_Comm comm, std::unique_ptr<structure::MovingStructure> structure, SystemInput input)
     : comm_(comm),
       structure_(std::move(structure)),
       line_(structure_ ? &structure_->line() : nullptr),
@@ -112,15 +113,16 @@ void System::rate(double t, const double* y, double* ydot) {
     std::copy_n(p_.data() + f, f, ydot + 2 * n_);
     std::copy_n(pdd_.data(), f, ydot + 2 * n_ + f);
   }
+  Powers of_structure;
   if (structure_) {
     std::copy_n(w, n_, ydot);
     load_structure(t);
-    structure_->accelerations(y, w, contact_loads(), ydot + n_);
+    of_structure = structure_->accelerations(y, w, contact_loads(), ydot + n_);
   }
-  const auto [dissipation, work] = powers(w);
+  const Powers all = powers(of_structure);
   if (rank_ == 0) {
-    ydot[2 * (n_ + f)] = dissipation;
-    ydot[2 * (n_ + f) + 1] = work;
+    ydot[2 * (n_ + f)] = all.dissipation;
+    ydot[2 * (n_ + f) + 1] = all.work;
   }
 }
 
@@ -162,10 +164,11 @@ void System::evaluate_fleet(double t, const double* y) {
   is_evaluated_ = true;
 }
 
-// Rates of D and W for the last state of fleet and structure. Vehicles that are not shared count on rank 0.
-System::Powers System::powers(const double* w) {
+// Rates of D and W for the last state of the fleet, with this rank's share of those of the structure. Vehicles that are
+// not shared count on rank 0.
+System::Powers System::powers(Powers of_structure) {
   const Powers fleet = fleet_powers();
-  std::array<double, 2> sums = structure_ ? structure_->powers(w) : std::array<double, 2>{};
+  std::array<double, 2> sums = {of_structure.dissipation, of_structure.work};
   if (share_.distributed() || rank_ == 0) sums = {sums[0] + fleet.dissipation, sums[1] + fleet.work};
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
   return {sums[0], sums[1]};
@@ -202,16 +205,17 @@ bool System::solve_stage(double t, double shift, const double* c, double* y) {
     x_[i] = (p_[f + i] - pd_predicted_[i]) / shift;
   }
   if (solve_coupled({t, shift, shift * shift}) != Solution::found) return false;
-  if (structure_) structure_->end_stage(y, y + n_);
-  const auto [dissipation, work] = powers(y + n_);
+  Powers of_structure;
+  if (structure_) of_structure = structure_->end_stage(y, y + n_);
+  const Powers all = powers(of_structure);
   if (rank_ != 0) return true;
   double* p = y + 2 * n_;
   for (int i = 0; i < f; ++i) {
     p[i] = p_[i];
     p[f + i] = pd_predicted_[i] + shift * x_[i];
   }
-  p[2 * f] = (dissipation - c[2 * (n_ + f)]) / shift;
-  p[2 * f + 1] = (work - c[2 * (n_ + f) + 1]) / shift;
+  p[2 * f] = (all.dissipation - c[2 * (n_ + f)]) / shift;
+  p[2 * f + 1] = (all.work - c[2 * (n_ + f) + 1]) / shift;
   return true;
 }
 
@@ -221,13 +225,13 @@ System::Solution System::solve_coupled(const StageTime& at, bool with_fleet) {
     if (structure_) structure_->solve_free();
     if (with_fleet && !(by_passes_ ? stage_by_passes(at) : stage_of_fleet(at))) return Solution::fleet_failed;
     if (!structure_) return Solution::found;
-    if (by_passes_)
-      structure_->apply_pass_loads();
-    else if (with_fleet && !fleet_.elements().empty())
-      structure_->apply_contact_loads(newton_.element_loads());
-    const structure::Structure::Verdict verdict = structure_->check_stage();
-    if (verdict == structure::Structure::Verdict::converged) return Solution::found;
-    if (verdict == structure::Structure::Verdict::failed) return Solution::structure_failed;
+    const bool touched = with_fleet && !fleet_.elements().empty();
+    const structure::LoadedStructure::Verdict verdict =
+        structure_->apply_contact_loads(by_passes_ ? structure_->pass_loads()
+                                        : touched  ? newton_.element_loads()
+                                                   : no_loads);
+    if (verdict == structure::LoadedStructure::Verdict::converged) return Solution::found;
+    if (verdict == structure::LoadedStructure::Verdict::failed) return Solution::structure_failed;
   }
 }
 

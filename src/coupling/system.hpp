@@ -10,15 +10,15 @@
 //
 // The functions of a step in second-order form, as Stepper calls them:
 //
-//   step_motion            load_structure, Structure::begin_step
+//   step_motion            load_structure, MovingStructure::begin_step
 //     stage_of_motion      once for each stage: computes v, w and p at zero acceleration
-//       solve_coupled      Structure::solve_free, stage_of_fleet, Structure::apply_contact_loads; repeated until
-//                          Structure::check_stage accepts the stage
-//         stage_of_fleet   places wheels on elements, Structure::gather_free and compliance, ContactNewton::solve
-//       Structure::end_stage
+//       solve_coupled      LoadedStructure::solve_free, stage_of_fleet, LoadedStructure::apply_contact_loads; repeated
+//                          until the latter accepts the stage
+//         stage_of_fleet   places wheels on elements, gather_free and compliance, ContactNewton::solve
+//       LoadedStructure::end_stage
 //     (stage_by_passes in place of stage_of_fleet if all vehicles are linear: engine/linear_train.hpp)
-//     finish_step          Structure::finish_step, p and p' of all vehicles on all ranks
-//   accept                 Structure::complete_step, contact events, new independent coordinates where necessary
+//     finish_step          MovingStructure::finish_step, p and p' of all vehicles on all ranks
+//   accept                 MovingStructure::accept, contact events, new independent coordinates where necessary
 //   observe                forces, accelerations, energies: for samples only
 //
 // The implicit integrators of PETSc need y with G(t, y) = s y + c: `solve_stage` does the same for one stage.
@@ -82,8 +82,8 @@ struct Observation {
 
 /// The structure by elements, with the self-weight of the scene; null without a beam. `shared`: an existing operator of
 /// the beam with its factorisations; null: a new operator is created.
-std::unique_ptr<structure::Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
-                                                  std::shared_ptr<structure::BeamOperator> shared = nullptr);
+std::unique_ptr<structure::MovingStructure> by_elements(const beam::Beam* beam, const SystemInput& input,
+                                                        std::shared_ptr<structure::BeamOperator> shared = nullptr);
 
 /// A wheel of a vehicle whose prescribed speed changes. The force that accelerates the wheel's share of the vehicle
 /// acts on the track at the wheel.
@@ -97,7 +97,7 @@ class System {
  public:
   /// structure: null for a mechanism alone or for vehicles on rigid ground. Throws InputError for a wheel that would
   /// touch the profile at more points than the model allows.
-  System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, SystemInput input);
+  System(MPI_Comm comm, std::unique_ptr<structure::MovingStructure> structure, SystemInput input);
   /// A system whose structure is computed by_elements.
   System(MPI_Comm comm, const beam::Beam* beam, const SystemInput& input)
       : System(comm, by_elements(beam, input), input) {}
@@ -140,7 +140,7 @@ class System {
 
   // Second-order form without a PETSc stage: the steps of the program's own integrators.
 
-  /// Structure::limit_to_active_window, before begin_motion.
+  /// MovingStructure::limit_to_active_window, before begin_motion.
   void limit_to_active_window(double tolerance, const std::vector<double>& probes) {
     if (structure_) structure_->limit_to_active_window(tolerance, probes);
   }
@@ -163,19 +163,16 @@ class System {
   /// energy of the static deflection under the weights. For the worst vehicle: the root mean square of the errors of
   /// its masses' accelerations, relative to gravity plus these accelerations.
   double step_error(const double* y);
-  /// Whether acceleration() is valid: false if the acceleration of the method differs from the acceleration of the
-  /// state.
+  /// Whether the structure's w' at the end of a step is that of the method: false if it differs from that of the state.
   bool provides_acceleration() const {
     return motion_ && motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
   }
-  /// w' of the structure at the end of the last step; null without a structure.
-  const double* acceleration() const { return structure_ ? structure_->acceleration() : nullptr; }
   /// Sets y to the start of the last step; restart_motion has to follow.
   void reject_step(double* y);
 
-  /// Collective. Computes `out` for a state with the structure's w' = a, and accelerations, reactions and wheel forces
-  /// of the fleet. If `all` is false, the fleet has only the wheels' positions and forces if that is faster, and
-  /// energies and nodal loads are not computed.
+  /// Collective. Computes `out` for a state with the structure's w' = a (null: that at the end of the last step), and
+  /// accelerations, reactions and wheel forces of the fleet. If `all` is false, the fleet has only the wheels'
+  /// positions and forces if that is faster, and energies and nodal loads are not computed.
   void observe(double t, const double* y, const double* a, Observation& out, bool all = true);
 
   /// Applies constant forces from now on, in addition to the forces of the scene. Call between two steps.
@@ -241,9 +238,7 @@ class System {
   void keep(base::Archive& archive, double* y);
 
  private:
-  struct Powers {  // W; this rank's share
-    double dissipation = 0.0, work = 0.0;
-  };
+  using Powers = structure::Powers;
   /// The vehicles' part of a second-order integration.
   struct Motion {
     base::Method unit, method;  // for steps of 1 s, for steps of `length`
@@ -310,7 +305,7 @@ class System {
   void share_step();
   void record_touched();
   bool contacts_are_known(double t) const;
-  Powers powers(const double* w);
+  Powers powers(Powers of_structure);
   Powers fleet_powers();
   void move_supports(double t);
   Energy energy(const double* y);
@@ -318,9 +313,9 @@ class System {
 
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
-  std::unique_ptr<structure::Structure> structure_;  // null: none
-  const beam::Line* line_;                           // line on which wheels and forces move; null without a structure
-  int n_;                                            // the structure's unknowns on this rank
+  std::unique_ptr<structure::MovingStructure> structure_;  // null: none
+  const beam::Line* line_;  // line on which wheels and forces move; null without a structure
+  int n_;                   // the structure's unknowns on this rank
   SystemInput input_;
   train::Fleet fleet_;
   train::VehicleShare share_;

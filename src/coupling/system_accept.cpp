@@ -37,8 +37,7 @@ void System::set_vehicles(double t, const double* y) {
 }
 
 bool System::accept(double t, double* y) {
-  if (structure_ && motion_) structure_->complete_step(y, y + n_);
-  if (structure_ && !motion_) structure_->update_slip(y, loaded(t, 0.0));
+  if (structure_) structure_->accept(y, y + n_, motion_ ? reaches_ : loaded(t, 0.0));
   if (fleet_.vehicles.empty()) return false;
   set_vehicles(t, y);
   const double lost = events_.accept(t);

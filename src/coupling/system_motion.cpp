@@ -23,7 +23,6 @@ void System::begin_motion(const base::Method& method) {
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
   make_linear_train();
   if (!train_) share_.distribute(comm_, fleet_);
-  if (structure_) structure_->begin_motion(method);
 }
 
 // If vehicles are linear with plain contacts, every rank computes all of them: messages would cost more time.
@@ -163,22 +162,17 @@ bool System::stage_by_passes(const StageTime& at) {
   train_->predict(stage_, at.t);
   if (!train_->place(fleet_)) return false;
   if (structure_) {
-    const structure::ContactField& field = structure_->begin_passes(train_->elements());
-    train_->set_contact_field(field, &structure_->own_compliance());
+    const auto [field, own] = structure_->begin_passes(train_->elements());
+    train_->set_contact_field(field, &own);
   }
-  const auto respond = [&] {
-    if (!structure_) return;
-    structure_->clear_loads();
-    train_->add_loads();
-    structure_->respond();
+  const auto respond = [&](double shift) {
+    if (structure_) structure_->respond([this] { train_->add_loads(); }, shift);
   };
   do {
-    respond();
+    respond(0.0);
     if (!train_->update_forces()) return false;
   } while (!train_->converged());
-  respond();
-  // The last stage also needs rates.
-  if (structure_ && stage_ + 1 == motion_->method.stages.size()) structure_->find_rates(at.shift);
+  respond(stage_ + 1 == motion_->method.stages.size() ? at.shift : 0.0);  // the last stage also needs rates
   train_->end_stage();
   return true;
 }

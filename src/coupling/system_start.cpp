@@ -22,7 +22,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) 
     if (const Solution found = solve_statics(0.0, false); found != Solution::found) throw_no_equilibrium(found);
     structure_->end_stage(y, y + n_);
   }
-  if (structure_) structure_->update_slip(y, loaded(0.0, 0.0));
+  if (structure_) structure_->accept(y, y + n_, loaded(0.0, 0.0));
   fleet_.start_moving();
   if (equilibrium) {
     fleet_.set_rolling_speeds();

@@ -19,8 +19,8 @@ constexpr double track_margin = 1.0;        // m: range of contact before and be
 constexpr double max_track_bytes = 2.56e8;  // bytes, of stored tracks
 
 /// Returns the structure and sets `unloaded` to its displacements without vehicles.
-std::unique_ptr<structure::Structure> with_unloaded(std::unique_ptr<structure::Structure> structure,
-                                                    std::vector<double>& unloaded) {
+std::unique_ptr<structure::MovingStructure> with_unloaded(std::unique_ptr<structure::MovingStructure> structure,
+                                                          std::vector<double>& unloaded) {
   unloaded = structure->displacements_without_traffic();
   return structure;
 }

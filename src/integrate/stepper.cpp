@@ -289,7 +289,7 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purp
   ReadArray y(y_);
   ReadArray ydot(rate_);
   if (is_stored(purpose)) check_bounds(t, y.data);
-  sample({t, y.data, known ? system_.acceleration() : ydot.data + system_.structure_unknowns(), nullptr, purpose});
+  sample({t, y.data, known ? nullptr : ydot.data + system_.structure_unknowns(), nullptr, purpose});
 }
 
 // Throws SolverError if the motion is not finite, or if the beam deflects by more than its length or turns over.

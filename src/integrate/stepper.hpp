@@ -34,7 +34,7 @@ struct Settings {
 enum class Purpose { sample, peaks, end, exit };
 inline bool is_stored(Purpose purpose) { return purpose == Purpose::sample || purpose == Purpose::end; }
 
-/// An accepted instant of this rank: y, and w' of the structure.
+/// An accepted instant of this rank: y, and w' of the structure; null: as the last step left it.
 struct Instant {
   double time;
   const double* y;

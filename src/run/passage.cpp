@@ -138,10 +138,11 @@ coupling::SystemInput system_input(const scene::Scene& scene, bool static_only) 
   return input;
 }
 
-std::unique_ptr<structure::Structure> carrier(const scene::Scene& scene, const SharedBeam& shared,
-                                              const coupling::SystemInput& input) {
+std::unique_ptr<structure::MovingStructure> carrier(const scene::Scene& scene, const SharedBeam& shared,
+                                                    const coupling::SystemInput& input) {
   if (!shared.modal || scene.exact_in_time()) {
-    std::unique_ptr<structure::Structure> elements = coupling::by_elements(shared.bridge(), input, shared.statics);
+    std::unique_ptr<structure::MovingStructure> elements =
+        coupling::by_elements(shared.bridge(), input, shared.statics);
     if (shared.moving_supports) elements->move_supports(shared.moving_supports);
     return elements;
   }

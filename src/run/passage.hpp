@@ -18,8 +18,8 @@ namespace traverse::run {
 coupling::SystemInput system_input(const scene::Scene& scene, bool static_only);
 
 /// The bridge by modes if vehicles run on its modes, otherwise by elements; null without a bridge.
-std::unique_ptr<structure::Structure> carrier(const scene::Scene& scene, const SharedBeam& shared,
-                                              const coupling::SystemInput& input);
+std::unique_ptr<structure::MovingStructure> carrier(const scene::Scene& scene, const SharedBeam& shared,
+                                                    const coupling::SystemInput& input);
 
 class Passage {
  public:

@@ -53,9 +53,8 @@ Result Simulation::result() {
   summary.factorisations = system().factorisations();
   summary.linearisation_residual = system().linearisation_residual();
   summary.static_error = system().static_error();
-  const structure::Structure* structure = system().structure();
-  if (structure != nullptr && structure->energy_left()) {
-    summary.energy_left = *structure->energy_left();
+  if (const structure::Structure* structure = system().structure()) {
+    summary.energy_left = structure->energy_left();
     MPI_Allreduce(MPI_IN_PLACE, &summary.energy_left, 1, MPI_DOUBLE, MPI_SUM, comm_);
   }
   return result;

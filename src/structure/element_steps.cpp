@@ -11,25 +11,20 @@ constexpr double measured_steps = 2.0;  // time between computations of the diss
 
 }  // namespace
 
-void ElementStructure::limit_to_active_window(double tolerance, const std::vector<double>& probes) {
-  window_tolerance_ = tolerance;
-  probe_columns_.clear();
-  for (double x : probes)
-    probe_columns_.push_back(beam_.bridge().first_column + beam_.mesh().element(beam_.mesh().locate(x).element).left);
-}
-
-void ElementStructure::begin_motion(const base::Method& method) {
-  method_ = method;
+void ElementStructure::begin_motion() {
   const bool has_dead_load = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
   motion_.emplace(beam_, *statics_, has_dead_load ? dead_load_.data() : nullptr);
-  motion_->begin(method);
   if (window_tolerance_ == 0.0 || !motion_->fused()) return;
   if (deformed_without_traffic()) static_displacements_ = displacements_without_traffic();
-  window_.emplace(beam_, *statics_, window_tolerance_, probe_columns_,
+  std::vector<int> probe_columns;
+  for (double x : window_probes_)
+    probe_columns.push_back(beam_.bridge().first_column + beam_.mesh().element(beam_.mesh().locate(x).element).left);
+  window_.emplace(beam_, *statics_, window_tolerance_, probe_columns,
                   static_displacements_.empty() ? nullptr : static_displacements_.data());
 }
 
 void ElementStructure::set_method(const base::Method& method, double h) {
+  if (!motion_) begin_motion();
   method_ = method;
   length_ = h;
   motion_->begin(method);
@@ -124,8 +119,7 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
       before_.w.insert(before_.w.end(), w + block * r.first, w + block * r.past);
     }
   }
-  powers_[0].forces = 0.0;
-  for (const NodalLoad& force : driving_forces()) powers_[0].forces += force.force * w[force.unknown];
+  powers_[0].work = power_of_forces(w);
 }
 
 void ElementStructure::end_stage(std::size_t i, const double* v, const double* w) {
@@ -135,26 +129,30 @@ void ElementStructure::end_stage(std::size_t i, const double* v, const double* w
     double* a = motion_->stored(i);
     for (int k = 0; k < n_; ++k) a[k] = stage_.shift2 * z_[k];
     for (int k = 0; k < n_; ++k) w_predicted_[k] += method_.stages[i].rate * a[k];
-    powers.beam = dissipation(w_predicted_.data());
+    powers.dissipation = dissipation(w_predicted_.data());
   } else if (!measured_between_steps() && statics_->damped()) {
-    powers.beam = motion_->power(i, v, w);
+    powers.dissipation = motion_->power(i, v, w);
   }
   for (const NodalLoad& force : driving_forces())
-    powers.forces += force.force * motion_->state(i, v, w, force.unknown).second;
+    powers.work += force.force * motion_->state(i, v, w, force.unknown).second;
 }
 
 void ElementStructure::finish_step(double* v, double* w) {
   const base::StepRule& rule = method_.step;
   for (int j = 0; j < rule.known; ++j) {
-    dissipated_ += rule.power[j] * powers_[j].beam;
-    worked_ += rule.power[j] * powers_[j].forces;
+    dissipated_ += rule.power[j] * powers_[j].dissipation;
+    worked_ += rule.power[j] * powers_[j].work;
   }
   powers_[0] = powers_[rule.known - 1];
   stepped_ = incomplete_ = true;
   motion_->finish(v, w);
 }
 
-void ElementStructure::complete_step(double* v, double* w) {
+void ElementStructure::accept(double* v, double* w, const std::vector<Reach>& loaded) {
+  if (!motion_ && nonlinear_) {
+    nonlinear_->update_slip(v);
+    update_loaded_range(loaded);
+  }
   if (!incomplete_) return;
   incomplete_ = false;
   if (fused()) {
@@ -167,7 +165,9 @@ void ElementStructure::complete_step(double* v, double* w) {
     unmeasured_ += length_;
   }
   if (nonlinear_) nonlinear_->update_slip(v);
-  if (window_) window_->close(*motion_, v, w);
+  if (!window_) return;
+  window_->close(*motion_, v, w);
+  energy_left_ = window_->energy_left();
 }
 
 void ElementStructure::reject_step(double* v, double* w) {
@@ -189,7 +189,7 @@ void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, doub
   if (stepped_) measure_dissipation(v, w);
   start_with(a);
   powers_[0] = {};
-  if (!measured_between_steps()) powers_[0].beam = dissipation(w);
+  if (!measured_between_steps()) powers_[0].dissipation = dissipation(w);
   if (unmeasured_ > 0.0) measure_dissipation(v, w);
   to_measure_ = true;
   stepped_ = false;
@@ -246,9 +246,12 @@ void ElementStructure::measure_dissipation(const double* v, const double* w) {
 
 void ElementStructure::keep(base::Archive& archive) {
   if (motion_) archive.cut(motion_->start());
-  archive.sum(powers_[0].beam, powers_[0].forces, dissipated_, worked_, measured_.power, measured_.rate);
+  archive.sum(powers_[0].dissipation, powers_[0].work, dissipated_, worked_, measured_.power, measured_.rate);
   archive.same(unmeasured_, measuring_, to_measure_, stepped_, incomplete_);
-  if (window_) window_->keep(archive);
+  if (window_) {
+    window_->keep(archive);
+    energy_left_ = window_->energy_left();
+  }
   if (nonlinear_) archive.cache(*nonlinear_);
   statics_->keep(archive, [this](long version) { return nonlinear_ ? nonlinear_->tangents(version) : nullptr; });
   archive.cache(compliance_);

@@ -12,7 +12,7 @@
 namespace traverse::structure {
 
 ElementStructure::ElementStructure(const beam::Beam& beam, double gravity, std::shared_ptr<BeamOperator> op)
-    : Structure(beam, std::move(op), gravity),
+    : MovingStructure(beam, std::move(op), gravity),
       compliance_(beam, *statics_),
       response_(beam, *statics_),
       longest_span_(*std::max_element(beam.model().spans.begin(), beam.model().spans.end())) {
@@ -61,7 +61,7 @@ void ElementStructure::external_load(double* nodal) const {
 
 // --- at a state ----------------------------------------------------------------------------------------------------
 
-void ElementStructure::accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) {
+Powers ElementStructure::accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) {
   statics_->multiply(-1.0, nullptr, w, v, a);
   external_load(work_.data());
   add_support_inertia(work_.data());
@@ -73,12 +73,13 @@ void ElementStructure::accelerations(const double* v, const double* w, const Ele
   add_contacts(contacts, a);
   release_held(a);
   statics_->solve_mass(a);
+  return powers(w);
 }
 
-std::array<double, 2> ElementStructure::powers(const double* w) {
-  double work = 0.0;
-  for (const NodalLoad& force : driving_forces()) work += force.force * w[force.unknown];
-  return {dissipation(w), work};
+double ElementStructure::power_of_forces(const double* w) const {
+  double power = 0.0;
+  for (const NodalLoad& force : driving_forces()) power += force.force * w[force.unknown];
+  return power;
 }
 
 // Power lost in the damping of the beam and its foundation, this rank's share.
@@ -129,12 +130,8 @@ void ElementStructure::begin_stage(double shift, const double* c_v, const double
   stage_.kind = Kind::state;
   stage_.shift = shift;
   stage_.shift2 = shift * shift;
-  for (std::vector<double>* predicted : {&v_predicted_, &w_predicted_})
-    if (!(shift > 0.0)) std::fill(predicted->begin(), predicted->end(), 0.0);
-  if (shift > 0.0) {
-    for (int i = 0; i < n_; ++i) w_predicted_[i] = -c_w[i] / shift;
-    for (int i = 0; i < n_; ++i) v_predicted_[i] = (w_predicted_[i] - c_v[i]) / shift;
-  }
+  for (int i = 0; i < n_; ++i) w_predicted_[i] = -c_w[i] / shift;
+  for (int i = 0; i < n_; ++i) v_predicted_[i] = (w_predicted_[i] - c_v[i]) / shift;
   if (nonlinear_) nonlinear_->begin(shift, v_predicted_.data(), w_predicted_.data(), w_guess);
   load_at_zero_acceleration();
 }
@@ -184,16 +181,23 @@ const ElementCompliance& ElementStructure::compliance(const std::vector<int>& el
   return compliance_;
 }
 
-void ElementStructure::apply_contact_loads(const std::vector<double>& loads) {
-  if (stage_.kind != Kind::fused) return compliance_.add_response(loads, z_.data());
-  element_work_ = loads;
-  for (double& load : element_work_) load *= stage_.shift2;
-  compliance_.add_response(element_work_, motion_->stored(stage_.number));
+LoadedStructure::Verdict ElementStructure::apply_contact_loads(const std::vector<double>& loads) {
+  const bool fused = stage_.kind == Kind::fused;
+  double* const to = fused ? motion_->stored(stage_.number) : z_.data();
+  const double factor = fused ? stage_.shift2 : 1.0;
+  if (stage_.by_response) {
+    response_.add(factor, to);
+  } else if (!loads.empty()) {
+    element_work_ = loads;
+    for (double& load : element_work_) load *= factor;
+    compliance_.add_response(element_work_, to);
+  }
+  return check_stage();
 }
 
-const ContactField& ElementStructure::begin_passes(const std::vector<int>& elements) {
-  uses_response_ = !support_motion_ && response_.worthwhile(elements.size());
-  if (!uses_response_) return Structure::begin_passes(elements);
+LoadedStructure::Passes ElementStructure::begin_passes(const std::vector<int>& elements) {
+  stage_.by_response = !support_motion_ && response_.worthwhile(elements.size());
+  if (!stage_.by_response) return LoadedStructure::begin_passes(elements);
   const bool fused = stage_.kind == Kind::fused;
   response_.place(elements, fused ? motion_->ranges() : all_);
   compliance_.prepare_individual(stage_.shift, stage_.shift2, stage_.added, elements);
@@ -209,54 +213,31 @@ const ContactField& ElementStructure::begin_passes(const std::vector<int>& eleme
       }
     });
   }
-  return response_.field();
+  return {response_.field(), compliance_};
 }
 
-const ElementCompliance& ElementStructure::own_compliance() const {
-  return uses_response_ ? compliance_ : Structure::own_compliance();
-}
-
-void ElementStructure::clear_loads() { uses_response_ ? response_.clear() : Structure::clear_loads(); }
-
-void ElementStructure::respond() {
-  if (!uses_response_) return Structure::respond();
+void ElementStructure::respond(const std::function<void()>& add_loads, double shift) {
+  if (!stage_.by_response) return LoadedStructure::respond(add_loads, shift);
+  response_.clear();
+  add_loads();
   response_.solve(statics_->factored(stage_.shift, stage_.shift2, stage_.added));
+  if (shift > 0.0) response_.find_rates(shift);
 }
 
-void ElementStructure::find_rates(double shift) {
-  uses_response_ ? response_.find_rates(shift) : Structure::find_rates(shift);
-}
-
-void ElementStructure::apply_pass_loads() {
-  if (!uses_response_) return Structure::apply_pass_loads();
-  const bool fused = stage_.kind == Kind::fused;
-  response_.add(fused ? stage_.shift2 : 1.0, fused ? motion_->stored(stage_.number) : z_.data());
-}
-
-Structure::Verdict ElementStructure::check_stage() {
+LoadedStructure::Verdict ElementStructure::check_stage() {
   if (!nonlinear_ || stage_.kind == Kind::fused) return Verdict::converged;
-  switch (nonlinear_->check_stage(z_.data())) {
-    case NonlinearFoundation::Verdict::converged:
-      return Verdict::converged;
-    case NonlinearFoundation::Verdict::again:
-      return Verdict::again;
-    default:
-      return Verdict::failed;
-  }
+  const Verdict verdict = nonlinear_->check_stage(z_.data());
+  if (verdict == Verdict::failed) failure_reason_ = nonlinear_->worst_point();
+  return verdict;
 }
 
-void ElementStructure::end_stage(double* v, double* w) {
+Powers ElementStructure::end_stage(double* v, double* w) {
   const double shift = stage_.shift;  // a local copy lets the compiler vectorise the loop
   for (int i = 0; i < n_; ++i) {
     v[i] = v_predicted_[i] + z_[i];
     w[i] = w_predicted_[i] + shift * z_[i];
   }
-}
-
-void ElementStructure::update_slip(const double* v, const std::vector<Reach>& loaded) {
-  if (!nonlinear_) return;
-  nonlinear_->update_slip(v);
-  update_loaded_range(loaded);
+  return powers(w);
 }
 
 // Sets the range from the first to the last wheel or force.
@@ -265,8 +246,6 @@ void ElementStructure::update_loaded_range(const std::vector<Reach>& loaded) {
   for (const Reach& reach : loaded) train = {std::min(train.from, reach.from), std::max(train.to, reach.to)};
   nonlinear_->set_loaded_range(train.from, train.to);
 }
-
-std::string ElementStructure::failure_reason() const { return nonlinear_ ? nonlinear_->worst_point() : std::string(); }
 
 // --- observation ---------------------------------------------------------------------------------------------------
 
@@ -289,7 +268,7 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   if (!motion_) return e;
   measure_dissipation(v, w);
   e.dissipated = dissipated_ + slip_loss;
-  if (window_) e.dissipated += window_->energy_left();
+  e.dissipated += energy_left_;
   e.work = worked_;
   return e;
 }
@@ -298,7 +277,7 @@ void ElementStructure::observe(const double* v, const double* w, const double* a
                                bool with_loads, NodalMotion& out) {
   out.v = v;
   out.w = w;
-  out.a = a;
+  out.a = a != nullptr ? a : motion_->start_acceleration();
   if (with_loads) {
     out.P.resize(static_cast<std::size_t>(n_));
     external_load(out.P.data());

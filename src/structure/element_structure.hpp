@@ -27,52 +27,35 @@
 
 namespace traverse::structure {
 
-class ElementStructure final : public Structure {
+class ElementStructure final : public MovingStructure {
  public:
   /// `op`: an existing operator of the beam with its factorisations; null: a new operator is created.
   ElementStructure(const beam::Beam& beam, double gravity, std::shared_ptr<BeamOperator> op = nullptr);
 
-  bool linear() const override { return !nonlinear_; }
   void set_reference_loads(double sum, double greatest) override;
 
   void load(const std::vector<recovery::ElementLoad>& forces) override;
-  void accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) override;
-  std::array<double, 2> powers(const double* w) override;
+  Powers accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) override;
 
   void begin_statics(bool loaded) override;
   void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) override;
   void begin_stage(std::size_t i, const double* v, const double* w) override;
   void solve_free() override;
   const ElementCompliance& compliance(const std::vector<int>& elements) override;
-  void apply_contact_loads(const std::vector<double>& loads) override;
-  const ContactField& begin_passes(const std::vector<int>& elements) override;
-  const ElementCompliance& own_compliance() const override;
-  void clear_loads() override;
-  void respond() override;
-  void find_rates(double shift) override;
-  void apply_pass_loads() override;
-  Verdict check_stage() override;
-  void end_stage(double* v, double* w) override;
-  void update_slip(const double* v, const std::vector<Reach>& loaded) override;
+  Verdict apply_contact_loads(const std::vector<double>& loads) override;
+  Passes begin_passes(const std::vector<int>& elements) override;
+  void respond(const std::function<void()>& add_loads, double shift) override;
+  Powers end_stage(double* v, double* w) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
-  std::string failure_reason() const override;
 
-  void limit_to_active_window(double tolerance, const std::vector<double>& probes) override;
-  std::optional<double> energy_left() const override {
-    return window_ ? std::optional(window_->energy_left()) : std::nullopt;
-  }
-  void begin_motion(const base::Method& method) override;
   void set_method(const base::Method& method, double h) override;
-  void measure_errors() override { measures_errors_ = true; }
   void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
   void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) override;
   void finish_step(double* v, double* w) override;
-  void complete_step(double* v, double* w) override;
+  void accept(double* v, double* w, const std::vector<Reach>& loaded) override;
   void reject_step(double* v, double* w) override;
-  const double* acceleration() const override { return motion_->start_acceleration(); }
   double error_energy(const double* v, const double* w) override;
 
-  Extent extent(const double* v) const override { return extent_of(v, beam_.layout(), n_); }
   StructureEnergy energy(const double* v, const double* w) override;
   void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                NodalMotion& out) override;
@@ -85,13 +68,10 @@ class ElementStructure final : public Structure {
     double shift = 0.0, shift2 = 0.0;
     std::size_t number = 0;  // index of the stage in the step
     bool loaded = false;
+    bool by_response = false;  // passes use response_ instead of the columns of compliance_
     const AddedSprings* added = nullptr;
     const double *v = nullptr, *w = nullptr;  // at the start of the step
   };
-  struct Powers {  // this rank's share, W
-    double beam = 0.0, forces = 0.0;
-  };
-
   bool fused() const { return motion_ && motion_->fused(); }
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                   double* w_elements) const override;
@@ -102,6 +82,10 @@ class ElementStructure final : public Structure {
   void load_at_zero_acceleration();
   void update_loaded_range(const std::vector<Reach>& loaded);
   double dissipation(const double* w);
+  double power_of_forces(const double* w) const;
+  Powers powers(const double* w) { return {dissipation(w), power_of_forces(w)}; }
+  Verdict check_stage();
+  void begin_motion();
   int local_node(int column) const;
   bool measured_between_steps() const;
   void start_with(const double* a);
@@ -114,7 +98,6 @@ class ElementStructure final : public Structure {
 
   Compliance compliance_;
   ContactResponse response_;
-  bool uses_response_ = false;                    // whether passes use response_ instead of the columns of compliance_
   std::optional<NonlinearFoundation> nonlinear_;  // only for a nonlinear foundation
   std::vector<NodalLoad> nodal_forces_;           // moving forces, unknowns ascending
   std::vector<NodalLoad> with_inertia_;           // with those of the motion of the supports, if they move
@@ -130,8 +113,6 @@ class ElementStructure final : public Structure {
   std::optional<BeamMotion> motion_;
   std::optional<ActiveWindow> window_;
   double longest_span_ = 0.0;                 // m
-  double window_tolerance_ = 0.0;             // 0: time steps include all nodes
-  std::vector<int> probe_columns_;            // columns of probes
   std::vector<double> static_displacements_;  // deflections under the dead load only; empty: none
   std::array<Powers, base::most_accelerations> powers_;
   /// Integrals of this rank's powers, J. The measured dissipation is integrated up to `unmeasured_` s ago, when it was
@@ -148,7 +129,6 @@ class ElementStructure final : public Structure {
   std::vector<Reach> reaches_;
   bool stepped_ = false;     // since the last restart
   bool incomplete_ = false;  // the nodes of free_ still have their state at the start of the last step
-  bool measures_errors_ = false;
 };
 
 }  // namespace traverse::structure

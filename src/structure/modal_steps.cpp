@@ -46,8 +46,8 @@ void ModalStructure::begin_statics(bool /*loaded*/) {
 void ModalStructure::begin_stage(double shift, const double* c_v, const double* c_w, const double* /*w_guess*/) {
   set_stage(shift, shift * shift);
   for (int i = 0; i < n_; ++i) {
-    w_predicted_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
-    v_predicted_[i] = shift > 0.0 ? (w_predicted_[i] - c_v[i]) / shift : 0.0;
+    w_predicted_[i] = -c_w[i] / shift;
+    v_predicted_[i] = (w_predicted_[i] - c_v[i]) / shift;
   }
 }
 
@@ -130,18 +130,21 @@ void ModalStructure::ModalCompliance::fill(int a, double* to) const {
   }
 }
 
-void ModalStructure::apply_contact_loads(const std::vector<double>& loads) {
+LoadedStructure::Verdict ModalStructure::apply_contact_loads(const std::vector<double>& loads) {
+  if (loads.empty()) return Verdict::converged;
   std::fill(q_.begin(), q_.end(), 0.0);
   add_modal_forces({elements_, loads}, q_.data());
   divide(q_.data(), displacements_.data());
   for (int i = 0; i < n_; ++i) z_[i] += displacements_[i];
+  return Verdict::converged;
 }
 
-void ModalStructure::end_stage(double* v, double* w) {
+Powers ModalStructure::end_stage(double* v, double* w) {
   for (int i = 0; i < n_; ++i) {
     v[i] = v_predicted_[i] + z_[i];
     w[i] = w_predicted_[i] + shift_ * z_[i];
   }
+  return powers(w);
 }
 
 void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const double* /*w*/) {
@@ -149,17 +152,15 @@ void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const dou
     accelerations_[stage + 1][i] = shift2_ * z_[i];
     w_predicted_[i] += shift_ * z_[i];
   }
-  powers_[stage + 1] = {damping(w_predicted_.data()), work_rate(w_predicted_.data())};
+  powers_[stage + 1] = powers(w_predicted_.data());
 }
 
 // --- steps ---------------------------------------------------------------------------------------------------------
 
-void ModalStructure::begin_motion(const base::Method& method) {
+void ModalStructure::set_method(const base::Method& method, double /*h*/) {
   method_ = method;
-  for (int j = 0; j < method.step.known; ++j) accelerations_[j].assign(static_cast<std::size_t>(n_), 0.0);
+  for (int j = 0; j < method.step.known; ++j) accelerations_[j].resize(static_cast<std::size_t>(n_));
 }
-
-void ModalStructure::set_method(const base::Method& method, double /*h*/) { method_ = method; }
 
 void ModalStructure::restart(const std::vector<Reach>& /*loaded*/, double* /*v*/, double* w, const double* a) {
   if (method_.stages.size() > 1) {
@@ -171,7 +172,7 @@ void ModalStructure::restart(const std::vector<Reach>& /*loaded*/, double* /*v*/
     divide(q_.data(), z_.data());
     for (int i = 0; i < n_; ++i) accelerations_[0][i] += shift2_ * z_[i];
   }
-  powers_[0].damping = damping(w);
+  powers_[0].dissipation = damping(w);
 }
 
 void ModalStructure::begin_step(const std::vector<Reach>& /*loaded*/, const double* v, const double* w, bool store) {
@@ -181,7 +182,7 @@ void ModalStructure::begin_step(const std::vector<Reach>& /*loaded*/, const doub
     before_.v.assign(v, v + n_);
     before_.w.assign(w, w + n_);
   }
-  powers_[0].forces = work_rate(w);
+  powers_[0].work = work_rate(w);
 }
 
 void ModalStructure::finish_step(double* v, double* w) {
@@ -197,8 +198,8 @@ void ModalStructure::finish_step(double* v, double* w) {
     accelerations_[0][i] = next;
   }
   for (int j = 0; j < rule.known; ++j) {
-    dissipated_ += rule.power[j] * powers_[j].damping;
-    worked_ += rule.power[j] * powers_[j].forces;
+    dissipated_ += rule.power[j] * powers_[j].dissipation;
+    worked_ += rule.power[j] * powers_[j].work;
   }
   powers_[0] = powers_[rule.known - 1];
 }

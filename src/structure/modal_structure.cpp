@@ -15,7 +15,7 @@ using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowM
 }  // namespace
 
 ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics)
-    : Structure(bridge.beam(), std::move(statics), gravity),
+    : MovingStructure(bridge.beam(), std::move(statics), gravity),
       bridge_(bridge),
       modes_(bridge.modes()),
       compliance_(*this) {
@@ -27,7 +27,7 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
   for (std::size_t i = 0; i < modes_; ++i)
     for (std::size_t u = 0; u < shape[i].size(); ++u) by_unknown_[u * modes_ + i] = shape[i][u];
   for (const std::vector<double>& nodal : shape)
-    extents_.push_back(extent_of(nodal.data(), beam_.layout(), static_cast<int>(nodal.size())));
+    mode_extents_.push_back(extent_of(nodal.data(), beam_.layout(), static_cast<int>(nodal.size())));
 
   weight_displacement_.assign(shape.front().size(), 0.0);
   weight_.assign(modes_, 0.0);
@@ -85,14 +85,15 @@ void ModalStructure::add_modal_forces(const ElementLoads& contacts, double* to) 
   }
 }
 
-void ModalStructure::accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) {
+Powers ModalStructure::accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) {
+  if (n_ == 0) return {};
   for (int i = 0; i < n_; ++i) {
     const double omega = bridge_.omega()[i];
     a[i] = modal_force_[i] - 2.0 * bridge_.sigma()[i] * w[i] - omega * omega * v[i];
   }
-  if (n_ == 0) return;
   subtract_cross_damping(w, a);
   add_modal_forces(contacts, a);
+  return powers(w);
 }
 
 /// Subtracts the cross damping forces at the rates w from the modal forces.
@@ -118,8 +119,6 @@ double ModalStructure::damping(const double* w) const {
   return lost;
 }
 
-std::array<double, 2> ModalStructure::powers(const double* w) { return {damping(w), work_rate(w)}; }
-
 void ModalStructure::add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                                 double* w_elements) const {
   if (n_ == 0) return;
@@ -140,15 +139,6 @@ void ModalStructure::add_values(const std::vector<int>& elements, const double* 
 }
 
 // --- observation ---------------------------------------------------------------------------------------------------
-
-Extent ModalStructure::extent(const double* v) const {
-  Extent largest;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n_); ++i) {
-    largest.displacement = std::max(largest.displacement, std::abs(v[i]) * extents_[i].displacement);
-    largest.rotation = std::max(largest.rotation, std::abs(v[i]) * extents_[i].rotation);
-  }
-  return largest;
-}
 
 // Energy of the modes only: the energy of the static correction and the work for it are not included.
 StructureEnergy ModalStructure::energy(const double* v, const double* w) {
@@ -177,7 +167,7 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   if (n_ > 0) {
     std::copy_n(v, n_, q.begin());
     std::copy_n(w, n_, q.begin() + n_);
-    std::copy_n(a, n_, q.begin() + 2 * n_);
+    std::copy_n(a != nullptr ? a : accelerations_[0].data(), n_, q.begin() + 2 * n_);
   }
   MPI_Bcast(q.data(), static_cast<int>(3 * modes_), MPI_DOUBLE, 0, beam_.comm());
 

@@ -19,42 +19,37 @@
 
 namespace traverse::structure {
 
-class ModalStructure final : public Structure {
+class ModalStructure final : public MovingStructure {
  public:
   /// The bridge must outlive the structure.
   ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics);
 
-  bool uses_local_compliance(bool /*asked*/) const override { return false; }
   void load(const std::vector<recovery::ElementLoad>& forces) override;
-  void accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) override;
-  std::array<double, 2> powers(const double* w) override;
+  Powers accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) override;
 
   void begin_statics(bool loaded) override;
   void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) override;
   void begin_stage(std::size_t i, const double* v, const double* w) override;
   void solve_free() override;
   const ElementCompliance& compliance(const std::vector<int>& elements) override;
-  void apply_contact_loads(const std::vector<double>& loads) override;
-  void end_stage(double* v, double* w) override;
+  Verdict apply_contact_loads(const std::vector<double>& loads) override;
+  Powers end_stage(double* v, double* w) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
 
-  void begin_motion(const base::Method& method) override;
   void set_method(const base::Method& method, double h) override;
   void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
   void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) override;
   void finish_step(double* v, double* w) override;
   void reject_step(double* v, double* w) override;
-  const double* acceleration() const override { return accelerations_[0].data(); }
   double error_energy(const double* v, const double* w) override;
 
-  Extent extent(const double* v) const override;
   StructureEnergy energy(const double* v, const double* w) override;
   void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                NodalMotion& out) override;
   void keep(base::Archive& archive) override {
     statics_->keep_static_error(archive);
     archive.cut(accelerations_[0]);
-    archive.sum(powers_[0].damping, powers_[0].forces, dissipated_, worked_);
+    archive.sum(powers_[0].dissipation, powers_[0].work, dissipated_, worked_);
   }
 
  private:
@@ -74,9 +69,6 @@ class ModalStructure final : public Structure {
     std::vector<double> blocks_before_;
     std::vector<double> loaded_shapes_;  // S^-1 times the shapes of the loaded element: [unknown][mode]
   };
-  struct Powers {  // W
-    double damping = 0.0, forces = 0.0;
-  };
 
   /// The values of an unknown of the beam, counted over all ranks, in every mode.
   const double* shapes(int unknown) const { return &by_unknown_[static_cast<std::size_t>(unknown) * modes_]; }
@@ -85,6 +77,7 @@ class ModalStructure final : public Structure {
   void add_modal_forces(const ElementLoads& contacts, double* to) const;
   double work_rate(const double* w) const;
   double damping(const double* w) const;
+  Powers powers(const double* w) const { return {damping(w), work_rate(w)}; }
   void set_stage(double shift, double shift2);
   void factorise();
   void subtract_cross_damping(const double* w, double* forces) const;
@@ -93,7 +86,6 @@ class ModalStructure final : public Structure {
   const ModalBridge& bridge_;
   std::size_t modes_;
   std::vector<double> by_unknown_;             // [unknown][mode]
-  std::vector<Extent> extents_;                // of each mode's shape
   std::vector<double> weight_displacement_;    // v_0, of all ranks' unknowns
   std::vector<double> weight_;                 // phi^T of the self-weight, N
   double weight_work_ = 0.0;                   // J, self-weight times v_0

@@ -96,6 +96,16 @@ void Structure::gather(const std::vector<int>& elements, const double* v, const 
   w_elements.assign(gathered_.begin() + static_cast<std::ptrdiff_t>(count), gathered_.end());
 }
 
+Extent Structure::extent(const double* v) const {
+  if (mode_extents_.empty()) return extent_of(v, beam_.layout(), n_);
+  Extent largest;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n_); ++i) {
+    largest.displacement = std::max(largest.displacement, std::abs(v[i]) * mode_extents_[i].displacement);
+    largest.rotation = std::max(largest.rotation, std::abs(v[i]) * mode_extents_[i].rotation);
+  }
+  return largest;
+}
+
 double Structure::power_with_supports(const ElementLoads& forces) const {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   double power = 0.0;
@@ -122,11 +132,22 @@ void Structure::add_support_motion(NodalMotion& motion) {
   add(motion.a, support_motion_->acceleration(), absolute_[2]);
 }
 
-void Structure::gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w) {
+void Structure::add_contacts(const ElementLoads& contacts, double* nodal) const {
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node());
+  for (std::size_t a = 0; a < contacts.elements.size(); ++a) {
+    const auto unknowns = line_.unknowns(contacts.elements[a]);
+    for (std::size_t i = 0; i < m; ++i) {
+      const int local = beam_.local(unknowns[i]);
+      if (local >= 0) nodal[local] += contacts.values[a * m + i];
+    }
+  }
+}
+
+void LoadedStructure::gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w) {
   gather(elements, nullptr, nullptr, v, w);
 }
 
-const ContactField& Structure::begin_passes(const std::vector<int>& elements) {
+LoadedStructure::Passes LoadedStructure::begin_passes(const std::vector<int>& elements) {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node()), size = elements.size() * m;
   gather_free(elements, v_free_, w_free_);
   own_ = &compliance(elements);
@@ -139,29 +160,16 @@ const ContactField& Structure::begin_passes(const std::vector<int>& elements) {
   field_.v = v_pass_.data();
   field_.w = w_pass_.data();
   field_.load = loads_.data();
-  return field_;
+  return {field_, *own_};
 }
 
-void Structure::clear_loads() { std::fill(loads_.begin(), loads_.end(), 0.0); }
-
-void Structure::respond() {
+void LoadedStructure::respond(const std::function<void()>& add_loads, double shift) {
+  std::fill(loads_.begin(), loads_.end(), 0.0);
+  add_loads();
   std::copy_n(v_free_.begin(), loads_.size(), v_pass_.begin());
   if (!loads_.empty()) own_->respond(loads_, v_pass_);
-}
-
-void Structure::find_rates(double shift) {
-  for (std::size_t i = 0; i < loads_.size(); ++i) w_pass_[i] = w_free_[i] + shift * (v_pass_[i] - v_free_[i]);
-}
-
-void Structure::add_contacts(const ElementLoads& contacts, double* nodal) const {
-  const std::size_t m = 2 * static_cast<std::size_t>(per_node());
-  for (std::size_t a = 0; a < contacts.elements.size(); ++a) {
-    const auto unknowns = line_.unknowns(contacts.elements[a]);
-    for (std::size_t i = 0; i < m; ++i) {
-      const int local = beam_.local(unknowns[i]);
-      if (local >= 0) nodal[local] += contacts.values[a * m + i];
-    }
-  }
+  for (std::size_t i = 0; shift > 0.0 && i < loads_.size(); ++i)
+    w_pass_[i] = w_free_[i] + shift * (v_pass_[i] - v_free_[i]);
 }
 
 }  // namespace traverse::structure

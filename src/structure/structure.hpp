@@ -6,12 +6,13 @@
 //   the computed contact forces (apply_contact_loads).
 //
 // The state of a structure is v and w = v' of its own unknowns: nodal displacements, or modal coordinates. The kind of
-// structure determines the equations of a stage, their solution, and the stored data.
+// structure determines the equations of a stage, their solution, and the stored data. A Structure can be observed at a
+// state; a LoadedStructure solves stages under forces; a MovingStructure makes steps of stages.
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +56,11 @@ struct StructureEnergy {
   double dissipated = 0.0, work = 0.0;  // since the start of the motion
 };
 
+/// Power lost in damping, and power of the moving forces, W: a rank's share.
+struct Powers {
+  double dissipation = 0.0, work = 0.0;
+};
+
 /// An accepted instant of a structure, as this rank's nodal values of the beam.
 struct NodalMotion {
   const double *v = nullptr, *w = nullptr, *a = nullptr;
@@ -83,11 +89,11 @@ class Structure {
   BeamOperator& statics() const { return *statics_; }
   /// Nodal forces of the self-weight and the strains of the beam, this rank's unknowns of the beam.
   const std::vector<double>& dead_load() const { return dead_load_; }
-  /// Whether the deflection of an element between its nodes is included under a wheel. Always for a rail, which bends
-  /// there, and for an element with shear, whose deflection has a kink under a wheel but not at the nodes; otherwise if
-  /// requested.
-  virtual bool uses_local_compliance(bool requested) const {
-    return requested || beam_.rail() != nullptr || beam_.model().GA.has_value();
+  /// Whether the deflection of an element between its nodes is included under a wheel. Never by modes; otherwise always
+  /// for a rail, which bends there, and for an element with shear, whose deflection has a kink under a wheel but not at
+  /// the nodes; otherwise if requested.
+  bool uses_local_compliance(bool requested) const {
+    return mode_extents_.empty() && (requested || beam_.rail() != nullptr || beam_.model().GA.has_value());
   }
   /// Whether the structure is deformed without vehicles and moving forces.
   bool deformed_without_traffic() const { return gravity_ != 0.0 || beam_.model().strained(); }
@@ -98,11 +104,7 @@ class Structure {
   /// Adds a vertical force (N, upward) inside an element of a line to this rank's nodal forces.
   void add_force(const beam::Line& line, const recovery::ElementLoad& force, double* nodal) const;
   /// Whether the superposition of loads is valid.
-  virtual bool linear() const { return true; }
-  /// Sum of all weights and forces, and the greatest single one, N: the reference for forces of a foundation.
-  virtual void set_reference_loads(double /*sum*/, double /*greatest*/) {}
-
-  // --- at a state --------------------------------------------------------------------------------------------------
+  bool linear() const { return !beam_.model().nonlinear(); }
 
   /// The supports move; before the first load. Only for structures by elements.
   void move_supports(std::shared_ptr<SupportMotion> motion) { support_motion_ = std::move(motion); }
@@ -118,107 +120,19 @@ class Structure {
   /// Adds the motion of the supports to an observed state, which so far is that relative to them.
   void add_support_motion(NodalMotion& motion);
 
-  /// Sets the moving forces with their present positions.
-  virtual void load(const std::vector<recovery::ElementLoad>& forces) = 0;
   /// v and w of elements at a state, on all ranks.
   void gather(const std::vector<int>& elements, const double* v, const double* w, std::vector<double>& v_elements,
               std::vector<double>& w_elements);
-  /// w' of a state due to all loads, with those of contacts.
-  virtual void accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) = 0;
-  /// Power lost in damping, and power of the moving forces, W: this rank's share at the state whose accelerations were
-  /// computed last, or of the stage that was solved last.
-  virtual std::array<double, 2> powers(const double* w) = 0;
-
-  // --- a stage -----------------------------------------------------------------------------------------------------
-
-  enum class Verdict { converged, again, failed };
-
-  /// Statics under self-weight and moving forces; `loaded`: whether there are any.
-  virtual void begin_statics(bool loaded) = 0;
-  /// v and w with v' = w = shift*v + c_v, w' = shift*w + c_w; w_guess: an approximation of w.
-  virtual void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) = 0;
-  /// Stage i, counted from 0, of the step from v, w.
-  virtual void begin_stage(std::size_t i, const double* v, const double* w) = 0;
-  /// Computes the stage without contact forces.
-  virtual void solve_free() = 0;
-  /// v and w of elements in that solution, on all ranks.
-  void gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w);
-  /// Displacements of these elements under forces on them in this stage.
-  virtual const ElementCompliance& compliance(const std::vector<int>& elements) = 0;
-  /// Adds the response to contact forces on these elements, 2 per_node values each, N and N m.
-  virtual void apply_contact_loads(const std::vector<double>& loads) = 0;
-  /// Whether the stage is solved, or has to be solved again from solve_free on.
-  virtual Verdict check_stage() { return Verdict::converged; }
-
-  // The contacts of a stage by passes, in place of gather_free, compliance and apply_contact_loads: in each pass loads
-  // are cleared, new loads are added to the field, and the response is computed, until the contact forces no longer
-  // change. Then the loads are applied.
-
-  /// Begins the passes with contacts on these elements, ascending. Call after solve_free.
-  virtual const ContactField& begin_passes(const std::vector<int>& elements);
-  /// The displacements of each of these elements under forces on itself only.
-  virtual const ElementCompliance& own_compliance() const { return *own_; }
-  virtual void clear_loads();
-  /// Computes the field's v under its loads.
-  virtual void respond();
-  /// Computes the field's w: its change is `shift` (1/s) times the change of v.
-  virtual void find_rates(double shift);
-  virtual void apply_pass_loads() {
-    if (!loads_.empty()) apply_contact_loads(loads_);
-  }
-  /// The loads of the last pass, 2 per_node values for each element of begin_passes; ElementStructure::observe needs
-  /// none.
-  const std::vector<double>& pass_loads() const { return loads_; }
-
-  /// v and w of a stage that does not belong to a step.
-  virtual void end_stage(double* v, double* w) = 0;
-  /// Updates the slip history with v; the motion continues with wheels and forces in these ranges.
-  virtual void update_slip(const double* /*v*/, const std::vector<Reach>& /*loaded*/) {}
-  /// Stores the data of stage i that the step needs.
-  virtual void end_stage(std::size_t i, const double* v, const double* w) = 0;
-  /// The reason why a stage has no solution, for messages.
-  virtual std::string failure_reason() const { return {}; }
-
-  // --- steps -------------------------------------------------------------------------------------------------------
-
-  /// Excludes motion below `tolerance` of the largest motion from the steps (active_window.hpp); before begin_motion.
-  /// At the stations of probes only much smaller motion is excluded.
-  virtual void limit_to_active_window(double /*tolerance*/, const std::vector<double>& /*probes*/) {}
-  /// J, energy lost by setting nodes to rest so far, this rank's share; none if all nodes are in the steps.
-  virtual std::optional<double> energy_left() const { return std::nullopt; }
-  /// The method of all following steps, for steps of 1 s.
-  virtual void begin_motion(const base::Method& method) = 0;
-  /// The method of all following steps, for steps of h, s.
-  virtual void set_method(const base::Method& method, double h) = 0;
-  /// The errors of all steps will be requested.
-  virtual void measure_errors() {}
-  /// Before the first step from a state with the accelerations a, and after a change of the state from outside; v and w
-  /// may be set to rest where they are negligible.
-  virtual void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) = 0;
-  /// `loaded`: ranges of wheels and forces in the step; store: the step may be rejected.
-  virtual void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) = 0;
-  virtual void finish_step(double* v, double* w) = 0;
-  /// The computations for which the step must be final.
-  virtual void complete_step(double* /*v*/, double* /*w*/) {}
-  virtual void reject_step(double* v, double* w) = 0;
-  /// w' at the end of the last step.
-  virtual const double* acceleration() const = 0;
-  /// Energy of the step's error as the embedded method estimates it, J: this rank's share. After all stages are solved.
-  virtual double error_energy(const double* v, const double* w) = 0;
-
-  // --- observation -------------------------------------------------------------------------------------------------
-
   /// This rank's share; by modes that of the mode that displaces the bridge most.
-  virtual Extent extent(const double* v) const = 0;
+  Extent extent(const double* v) const;
+  /// J, energy lost by setting nodes to rest so far, this rank's share.
+  double energy_left() const { return energy_left_; }
   /// This rank's share.
   virtual StructureEnergy energy(const double* v, const double* w) = 0;
-  /// A state with its accelerations as nodal values, under the moving forces and the contacts' loads; with_loads:
-  /// whether NodalMotion::P is requested.
+  /// A state with its accelerations a (null: those at the end of the last step) as nodal values, under the moving
+  /// forces and the contacts' loads; with_loads: whether NodalMotion::P is requested.
   virtual void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                        NodalMotion& out) = 0;
-
-  /// Writes or reads the state between steps except v and w. Before reading, the method has been set.
-  virtual void keep(base::Archive& archive) = 0;
 
  protected:
   /// v and w of elements, this rank's part of them; at a state, or with null pointers the free response of the stage.
@@ -234,14 +148,112 @@ class Structure {
   double gravity_;
   int n_, ranks_ = 1;
   std::shared_ptr<SupportMotion> support_motion_;  // null: the supports are at rest
+  std::vector<Extent> mode_extents_;               // of each mode's shape; empty: by elements
+  double energy_left_ = 0.0;
 
  private:
   std::array<std::vector<double>, 3> absolute_;  // v, w, a with the motion of the supports
   std::vector<double> gathered_;                 // buffer of gather
+};
+
+/// A structure under forces in a stage, or at a state.
+class LoadedStructure : public Structure {
+ public:
+  using Structure::Structure;
+  using Verdict = NonlinearFoundation::Verdict;
+  /// A stage's contacts by passes, and the displacements of each of their elements under forces on itself only.
+  struct Passes {
+    const ContactField& field;
+    const ElementCompliance& own;
+  };
+
+  /// Sum of all weights and forces, and the greatest single one, N: the reference for forces of a foundation.
+  virtual void set_reference_loads(double /*sum*/, double /*greatest*/) {}
+  /// Sets the moving forces with their present positions.
+  virtual void load(const std::vector<recovery::ElementLoad>& forces) = 0;
+  /// w' of a state due to all loads, with those of contacts. Returns the powers at the state.
+  virtual Powers accelerations(const double* v, const double* w, const ElementLoads& contacts, double* a) = 0;
+
+  /// Statics under self-weight and moving forces; `loaded`: whether there are any.
+  virtual void begin_statics(bool loaded) = 0;
+  /// v and w with v' = w = shift*v + c_v, w' = shift*w + c_w; w_guess: an approximation of w.
+  virtual void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) = 0;
+  /// Computes the stage without contact forces.
+  virtual void solve_free() = 0;
+  /// v and w of elements in that solution, on all ranks.
+  void gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w);
+  /// Displacements of these elements under forces on them in this stage.
+  virtual const ElementCompliance& compliance(const std::vector<int>& elements) = 0;
+  /// Adds the response to contact forces on these elements, 2 per_node values each, N and N m; none: without contacts.
+  /// After passes the loads are pass_loads(). Returns whether the stage is solved, or has to be solved again from
+  /// solve_free on.
+  virtual Verdict apply_contact_loads(const std::vector<double>& loads) = 0;
+
+  // The contacts of a stage by passes, in place of gather_free and compliance: passes are made until the contact forces
+  // no longer change. Then the loads are applied.
+
+  /// Begins the passes with contacts on these elements, ascending. Call after solve_free.
+  virtual Passes begin_passes(const std::vector<int>& elements);
+  /// A pass: add_loads adds loads to the field, whose loads are zero before, then its v is computed under them. shift
+  /// (1/s): its w too, whose change is `shift` times the change of v; 0: not.
+  virtual void respond(const std::function<void()>& add_loads, double shift);
+  /// The loads of the last pass, 2 per_node values for each element of begin_passes; ElementStructure::observe needs
+  /// none.
+  const std::vector<double>& pass_loads() const { return loads_; }
+
+  /// v and w of a stage that does not belong to a step. Returns the powers there.
+  virtual Powers end_stage(double* v, double* w) = 0;
+  /// The reason why the last stage has no solution, for messages.
+  const std::string& failure_reason() const { return failure_reason_; }
+
+ protected:
+  std::string failure_reason_;
+
+ private:
   // Data of the contacts' passes
   ContactField field_;
   const ElementCompliance* own_ = nullptr;
   std::vector<double> v_free_, w_free_, v_pass_, w_pass_, loads_;
+};
+
+/// A structure in steps of a one-step method, each of several stages.
+class MovingStructure : public LoadedStructure {
+ public:
+  using LoadedStructure::LoadedStructure;
+  /// Excludes motion below `tolerance` of the largest motion from the steps (active_window.hpp); before set_method. At
+  /// the stations of probes only much smaller motion is excluded.
+  void limit_to_active_window(double tolerance, const std::vector<double>& probes) {
+    window_tolerance_ = tolerance;
+    window_probes_ = probes;
+  }
+  /// The errors of all steps will be requested.
+  void measure_errors() { measures_errors_ = true; }
+  /// The method of all following steps, for steps of h, s. The first call begins the motion by steps.
+  virtual void set_method(const base::Method& method, double h) = 0;
+  /// Before the first step from a state with the accelerations a, and after a change of the state from outside; v and w
+  /// may be set to rest where they are negligible.
+  virtual void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) = 0;
+  /// `loaded`: ranges of wheels and forces in the step; store: the step may be rejected.
+  virtual void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool store) = 0;
+  using LoadedStructure::begin_stage;
+  using LoadedStructure::end_stage;
+  /// Stage i, counted from 0, of the step from v, w.
+  virtual void begin_stage(std::size_t i, const double* v, const double* w) = 0;
+  /// Stores the data of stage i that the step needs.
+  virtual void end_stage(std::size_t i, const double* v, const double* w) = 0;
+  virtual void finish_step(double* v, double* w) = 0;
+  /// The computations for which a state must be final; the motion continues with wheels and forces in these ranges.
+  virtual void accept(double* /*v*/, double* /*w*/, const std::vector<Reach>& /*loaded*/) {}
+  virtual void reject_step(double* v, double* w) = 0;
+  /// Energy of the step's error as the embedded method estimates it, J: this rank's share. After all stages are solved.
+  virtual double error_energy(const double* v, const double* w) = 0;
+  /// Writes or reads the state between steps except v and w. Before reading, the method has been set.
+  virtual void keep(base::Archive& archive) = 0;
+
+ protected:
+  double window_tolerance_ = 0.0;      // 0: time steps include all nodes
+  std::vector<double> window_probes_;  // m
+  bool measures_errors_ = false;
 };
 
 }  // namespace traverse::structure
