@@ -193,14 +193,17 @@ std::vector<std::string> Fleet::partition(double t) {
 
 bool Fleet::badly_conditioned() {
   const auto vehicles_here = own();
-  return std::any_of(vehicles_here.begin(), vehicles_here.end(),
-                     [](MovingVehicle& v) { return v.dynamics->badly_conditioned(v); });
+  return std::any_of(vehicles_here.begin(), vehicles_here.end(), [](MovingVehicle& v) {
+    return v.dynamics->linear() == nullptr && v.mechanism.badly_conditioned(v.state);
+  });
 }
 
 bool Fleet::accept() {
   bool renewed = false;
   for (MovingVehicle& vehicle : own()) {
-    renewed = vehicle.dynamics->accept(vehicle) || renewed;
+    if (vehicle.dynamics->linear() != nullptr) continue;
+    renewed = vehicle.mechanism.renew_partition(vehicle.state) || renewed;
+    vehicle.mechanism.accept(vehicle.state);
   }
   return renewed;
 }

@@ -216,7 +216,7 @@ class Fleet {
   std::vector<std::string> linearise();
   /// Computes the observed state of this rank's vehicles, with p'' (freedom values).
   void observe(const double* pdd);
-  /// The largest VehicleDynamics::linearisation_residual of this rank's vehicles.
+  /// The largest LinearDynamics::linearisation_residual of this rank's vehicles.
   double linearisation_residual() const;
 
   /// Selects every vehicle's independent coordinates at t and numbers them. From then on p is measured from a

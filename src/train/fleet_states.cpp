@@ -131,7 +131,9 @@ void Fleet::observe(const double* pdd) {
 
 double Fleet::linearisation_residual() const {
   double largest = 0.0;
-  for (const MovingVehicle& vehicle : own()) largest = std::max(largest, vehicle.dynamics->linearisation_residual());
+  for (const MovingVehicle& vehicle : own())
+    if (const LinearDynamics* linear = vehicle.dynamics->linear())
+      largest = std::max(largest, linear->linearisation_residual());
   return largest;
 }
 

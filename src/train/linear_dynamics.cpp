@@ -212,7 +212,7 @@ double linearisation_residual_at(MovingVehicle& vehicle, const double* x) {
   moved->set(vehicle, 0.0, p.data(), of.c.data());
   moved->accelerations(vehicle, pdd.data());
   moved->observe(vehicle, pdd.data());
-  return moved->linearisation_residual();
+  return moved->linear()->linearisation_residual();
 }
 
 std::vector<double> residual_roots(MovingVehicle vehicle) {

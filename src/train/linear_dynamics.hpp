@@ -46,9 +46,8 @@ class LinearDynamics : public VehicleDynamics {
   multibody::MechanismPowers powers(const MovingVehicle& vehicle) const override;
   multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const override;
   bool observe(MovingVehicle& vehicle, const double* pdd) override;
-  double linearisation_residual() const override { return linearisation_residual_; }
-  bool badly_conditioned(MovingVehicle&) const override { return false; }
-  bool accept(MovingVehicle&) override { return false; }
+  /// The largest residual of the mechanism's own equations of motion in the observed states, over the vehicle's scale.
+  double linearisation_residual() const { return linearisation_residual_; }
 
   bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;
   bool matrix_is_valid(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
@@ -57,7 +56,6 @@ class LinearDynamics : public VehicleDynamics {
   void compute_free_displacement(ContactCompliance& compliance) override {
     newton_.compute_free_displacement(R_, compliance);
   }
-  void clear_residual() override { R_.setZero(); }
   const Eigen::VectorXd& coordinate_change(const Eigen::VectorXd& forces) override {
     return newton_.coordinate_change(forces);
   }
@@ -83,7 +81,7 @@ class LinearDynamics : public VehicleDynamics {
   double time_ = 0.0, linearisation_residual_ = 0.0;
   Eigen::VectorXd x_, xd_, xdd_;  // f
   Eigen::VectorXd force_;         // f: B^T Q - C x' - K x - r0
-  Eigen::VectorXd R_, r_, position_, velocity_;
+  Eigen::VectorXd r_, position_, velocity_;
   Eigen::MatrixXd J_;
 };
 

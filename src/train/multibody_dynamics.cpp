@@ -38,12 +38,6 @@ void MultibodyDynamics::recover(MovingVehicle& vehicle, const double* pdd) {
   vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd);
 }
 
-bool MultibodyDynamics::accept(MovingVehicle& vehicle) {
-  const bool renewed = vehicle.mechanism.renew_partition(vehicle.state);
-  vehicle.mechanism.accept(vehicle.state);
-  return renewed;
-}
-
 // R = B^T (N q'' - g - Q).
 bool MultibodyDynamics::find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) {
   multibody::MechanismState& state = vehicle.state;

@@ -61,10 +61,6 @@ class MultibodyDynamics : public VehicleDynamics {
     return vehicle.mechanism.energy(vehicle.state);
   }
   bool observe(MovingVehicle&, const double*) override { return false; }
-  bool badly_conditioned(MovingVehicle& vehicle) const override {
-    return vehicle.mechanism.badly_conditioned(vehicle.state);
-  }
-  bool accept(MovingVehicle& vehicle) override;
 
   bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;
   bool matrix_is_valid(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
@@ -74,7 +70,6 @@ class MultibodyDynamics : public VehicleDynamics {
     is_augmented_ ? augmented_.compute_free_displacement(R_, compliance)
                   : newton_.compute_free_displacement(R_, compliance);
   }
-  void clear_residual() override { R_.setZero(); }
   const Eigen::VectorXd& coordinate_change(const Eigen::VectorXd& forces) override {
     return is_augmented_ ? augmented_.coordinate_change(forces) : newton_.coordinate_change(forces);
   }
@@ -92,7 +87,7 @@ class MultibodyDynamics : public VehicleDynamics {
   int partition_version_ = 0;
   bool curved_ = false, is_augmented_ = false;
 
-  Eigen::VectorXd R_, r_;
+  Eigen::VectorXd r_;
   Eigen::VectorXd pdd_;  // p'' of the last residual
   Eigen::MatrixXd J_, NB_;
   Eigen::MatrixXd projector_;           // in place of B for joints with friction

@@ -107,13 +107,6 @@ class VehicleDynamics {
   virtual multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const = 0;
   /// Computes the observed state of all bodies, springs and joints at the state last set, with a given p'', under Q.
   virtual bool observe(MovingVehicle& vehicle, const double* pdd) = 0;
-  /// The largest residual of the mechanism's own equations of motion in the observed states, over the vehicle's scale.
-  virtual double linearisation_residual() const { return 0.0; }
-
-  /// Whether the independent coordinates may be badly conditioned.
-  virtual bool badly_conditioned(MovingVehicle& vehicle) const = 0;
-  /// Accepts the state, which was just evaluated. True if independent coordinates were replaced.
-  virtual bool accept(MovingVehicle& vehicle) = 0;
 
   // One iteration of a stage's Newton method, with J the derivative of the residual by p:
 
@@ -129,12 +122,15 @@ class VehicleDynamics {
   /// Computes compliance.c from the last residual.
   virtual void compute_free_displacement(ContactCompliance& compliance) = 0;
   /// Sets the residual to zero: the last iteration has moved the vehicle to its solution.
-  virtual void clear_residual() = 0;
+  void clear_residual() { R_.setZero(); }
   /// The change of p (freedom values) from the residual and from changes of the rows' forces.
   virtual const Eigen::VectorXd& coordinate_change(const Eigen::VectorXd& forces) = 0;
 
   /// Writes or reads the time-dependent state.
   virtual void keep(base::Bytes& bytes) = 0;
+
+ protected:
+  Eigen::VectorXd R_;  // f: the residual
 };
 
 /// A kind of dynamics with value semantics: each copy of a vehicle has its own object.
