@@ -9,6 +9,7 @@
 #include <array>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace traverse::base {
@@ -34,6 +35,42 @@ struct StepRule {
   /// The result of the step minus the result of an embedded method of one order less, as an estimate of the step's
   /// error; all 0 without such a method. error_in_a is the error of w over the length of the step.
   Weights error_in_v{}, error_in_w{}, error_in_a{};
+};
+
+/// The combination of entry i of the accelerations A_0 ... with these weights.
+template <class Accelerations>
+double combined(const Weights& weights, int known, const Accelerations& A, int i) {
+  double sum = 0.0;
+  for (int j = 0; j < known; ++j) sum += weights[j] * A[j][i];
+  return sum;
+}
+
+/// v~ and w~ of a stage, or v and w at the end of the step, of entry i with v and w at its start.
+template <class Rule, class Accelerations>
+std::pair<double, double> advanced(const Rule& rule, const Accelerations& A, int i, double v, double w) {
+  v += rule.w_in_v * w;
+  for (int j = 0; j < rule.known; ++j) {
+    v += rule.a_in_v[j] * A[j][i];
+    w += rule.a_in_w[j] * A[j][i];
+  }
+  return {v, w};
+}
+
+/// Power lost in damping, and power of loads: W, or their integrals, J.
+struct Powers {
+  double dissipation = 0.0, work = 0.0;
+};
+
+/// The powers at the accelerations of a step, and their integrals over all steps.
+struct PowerIntegrals {
+  std::array<Powers, most_accelerations> at;
+  Powers sum, before;  // J; `before` at the start of a step, which may be rejected
+  void add(const StepRule& rule) {
+    for (int j = 0; j < rule.known; ++j) {
+      sum.dissipation += rule.power[j] * at[j].dissipation;
+      sum.work += rule.power[j] * at[j].work;
+    }
+  }
 };
 
 /// Stage i uses the i + 1 accelerations before it; the last stage is the end of the step.

@@ -245,14 +245,10 @@ class System {
     double length = 0.0;
     std::array<std::vector<double>, base::most_accelerations> pdd;  // p'' at the stages
     std::vector<double> p, pd;                                      // at the start of the step
-    std::array<Powers, base::most_accelerations> powers;            // at the stages
-    double dissipated = 0.0, worked = 0.0;                          // J, this rank's share
-    struct {
-      double dissipated = 0.0, worked = 0.0;
-      std::vector<double> p;  // y without the structure's part
-    } before;
-    double energy_scale = 0.0;  // J, scale of the structure's errors
-    std::vector<double> rate;   // for restarts
+    base::PowerIntegrals powers;                                    // this rank's share
+    std::vector<double> before;                                     // y without the structure's part, before the step
+    double energy_scale = 0.0;                                      // J, scale of the structure's errors
+    std::vector<double> rate;                                       // for restarts
   };
   /// Shifts of a stage: w = shift*v + ..., w' = shift2*v + ...; shift 0: statics, where shift2 is the stiffness per
   /// mass of springs that tie masses to their positions.

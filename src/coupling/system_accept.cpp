@@ -66,9 +66,9 @@ void System::keep(base::Archive& archive, double* y) {
   if (rank_ == 0) std::copy(other_entries.begin(), other_entries.end(), y + 2 * n);
   if (motion_) {
     Motion& m = *motion_;
-    if (rank_ != 0 && !share_.distributed()) m.powers[0] = {};  // which are valid on the first rank only
+    if (rank_ != 0 && !share_.distributed()) m.powers.at[0] = {};  // which are valid on the first rank only
     archive.same(m.length, m.p, m.pd, m.pdd[0], m.energy_scale);
-    archive.sum(m.powers[0].dissipation, m.powers[0].work, m.dissipated, m.worked);
+    archive.sum(m.powers.at[0].dissipation, m.powers.at[0].work, m.powers.sum.dissipation, m.powers.sum.work);
     if (archive.reads() && m.length > 0.0) set_step(m.length);
   }
   archive.same(on_beam_, braking_force_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, flags_);
@@ -115,10 +115,7 @@ double System::step_error(const double* y) {
   const Motion& m = *motion_;
   const base::StepRule& rule = m.method.step;
   const auto [first, past] = fleet_.own_coordinates();
-  for (int i = first; i < past; ++i) {
-    x_[i] = 0.0;
-    for (int j = 0; j < rule.known; ++j) x_[i] += rule.error_in_a[j] * m.pdd[j][i];
-  }
+  for (int i = first; i < past; ++i) x_[i] = base::combined(rule.error_in_a, rule.known, m.pdd, i);
   double worst = 0.0;
   for (train::MovingVehicle& vehicle : fleet_.own())
     worst = std::max(worst, vehicle.step_error(&x_[vehicle.offset], &m.pdd[rule.known - 1][vehicle.offset]));

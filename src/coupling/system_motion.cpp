@@ -2,6 +2,7 @@
 // contacts.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "coupling/system.hpp"
 #include "engine/linear_train.hpp"
@@ -65,17 +66,16 @@ void System::restart_motion(double t, double h, double* y) {
   m.p.assign(p_.begin(), p_.begin() + f);
   m.pd.assign(p_.begin() + f, p_.end());
   m.pdd[0] = pdd_;
-  m.powers[0] = fleet_powers();
+  m.powers.at[0] = fleet_powers();
   if (train_) train_->restart(fleet_, m.p.data(), m.pd.data(), m.pdd[0].data());
   if (structure_) structure_->restart(loaded(t, 0.0), y, y + n_, m.rate.data() + n_);
 }
 
 void System::reject_step(double* y) {
   Motion& m = *motion_;
-  m.dissipated = m.before.dissipated;
-  m.worked = m.before.worked;
+  m.powers.sum = m.powers.before;
   if (structure_) structure_->reject_step(y, y + n_);
-  std::copy(m.before.p.begin(), m.before.p.end(), y + 2 * n_);
+  std::copy(m.before.begin(), m.before.end(), y + 2 * n_);
 }
 
 void System::set_step(double h) {
@@ -90,9 +90,8 @@ void System::set_step(double h) {
 bool System::step_motion(double t, double h, double* y, const std::function<bool()>& good_enough) {
   Motion& m = *motion_;
   if (std::abs(h - m.length) > same_length * m.length) set_step(h);
-  m.before.dissipated = m.dissipated;
-  m.before.worked = m.worked;
-  if (store_steps_) m.before.p.assign(y + 2 * n_, y + local_size());
+  m.powers.before = m.powers.sum;
+  if (store_steps_) m.before.assign(y + 2 * n_, y + local_size());
   by_passes_ = train_ != nullptr;
   bool solved = false;
   if (by_passes_) {
@@ -132,12 +131,7 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   if (!by_passes_) {
     for (std::vector<double>* x : {&p_predicted_, &pd_predicted_, &x_}) x->resize(m.p.size());
     for (int i = first; i < past; ++i) {
-      p_predicted_[i] = m.p[i] + rule.w_in_v * m.pd[i];
-      pd_predicted_[i] = m.pd[i];
-      for (int j = 0; j < rule.known; ++j) {
-        p_predicted_[i] += rule.a_in_v[j] * m.pdd[j][i];
-        pd_predicted_[i] += rule.a_in_w[j] * m.pdd[j][i];
-      }
+      std::tie(p_predicted_[i], pd_predicted_[i]) = base::advanced(rule, m.pdd, i, m.p[i], m.pd[i]);
       x_[i] = rule.displacement * m.pdd[rule.known - 1][i];
     }
   }
@@ -149,11 +143,11 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   if (structure_) structure_->end_stage(stage, v, w);
   if (by_passes_) {
     train_->accelerations(m.pdd[rule.known].data());
-    m.powers[rule.known] = {train_->dissipation(), train_->drive_power()};
+    m.powers.at[rule.known] = {train_->dissipation(), train_->drive_power()};
     return true;
   }
   for (int i = first; i < past; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
-  m.powers[rule.known] = fleet_powers();
+  m.powers.at[rule.known] = fleet_powers();
   return true;
 }
 
@@ -183,23 +177,12 @@ void System::finish_step(double* y) {
   const auto [first, past] = fleet_.own_coordinates();
   flags_ = by_passes_ || !fleet_.badly_conditioned() ? 0U : train::VehicleShare::badly_conditioned;
   for (int i = first; !by_passes_ && i < past; ++i) {
-    m.p[i] += rule.w_in_v * m.pd[i];
-    for (int j = 0; j < rule.known; ++j) {
-      m.p[i] += rule.a_in_v[j] * m.pdd[j][i];
-      m.pd[i] += rule.a_in_w[j] * m.pdd[j][i];
-    }
-    double next = 0.0;
-    for (int j = 0; j < rule.known; ++j) next += rule.a_next[j] * m.pdd[j][i];
-    m.pdd[0][i] = next;
+    std::tie(m.p[i], m.pd[i]) = base::advanced(rule, m.pdd, i, m.p[i], m.pd[i]);
+    m.pdd[0][i] = base::combined(rule.a_next, rule.known, m.pdd, i);
     if (std::abs(m.p[i] - p_[i]) > same_position) flags_ |= train::VehicleShare::moved;
   }
-  if (share_.distributed() || rank_ == 0) {  // otherwise another rank adds the vehicles and contacts
-    for (int j = 0; j < rule.known; ++j) {
-      m.dissipated += rule.power[j] * m.powers[j].dissipation;
-      m.worked += rule.power[j] * m.powers[j].work;
-    }
-  }
-  m.powers[0] = m.powers[rule.known - 1];
+  if (share_.distributed() || rank_ == 0) m.powers.add(rule);  // otherwise another rank adds vehicles and contacts
+  m.powers.at[0] = m.powers.at[rule.known - 1];
   if (structure_) structure_->finish_step(y, y + n_);
   if (by_passes_)
     finish_passes();

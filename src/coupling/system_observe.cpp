@@ -61,8 +61,8 @@ Energy System::energy(const double* y) {
   structure::StructureEnergy s;
   if (structure_) s = structure_->energy(y, y + n_);
   if (motion_) {
-    s.dissipated += motion_->dissipated;
-    s.work += motion_->worked;
+    s.dissipated += motion_->powers.sum.dissipation;
+    s.work += motion_->powers.sum.work;
   }
   if (rank_ == 0) {
     s.dissipated += y[2 * (n_ + fleet_.freedom())];

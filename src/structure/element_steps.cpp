@@ -108,8 +108,7 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
     motion_->measure(measuring_);
   }
   if (nonlinear_) update_loaded_range(loaded);
-  before_.dissipated = dissipated_;
-  before_.worked = worked_;
+  powers_.before = powers_.sum;
   if (store) {
     before_.v.clear();
     before_.w.clear();
@@ -119,11 +118,11 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
       before_.w.insert(before_.w.end(), w + block * r.first, w + block * r.past);
     }
   }
-  powers_[0].work = power_of_forces(w);
+  powers_.at[0].work = power_of_forces(w);
 }
 
 void ElementStructure::end_stage(std::size_t i, const double* v, const double* w) {
-  Powers& powers = powers_[i + 1];
+  Powers& powers = powers_.at[i + 1];
   powers = {};
   if (!fused()) {
     double* a = motion_->stored(i);
@@ -139,11 +138,8 @@ void ElementStructure::end_stage(std::size_t i, const double* v, const double* w
 
 void ElementStructure::finish_step(double* v, double* w) {
   const base::StepRule& rule = method_.step;
-  for (int j = 0; j < rule.known; ++j) {
-    dissipated_ += rule.power[j] * powers_[j].dissipation;
-    worked_ += rule.power[j] * powers_[j].work;
-  }
-  powers_[0] = powers_[rule.known - 1];
+  powers_.add(rule);
+  powers_.at[0] = powers_.at[rule.known - 1];
   stepped_ = incomplete_ = true;
   motion_->finish(v, w);
 }
@@ -171,8 +167,7 @@ void ElementStructure::accept(double* v, double* w, const std::vector<Reach>& lo
 }
 
 void ElementStructure::reject_step(double* v, double* w) {
-  dissipated_ = before_.dissipated;
-  worked_ = before_.worked;
+  powers_.sum = powers_.before;
   stepped_ = incomplete_ = false;
   const auto block = static_cast<std::ptrdiff_t>(statics_->block());
   auto from_v = before_.v.begin(), from_w = before_.w.begin();
@@ -188,8 +183,8 @@ void ElementStructure::reject_step(double* v, double* w) {
 void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) {
   if (stepped_) measure_dissipation(v, w);
   start_with(a);
-  powers_[0] = {};
-  if (!measured_between_steps()) powers_[0].dissipation = dissipation(w);
+  powers_.at[0] = {};
+  if (!measured_between_steps()) powers_.at[0].dissipation = dissipation(w);
   if (unmeasured_ > 0.0) measure_dissipation(v, w);
   to_measure_ = true;
   stepped_ = false;
@@ -222,11 +217,11 @@ void ElementStructure::start_with(const double* a) {
 void ElementStructure::add_dissipation(const BeamMotion::Dissipation& now) {
   const double trapezoid = 0.5 * unmeasured_ * (measured_.power + now.power);
   const double correction = unmeasured_ * unmeasured_ / 12.0 * (measured_.rate - now.rate);
-  dissipated_ += trapezoid;
+  powers_.sum.dissipation += trapezoid;
   if (motion_->proportional()) {
     double whole[2] = {trapezoid, correction};  // of all ranks, which decide alike
     MPI_Allreduce(MPI_IN_PLACE, whole, 2, MPI_DOUBLE, MPI_SUM, beam().comm());
-    if (std::abs(whole[1]) < std::abs(whole[0])) dissipated_ += correction;
+    if (std::abs(whole[1]) < std::abs(whole[0])) powers_.sum.dissipation += correction;
   }
   measured_ = now;
   unmeasured_ = 0.0;
@@ -246,7 +241,8 @@ void ElementStructure::measure_dissipation(const double* v, const double* w) {
 
 void ElementStructure::keep(base::Archive& archive) {
   if (motion_) archive.cut(motion_->start());
-  archive.sum(powers_[0].dissipation, powers_[0].work, dissipated_, worked_, measured_.power, measured_.rate);
+  archive.sum(powers_.at[0].dissipation, powers_.at[0].work, powers_.sum.dissipation, powers_.sum.work, measured_.power,
+              measured_.rate);
   archive.same(unmeasured_, measuring_, to_measure_, stepped_, incomplete_);
   if (window_) {
     window_->keep(archive);

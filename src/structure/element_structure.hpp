@@ -12,11 +12,8 @@
 // loads, and time steps exclude the ranges at rest (ActiveWindow).
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "structure/active_window.hpp"
@@ -114,14 +111,13 @@ class ElementStructure final : public MovingStructure {
   std::optional<ActiveWindow> window_;
   double longest_span_ = 0.0;                 // m
   std::vector<double> static_displacements_;  // deflections under the dead load only; empty: none
-  std::array<Powers, base::most_accelerations> powers_;
+  base::PowerIntegrals powers_;
   /// Integrals of this rank's powers, J. The measured dissipation is integrated up to `unmeasured_` s ago, when it was
   /// `measured_`.
-  double dissipated_ = 0.0, worked_ = 0.0, unmeasured_ = 0.0;
+  double unmeasured_ = 0.0;
   BeamMotion::Dissipation measured_;
   bool measuring_ = false, to_measure_ = true;
   struct {
-    double dissipated = 0.0, worked = 0.0;
     std::vector<double> v, w;  // values of the active ranges of the motion
   } before_;                   // state at the start of a step that may be rejected
   std::vector<Range> free_;    // nodes of parts without loads in the step

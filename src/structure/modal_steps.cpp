@@ -1,5 +1,6 @@
 // Stages and steps of a structure by modes, and its compliance in a stage.
 #include <algorithm>
+#include <tuple>
 
 #include "structure/modal_structure.hpp"
 
@@ -54,14 +55,8 @@ void ModalStructure::begin_stage(double shift, const double* c_v, const double* 
 void ModalStructure::begin_stage(std::size_t stage, const double* v, const double* w) {
   const base::StageRule& rule = method_.stages[stage];
   set_stage(rule.rate / rule.displacement, 1.0 / rule.displacement);
-  for (int i = 0; i < n_; ++i) {
-    v_predicted_[i] = v[i] + rule.w_in_v * w[i];
-    w_predicted_[i] = w[i];
-    for (int j = 0; j < rule.known; ++j) {
-      v_predicted_[i] += rule.a_in_v[j] * accelerations_[j][i];
-      w_predicted_[i] += rule.a_in_w[j] * accelerations_[j][i];
-    }
-  }
+  for (int i = 0; i < n_; ++i)
+    std::tie(v_predicted_[i], w_predicted_[i]) = base::advanced(rule, accelerations_, i, v[i], w[i]);
 }
 
 void ModalStructure::solve_free() {
@@ -152,7 +147,7 @@ void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const dou
     accelerations_[stage + 1][i] = shift2_ * z_[i];
     w_predicted_[i] += shift_ * z_[i];
   }
-  powers_[stage + 1] = powers(w_predicted_.data());
+  powers_.at[stage + 1] = powers(w_predicted_.data());
 }
 
 // --- steps ---------------------------------------------------------------------------------------------------------
@@ -172,41 +167,30 @@ void ModalStructure::restart(const std::vector<Reach>& /*loaded*/, double* /*v*/
     divide(q_.data(), z_.data());
     for (int i = 0; i < n_; ++i) accelerations_[0][i] += shift2_ * z_[i];
   }
-  powers_[0].dissipation = damping(w);
+  powers_.at[0].dissipation = damping(w);
 }
 
 void ModalStructure::begin_step(const std::vector<Reach>& /*loaded*/, const double* v, const double* w, bool store) {
-  before_.dissipated = dissipated_;
-  before_.worked = worked_;
+  powers_.before = powers_.sum;
   if (store) {
     before_.v.assign(v, v + n_);
     before_.w.assign(w, w + n_);
   }
-  powers_[0].work = work_rate(w);
+  powers_.at[0].work = work_rate(w);
 }
 
 void ModalStructure::finish_step(double* v, double* w) {
   const base::StepRule& rule = method_.step;
   for (int i = 0; i < n_; ++i) {
-    v[i] += rule.w_in_v * w[i];
-    double next = 0.0;
-    for (int j = 0; j < rule.known; ++j) {
-      v[i] += rule.a_in_v[j] * accelerations_[j][i];
-      w[i] += rule.a_in_w[j] * accelerations_[j][i];
-      next += rule.a_next[j] * accelerations_[j][i];
-    }
-    accelerations_[0][i] = next;
+    std::tie(v[i], w[i]) = base::advanced(rule, accelerations_, i, v[i], w[i]);
+    accelerations_[0][i] = base::combined(rule.a_next, rule.known, accelerations_, i);
   }
-  for (int j = 0; j < rule.known; ++j) {
-    dissipated_ += rule.power[j] * powers_[j].dissipation;
-    worked_ += rule.power[j] * powers_[j].work;
-  }
-  powers_[0] = powers_[rule.known - 1];
+  powers_.add(rule);
+  powers_.at[0] = powers_.at[rule.known - 1];
 }
 
 void ModalStructure::reject_step(double* v, double* w) {
-  dissipated_ = before_.dissipated;
-  worked_ = before_.worked;
+  powers_.sum = powers_.before;
   std::copy(before_.v.begin(), before_.v.end(), v);
   std::copy(before_.w.begin(), before_.w.end(), w);
 }
@@ -215,11 +199,8 @@ double ModalStructure::error_energy(const double* /*v*/, const double* /*w*/) {
   const base::StepRule& rule = method_.step;
   double energy = 0.0;
   for (int i = 0; i < n_; ++i) {
-    double error_of_v = 0.0, error_of_w = 0.0;
-    for (int j = 0; j < rule.known; ++j) {
-      error_of_v += rule.error_in_v[j] * accelerations_[j][i];
-      error_of_w += rule.error_in_w[j] * accelerations_[j][i];
-    }
+    const double error_of_v = base::combined(rule.error_in_v, rule.known, accelerations_, i);
+    const double error_of_w = base::combined(rule.error_in_w, rule.known, accelerations_, i);
     const double omega = bridge_.omega()[i];
     energy += 0.5 * (omega * omega * error_of_v * error_of_v + error_of_w * error_of_w);
   }

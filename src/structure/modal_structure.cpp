@@ -152,8 +152,8 @@ StructureEnergy ModalStructure::energy(const double* v, const double* w) {
     e.strain += 0.5 * omega * omega * v[i] * v[i] + weight_[i] * v[i];
     e.potential -= weight_[i] * v[i];
   }
-  e.dissipated = dissipated_;
-  e.work = worked_;
+  e.dissipated = powers_.sum.dissipation;
+  e.work = powers_.sum.work;
   return e;
 }
 

@@ -49,7 +49,7 @@ class ModalStructure final : public MovingStructure {
   void keep(base::Archive& archive) override {
     statics_->keep_static_error(archive);
     archive.cut(accelerations_[0]);
-    archive.sum(powers_[0].dissipation, powers_[0].work, dissipated_, worked_);
+    archive.sum(powers_.at[0].dissipation, powers_.at[0].work, powers_.sum.dissipation, powers_.sum.work);
   }
 
  private:
@@ -102,11 +102,9 @@ class ModalStructure final : public MovingStructure {
   ModalCompliance compliance_;
   base::Method method_;
   std::array<std::vector<double>, base::most_accelerations>
-      accelerations_;  // q'' at the start of the step and at its stages
-  std::array<Powers, base::most_accelerations> powers_;
-  double dissipated_ = 0.0, worked_ = 0.0;  // J, on the first rank
+      accelerations_;            // q'' at the start of the step and at its stages
+  base::PowerIntegrals powers_;  // on the first rank
   struct {
-    double dissipated = 0.0, worked = 0.0;
     std::vector<double> v, w;
   } before_;
   std::vector<double> q_, displacements_;  // modal forces, and modal displacements due to them

@@ -56,10 +56,7 @@ struct StructureEnergy {
   double dissipated = 0.0, work = 0.0;  // since the start of the motion
 };
 
-/// Power lost in damping, and power of the moving forces, W: a rank's share.
-struct Powers {
-  double dissipation = 0.0, work = 0.0;
-};
+using base::Powers;
 
 /// An accepted instant of a structure, as this rank's nodal values of the beam.
 struct NodalMotion {
