@@ -49,12 +49,10 @@ TRAVERSE_INLINE Touched closest(const TrainTask& task, const SurfacePatch& p, in
   };
   const Row radius = rows(task.radius)[i];
   Row s = within(Row{});
-  SurfacePoint at = point_at(f, s);
+  Point at = point_at(f, s);
   for (int step = 0; step < closest_steps; ++step) {
     const Row dx = across - at.x, dy = radius + (up - at.y);
-    const Row slope = dx * at.x_x + dy * at.y_x;
-    const Row derivative = at.x_x * at.x_x + at.y_x * at.y_x - dx * at.x_xx - dy * at.y_xx;
-    s = within(s + slope / derivative);
+    s = within(s + at.approach(dx, dy) / at.curvature(dx, dy));
     at = point_at(f, s);
   }
   const Row dx = across - at.x, e = up - at.y, dy = radius + e;
@@ -103,14 +101,14 @@ TRAVERSE_INLINE Touched on_ground(Row height, Row along, Row up) {
 template <Surface kind>
 TRAVERSE_INLINE ContactRow on_patch(const SurfacePatch& p, int i, const Touched& at) {
   const Row length = rows(p.length)[i], shear = rows(p.shear)[i];
-  const Shapes s = shapes_at<kind>(at.xi, length, shear);
+  const auto s = train::shapes_at<kind>(at.xi, length, shear);
   Row structure{};
   for (int a = 0, k = 0; a < 4; ++a) {
     Row sum{};
     for (int b = a; b < 4; ++b, ++k) sum += rows(p.compliance[k])[i] * s.value[b];
     structure += sum * s.value[a];
   }
-  const LocalCompliance local_compliance = local_compliance_at<kind>(at.xi, length, shear, rows(p.flexibility)[i]);
+  const auto local_compliance = train::local_compliance_at<kind>(at.xi, length, shear, rows(p.flexibility)[i]);
   return {at, structure, local_compliance.value, local_compliance.by_x};
 }
 
@@ -276,8 +274,8 @@ void for_wheels_on_elements(const TrainTask& task, Use use) {
       if (p.slot_order[i] == all_ground) continue;
       const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) * rows(p.per_length)[i];
       Row direction[most_nodal];
-      directions<kind>(task, xi, length, rows(p.shear)[i], task.turn + static_cast<long>(i) * lanes,
-                       rows(task.normal_up)[i], rows(task.normal_along)[i], direction);
+      train::directions<kind>(train::shapes_at<kind>(xi, length, rows(p.shear)[i]), task.per_node, task.surface_height,
+                              xi, rows(task.turn)[i], rows(task.normal_up)[i], rows(task.normal_along)[i], direction);
       use(i, patch, direction);
     }
 }

@@ -5,7 +5,7 @@
 //
 // v is the element's cubic. A force inside the element causes an additional deflection, the deflection of a beam
 // clamped at the nodes: h^3 xi^3 (1 - xi)^3/(3 EI) per newton at the force itself, and more with shear
-// (local_compliance_of). If it is included, it is condensed into the contact as a local compliance s in series with the
+// (local_compliance_at). If it is included, it is condensed into the contact as a local compliance s in series with the
 // law (contact::Law::local_compliance); it has no mass and therefore no unknowns. Its energy s f^2/2 changes along x
 // too: the wheel is driven by f^2/2 ds/dx, the component of f due to the slope of that deflection.
 #pragma once
