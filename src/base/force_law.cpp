@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-#include "traverse/base/error.hpp"
+#include "base/table_rows.hpp"
 
 namespace traverse::base {
 
@@ -26,20 +26,6 @@ std::string text(double value) {
 
 std::string point(double x, double y) { return text(y) + " at " + text(x); }
 
-void check_points(const std::vector<double>& x, const std::vector<double>& y) {
-  if (x.size() != y.size()) throw InputError("a table needs as many values as arguments");
-  if (x.size() < 2) throw InputError("a table needs at least two rows");
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) {
-      throw InputError("row " + std::to_string(i + 1) + " of the table is not a finite number");
-    }
-    if (i > 0 && !(x[i] > x[i - 1])) {
-      throw InputError("the first column must increase strictly: row " + std::to_string(i + 1) + " has " + text(x[i]) +
-                       " after " + text(x[i - 1]));
-    }
-  }
-}
-
 /// The elongation relative to the end of the loose range; 0 if the spring is loose.
 double engaged(const ForceLaw& law, double elongation) {
   if (elongation > law.gap && law.side != Side::compression) return elongation - law.gap;
@@ -50,7 +36,7 @@ double engaged(const ForceLaw& law, double elongation) {
 }  // namespace
 
 Polyline::Polyline(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)) {
-  check_points(x_, y_);
+  check_rows(x_, y_, "a table");
   area_ = {0.0};
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
     const double width = x_[i + 1] - x_[i];

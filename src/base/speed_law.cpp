@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/table_rows.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::base {
@@ -25,12 +26,6 @@ double direction_of(const std::vector<double>& speeds) {
   return *greatest > 0.0 ? 1.0 : -1.0;
 }
 
-void check_rows(const std::vector<double>& x, const std::vector<double>& speeds) {
-  if (x.size() != speeds.size() || x.size() < 2) throw InputError("a table of speeds needs at least two rows");
-  for (std::size_t i = 0; i + 1 < x.size(); ++i)
-    if (!(x[i + 1] > x[i])) throw InputError("the first column of a table of speeds must rise strictly");
-}
-
 /// The smallest s above 0 with v s + a/2 s^2 = d, for d, v not below 0 and at least one of v, a above 0; infinite if
 /// there is none.
 double time_for(double d, double v, double a) {
@@ -41,7 +36,7 @@ double time_for(double d, double v, double a) {
 }  // namespace
 
 SpeedLaw SpeedLaw::over_time(std::vector<double> times, std::vector<double> speeds) {
-  check_rows(times, speeds);
+  check_rows(times, speeds, "a table of speeds");
   direction_of(speeds);
   SpeedLaw law;
   law.distance_ = TimeFunction::integral(0.0, std::move(times), std::move(speeds));
@@ -50,7 +45,7 @@ SpeedLaw SpeedLaw::over_time(std::vector<double> times, std::vector<double> spee
 }
 
 SpeedLaw SpeedLaw::over_place(std::vector<double> places, std::vector<double> speeds, double start) {
-  check_rows(places, speeds);
+  check_rows(places, speeds, "a table of speeds");
   const double direction = direction_of(speeds);
   for (std::size_t i = 0; i + 1 < speeds.size(); ++i)
     if (speeds[i] == 0.0 && speeds[i + 1] == 0.0)

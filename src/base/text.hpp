@@ -1,8 +1,10 @@
-// Texts that are concatenated at compile time, from the rows of a table, and lengths of UTF-8 characters.
+// Texts that are concatenated at compile time, from the rows of a table, words without blanks around them, and lengths
+// of UTF-8 characters.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace traverse::base {
@@ -38,6 +40,13 @@ constexpr StaticText joined_names(const Rows& rows, std::string_view separator) 
     text.add(row.name);
   }
   return text;
+}
+
+/// The text without blanks, tabs and ends of lines around it.
+inline std::string trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blanks);
+  return first == text.npos ? "" : std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
 }
 
 /// The number of bytes of the UTF-8 character that starts at `at`; 0 if no valid character starts there.

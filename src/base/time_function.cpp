@@ -11,28 +11,12 @@
 #include <utility>
 
 #include "base/spline.hpp"
+#include "base/table_rows.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::base {
 
 namespace {
-
-void check_table(const std::vector<double>& times, const std::vector<double>& values) {
-  if (times.size() != values.size()) {
-    throw InputError("a table over time needs as many values as times, it has " + std::to_string(times.size()) +
-                     " times and " + std::to_string(values.size()) + " values");
-  }
-  if (times.size() < 2) throw InputError("a table over time needs at least two rows");
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (!std::isfinite(times[i]) || !std::isfinite(values[i])) {
-      throw InputError("row " + std::to_string(i + 1) + " of a table over time is not a finite number");
-    }
-    if (i > 0 && !(times[i] > times[i - 1])) {
-      throw InputError("the times of a table must increase strictly: row " + std::to_string(i + 1) + " has " +
-                       std::to_string(times[i]) + " after " + std::to_string(times[i - 1]));
-    }
-  }
-}
 
 constexpr double rounding = 1e-12;     // relative to the terms of a rate
 constexpr double least_rate = 0.01;    // of a moving end, relative to the greatest rate
@@ -51,7 +35,7 @@ TimeFunction TimeFunction::table(std::vector<double> times) {
 }
 
 TimeFunction::TimeFunction(std::vector<double> times, std::vector<double> values) {
-  check_table(times, values);
+  check_rows(times, values, "a table over time");
   *this = table(std::move(times));
   const std::size_t last = times_.size() - 1;
   set_spline(values, {});
@@ -105,7 +89,7 @@ void TimeFunction::check_overshoot() const {
 }
 
 TimeFunction TimeFunction::piecewise_linear(std::vector<double> times, std::vector<double> values) {
-  check_table(times, values);
+  check_rows(times, values, "a table over time");
   TimeFunction f = table(std::move(times));
   f.pieces_.push_back({f.times_.front(), values.front()});
   for (std::size_t k = 0; k + 1 < f.times_.size(); ++k)
@@ -115,7 +99,7 @@ TimeFunction TimeFunction::piecewise_linear(std::vector<double> times, std::vect
 }
 
 TimeFunction TimeFunction::integral(double value, std::vector<double> times, std::vector<double> rates) {
-  check_table(times, rates);
+  check_rows(times, rates, "a table over time");
   TimeFunction f = table(std::move(times));
   f.pieces_.push_back({f.times_.front(), 0.0, rates.front()});
   for (std::size_t k = 0; k + 1 < f.times_.size(); ++k) {
@@ -128,7 +112,7 @@ TimeFunction TimeFunction::integral(double value, std::vector<double> times, std
 }
 
 TimeFunction TimeFunction::second_integral(std::vector<double> times, std::vector<double> accelerations) {
-  check_table(times, accelerations);
+  check_rows(times, accelerations, "a table over time");
   TimeFunction f = table(std::move(times));
   f.pieces_.push_back({f.times_.front()});
   for (std::size_t k = 0; k + 1 < f.times_.size(); ++k) {

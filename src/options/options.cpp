@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "base/text.hpp"
 #include "options/data_file.hpp"
 #include "options/limits.hpp"
 #include "options/read_file.hpp"
@@ -18,22 +19,16 @@
 namespace traverse::options {
 namespace {
 
-std::string trim(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";  // YAML's text blocks end with a line break
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
-}
-
 /// The words of a comma list without the brackets around it.
 std::vector<std::string> split(const std::string& value) {
-  std::string text = trim(value);
-  if (text.size() >= 2 && text.front() == '[' && text.back() == ']') text = trim(text.substr(1, text.size() - 2));
+  std::string text = base::trimmed(value);
+  if (text.size() >= 2 && text.front() == '[' && text.back() == ']')
+    text = base::trimmed(text.substr(1, text.size() - 2));
   std::vector<std::string> words;
   if (text.empty()) return words;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
-    words.push_back(trim(std::string_view(text).substr(begin, end - begin)));
+    words.push_back(base::trimmed(std::string_view(text).substr(begin, end - begin)));
     begin = end + 1;
   }
   return words;
@@ -51,9 +46,15 @@ std::string why_not_a_number(const std::string& word, const Row& row) {
     return " (expected one number, not a list)";
   }
   const std::size_t end = word.find_first_not_of("+-.0123456789eE");
-  if (end == std::string::npos || row.unit.empty() || !parse_number(word.substr(0, end), number)) return "";
+  if (end == std::string::npos || row.unit.empty() || row.unit == "1" || !parse_number(word.substr(0, end), number))
+    return "";
   if (row.unit == "m/s") return " (give a speed in m/s, or in km/h as in 100 km/h)";
   return fmt::format(" (give the number without its unit, in {})", row.unit);
+}
+
+bool is_choice(const Row& row, std::string_view word) {
+  return word.find(' ') == std::string_view::npos &&
+         fmt::format(" {} ", row.choices).find(fmt::format(" {} ", word)) != std::string::npos;
 }
 
 /// Whether a default is empty or a remark in brackets, which is not a value.
@@ -126,6 +127,17 @@ std::string Options::nearest_known(const std::string& name) const {
   return nearest(name, candidates);  // the first of the table among equally near ones
 }
 
+void Options::check_known(std::string_view name, const std::string& other) const {
+  if (knows(other)) return;
+  const std::string near = nearest_known(other);
+  refuse(name,
+         fmt::format("there is no option {}{}", other, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+}
+
+void Options::check_at_most(std::string_view name, double count, double most, std::string_view what) const {
+  if (!(count <= most)) refuse(name, fmt::format("{:.6g} {}; allowed: at most {:g}", count, what, most));
+}
+
 void Options::check_names() const {
   for (const Entry& entry : entries_) {
     if (knows(entry.name)) continue;
@@ -149,15 +161,13 @@ void Options::check_value(const Entry& entry, const Row& row) const {
   if (row.kind != Kind::flag && row.kind != Kind::texts && split(entry.value).empty()) {
     refuse(name, "has no value; allowed: " + allowed(row));
   }
-  if (row.kind == Kind::texts && entry.from_file() && trim(entry.value).empty()) {
+  if (row.kind == Kind::texts && entry.from_file() && base::trimmed(entry.value).empty()) {
     refuse(name, "has no value; allowed: " + allowed(row) + ", or [] for none");
   }
   switch (row.kind) {
     case Kind::number:
-      (void)number(name);
-      break;
     case Kind::integer:
-      (void)integer(name);
+      if (!is_choice(row, base::trimmed(entry.value))) (void)(row.kind == Kind::number ? number(name) : integer(name));
       break;
     case Kind::flag:
       (void)flag(name);
@@ -194,7 +204,7 @@ void Options::refuse(std::string_view name, const std::string& why) const {
 std::string Options::value_or_default(std::string_view name) const {
   const Row& known = row(name);
   if (const Entry* entry = entries_.find(name)) {
-    std::string value = trim(entry->value);
+    std::string value = base::trimmed(entry->value);
     if (value.empty() && known.kind != Kind::flag) refuse(name, "has no value; allowed: " + allowed(known));
     return value;
   }
@@ -213,7 +223,7 @@ std::vector<std::string> Options::list(std::string_view name) const {
     const std::size_t star = word.rfind('*');
     std::size_t count = 1;
     if (star != std::string::npos) {
-      const std::string digits = trim(word.substr(star + 1));
+      const std::string digits = base::trimmed(word.substr(star + 1));
       const auto [stop, code] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
       if (code == std::errc::result_out_of_range) count = std::numeric_limits<std::size_t>::max();
       if ((code != std::errc() && code != std::errc::result_out_of_range) || stop != digits.data() + digits.size() ||
@@ -221,22 +231,32 @@ std::vector<std::string> Options::list(std::string_view name) const {
         refuse(name, fmt::format("'{}': after * there must be a whole number, the number of repetitions", word));
       }
     }
-    const std::string value = trim(word.substr(0, star));
+    const std::string value = base::trimmed(word.substr(0, star));
     if (value.empty()) refuse(name, "has an empty entry; allowed: " + allowed(known));
     if (count > most || expanded.size() + count > most)
       refuse(name, fmt::format("has too many entries; allowed: at most {}", most));
     expanded.insert(expanded.end(), count, value);
   }
+  if (known.count > 0 && expanded.size() != static_cast<std::size_t>(known.count))
+    refuse(name, fmt::format("has {} entries; allowed: {}", expanded.size(), allowed(known)));
   return expanded;
 }
 
-double Options::to_number(std::string_view name, const std::string& word) const {
+double Options::to_quantity(std::string_view name, const std::string& word, const Row& known) const {
   double value = 0.0;
-  const Row& known = row(name);
   if (!(known.unit == "m/s" ? parse_speed(word, value) : parse_number(word, value))) {
     refuse(name, fmt::format("'{}' is not a finite number{}; allowed: {}", word, why_not_a_number(word, known),
                              allowed(known)));
   }
+  if (!is_quantity(value))
+    refuse(name, fmt::format("'{}' is not a possible quantity in SI units; allowed: 0, or {:g} to {:g} in magnitude",
+                             word, least_quantity, greatest_quantity));
+  return value;
+}
+
+double Options::to_number(std::string_view name, const std::string& word) const {
+  const Row& known = row(name);
+  const double value = to_quantity(name, word, known);
   if (!known.range.contains(value))
     refuse(name,
            known.kind == Kind::numbers
@@ -244,9 +264,6 @@ double Options::to_number(std::string_view name, const std::string& word) const 
                              "need a point",
                              word, allowed(known))
                : "allowed: " + allowed(known));
-  if (!is_quantity(value))
-    refuse(name, fmt::format("'{}' is not a possible quantity in SI units; allowed: 0, or {:g} to {:g} in magnitude",
-                             word, least_quantity, greatest_quantity));
   return value;
 }
 
@@ -276,48 +293,44 @@ bool Options::flag(std::string_view name) const {
 std::string Options::text(std::string_view name) const {
   std::string value = value_or_default(name);
   const Row& known = row(name);
-  if (known.kind == Kind::choice &&
-      (" " + std::string(known.choices) + " ").find(" " + value + " ") == std::string::npos) {
-    refuse(name, "allowed: " + allowed(known));
-  }
+  if (known.kind == Kind::choice && !is_choice(known, value)) refuse(name, "allowed: " + allowed(known));
   return value;
 }
 
 std::vector<double> Options::numbers(std::string_view name) const {
   std::vector<double> values;
   for (const std::string& word : list(name)) values.push_back(to_number(name, word));
-  const Row& known = row(name);
-  if (known.count > 0 && values.size() != static_cast<std::size_t>(known.count)) {
-    refuse(name, fmt::format("has {} entries; allowed: {}", values.size(), allowed(known)));
-  }
   return values;
 }
 
 std::vector<int> Options::integers(std::string_view name) const {
   std::vector<int> values;
   for (const std::string& word : list(name)) values.push_back(to_integer(name, word));
+  check_once(name, values);
   return values;
 }
 
 std::vector<std::string> Options::texts(std::string_view name) const {
   std::vector<std::string> words = list(name);
   const Row& known = row(name);
-  if (known.kind == Kind::choice_list) {
-    for (const std::string& word : words) {
-      if ((" " + std::string(known.choices) + " ").find(" " + word + " ") == std::string::npos) {
-        refuse(name, fmt::format("'{}' is not allowed; allowed: {}", word, allowed(known)));
-      }
-    }
-  }
-  if (known.count > 0 && words.size() != static_cast<std::size_t>(known.count)) {
-    refuse(name, fmt::format("has {} entries; allowed: {}", words.size(), allowed(known)));
-  }
+  if (known.kind == Kind::choice_list)
+    for (const std::string& word : words)
+      if (!is_choice(known, word)) refuse(name, fmt::format("'{}' is not allowed; allowed: {}", word, allowed(known)));
+  check_once(name, words);
   return words;
 }
 
 std::optional<double> Options::optional_number(std::string_view name) const {
-  if (!has(name)) return std::nullopt;
+  if (!has(name) || is_choice(row(name), value_or_default(name))) return std::nullopt;
   return number(name);
+}
+
+template <class T>
+void Options::check_once(std::string_view name, const std::vector<T>& values) const {
+  if (!row(name).once) return;
+  for (auto value = values.begin(); value != values.end(); ++value)
+    if (std::find(values.begin(), value, *value) != value)
+      refuse(name, fmt::format("has '{}' twice; allowed: each once", *value));
 }
 
 template <class T>

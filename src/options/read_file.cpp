@@ -13,6 +13,7 @@
 #include <memory>
 #include <sstream>
 
+#include "base/text.hpp"
 #include "options/input_texts.hpp"
 #include "traverse/base/error.hpp"
 
@@ -175,9 +176,7 @@ std::vector<std::string> names_in(const Entry& entry) {
   if (entry.value == "[]") return names;
   std::istringstream list(entry.value);
   for (std::string name; std::getline(list, name, ',');) {
-    const std::size_t first = name.find_first_not_of(" \t");
-    if (first == std::string::npos) continue;
-    names.push_back(name.substr(first, name.find_last_not_of(" \t") - first + 1));
+    if (std::string plain = base::trimmed(name); !plain.empty()) names.push_back(std::move(plain));
   }
   if (names.empty())
     throw InputError("options_file (" + entry.where() + "): has no value; allowed: the name of a file, or [] for none");

@@ -13,6 +13,11 @@ bool is_list(Kind kind) {
   return kind == Kind::numbers || kind == Kind::integers || kind == Kind::texts || kind == Kind::choice_list;
 }
 
+/// Whether a number may be replaced by a word.
+bool has_words(const Row& row) {
+  return (row.kind == Kind::number || row.kind == Kind::integer) && !row.choices.empty();
+}
+
 std::string range_text(const Range& range) {
   const bool low = range.low > any.low, high = range.high < any.high;
   if (low && high && range.above) return fmt::format("above {:g}, at most {:g}", range.low, range.high);
@@ -89,9 +94,10 @@ int distance_to_words(std::string_view name, std::string_view candidate) {
   return least;
 }
 
-std::string replace_blanks(std::string_view words) {
+/// The words with another separator than a blank.
+std::string joined(std::string_view words, std::string_view separator) {
   std::string out;
-  for (const char c : words) out += c == ' ' ? std::string(", ") : std::string(1, c);
+  for (const char c : words) out += c == ' ' ? separator : std::string_view(&c, 1);
   return out;
 }
 
@@ -104,20 +110,22 @@ const Row* find_row(std::span<const Row> rows, std::string_view name) {
 
 std::string allowed(const Row& row) {
   std::string words = kind_text(row);
-  if (row.kind == Kind::choice || row.kind == Kind::choice_list) words += " " + replace_blanks(row.choices);
+  if (row.kind == Kind::choice || row.kind == Kind::choice_list) words += " " + joined(row.choices, ", ");
   const std::string range = range_text(row.range);
   if (!range.empty()) words += (is_list(row.kind) ? ", each " : " ") + range;
   if (!row.unit.empty() && row.unit != "1") words += fmt::format(" ({})", row.unit);
+  if (has_words(row)) words += ", or " + joined(row.choices, ", or ");
   return words;
 }
 
 std::string allowed_in_short(const Row& row) {
   const bool choice = row.kind == Kind::choice || row.kind == Kind::choice_list;
-  std::string words = choice                             ? replace_blanks(row.choices)
+  std::string words = choice                             ? joined(row.choices, ", ")
                       : row.kind == Kind::number_or_file ? "number or file"
                       : row.kind == Kind::flag           ? "true, false"
                       : row.name == "help"               ? ""
                                                          : kind_text(row);
+  if (has_words(row)) words += " or " + joined(row.choices, " or ");
   if (!row.unit.empty() && row.unit != "1") words += fmt::format(" [{}]", row.unit);
   const std::string range = range_text(row.range);
   if (!range.empty()) words += ", " + range;

@@ -178,16 +178,16 @@ constexpr Row later_rows[] = {
   {"accuracy_report", flag, "", "false", any, "", 0, "runs the scene again with a refined model and shows estimated and true errors"},
 
   {"model_axial", choice, "", "auto", any, "auto true false", 0, "axial unknowns of the beam; auto: if there is longitudinal action"},
-  {"model_modes", text, "", "auto", any, "", 0, "number of natural modes that represent the bridge, exact in time under moving forces alone; 0: elements; auto: modes with model_damping_bound, and in sweeps of forces if they are accurate enough"},
+  {"model_modes", integer, "", "auto", {0, 100000}, "auto", 0, "number of natural modes that represent the bridge, exact in time under moving forces alone; 0: elements; auto: modes with model_damping_bound, and in sweeps of forces if they are accurate enough"},
   {"model_damping_ratios", numbers, "1", "(Rayleigh damping)", {0.0, 0.999}, "", 0, "damping ratio of each mode of model_modes; one value applies to all"},
   {"model_damping_bound", choice, "", "", any, "steel composite prestressed reinforced filler_beam", 0, "damping ratio of each mode: lower bound of EN 1991-2, table 6.6, for this kind of bridge and the longest span; modes represent the bridge then, unless model_modes is 0 or the scene needs elements"},
   {"model_additional_damping", flag, "", "false", any, "", 0, "adds the additional damping of EN 1991-2, 6.4.6.4, for vehicles on spans below 30 m to model_damping_bound"},
   {"model_vehicles", choice, "", "auto", any, "auto full linear", 0, "model of the vehicles; full: mechanisms; linear: constant matrices about the initial state where possible, exact up to squares of angles; auto: linear if the trial runs of accuracy find it sufficient"},
-  {"model_window", text, "", "auto", any, "", 0, "parts of the bridge that move less than this fraction of the largest motion are excluded from the steps; auto: 1e-9 for separate spans; 0: none"},
+  {"model_window", number, "1", "auto", {0.0, 0.1}, "auto", 0, "parts of the bridge that move less than this fraction of the largest motion are excluded from the steps; auto: 1e-9 for separate spans; 0: none"},
 
   {"limits", file, "", "", any, "", 0, "a file of limits, such as options/limits/en1990.yml; the run is checked against them at its end"},
 
-  {"norm_load_models", choice_list, "", "(lm71 if limits need it)", any, names_of_load_models, 0, "static effects of these load models of EN 1991-2 along the bridge; lm71 and a train: also the check of 6.4.6.5, with sw0 on continuous bridges"},
+  {"norm_load_models", choice_list, "", "(lm71 if limits need it)", any, names_of_load_models, 0, "static effects of these load models of EN 1991-2 along the bridge; lm71 and a train: also the check of 6.4.6.5, with sw0 on continuous bridges", true},
   {"norm_alpha", number, "1", "1", {0.1, 10.0}, "", 0, "classification factor of LM71 and SW/0, EN 1991-2 6.3.2"},
   {"norm_track", choice, "", "standard", any, "standard careful", 0, "maintenance of the track; standard: Phi3; careful: Phi2 of EN 1991-2 6.4.5.2"},
   {"norm_length", number, "m", "(from the spans)", positive, "", 0, "determinant length L_Phi of EN 1991-2 6.4.5.3"},
@@ -216,7 +216,7 @@ constexpr Row later_rows[] = {
   {"output_interval", number, "s", "(from the step)", positive, "", 0, "time between stored samples"},
   {"output_probes", numbers, "m", "(midspan of the first 200 spans)", not_negative, "", 0, "stations on the beam at which the response is stored"},
   {"output_probes_spacing", number, "m", "", positive, "", 0, "largest distance of further stations, evenly within each span and at its ends, in addition to output_probes"},
-  {"output_lowpass", text, "Hz", "auto", any, "", 0, "cut-off frequency of the low-pass for deck accelerations; auto: max(30 Hz, 1.5 f1, f3); none: no filter; the unfiltered peak is always stored, the filtered one if this option, output_lowpass_series or limits need it"},
+  {"output_lowpass", number, "Hz", "auto", {0.0, 1e6, true}, "auto none", 0, "cut-off frequency of the low-pass for deck accelerations; auto: max(30 Hz, 1.5 f1, f3); none: no filter; the unfiltered peak is always stored, the filtered one if this option, output_lowpass_series or limits need it"},
   {"output_lowpass_series", flag, "", "false", any, "", 0, "also stores the filtered accelerations over time"},
   {"output_wheel_lowpass", number, "Hz", "20", {1.0, 1e6}, "", 0, "cut-off frequency of the low-pass for wheel forces in limits; if given, a single run also reports the wheel unloading without and with this filter"},
   {"output_passages", numbers, "m", "", any, "", 0, "places along the track at which time, speed and force of each passing wheel are stored, as scales in a track measure them"},
@@ -243,7 +243,7 @@ constexpr Row later_rows[] = {
   {"output_quiet", flag, "", "false", any, "", 0, "no progress display on the terminal"},
 
   {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step; each may be in km/h; a train or load with the speed 0 stands"},
-  {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "runs the scene with each of these trains A1 to A10 of EN 1991-2"},
+  {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "runs the scene with each of these trains A1 to A10 of EN 1991-2", true},
   {"sweep_refine", number, "1", "(with limits: where a limit may be exceeded between two speeds)", tolerance_or_none, "", 0, "adds speeds near the peaks until the peaks of each train over the speed have this relative accuracy; 0: only the given speeds"},
   {"sweep_lanes", choice, "", "8", any, "0 1 4 8", 0, "largest number of runs that are computed together in SIMD lanes; 0: each run separately with TS"},
   {"sweep_instants", number, "", "20", {4.0, 1e4}, "", 0, "samples per period of the fastest mode if the modes are exact in time; peaks between samples are interpolated by parabolas"},

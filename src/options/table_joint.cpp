@@ -60,7 +60,7 @@ std::vector<Row> make_coupler_rows() {
   return {
     {"type", choice, "", "spring", any, types, 0, "type of the connection between two neighbouring vehicles"},
     {"bodies", texts, "", "", any, "", 2, "a body of the front vehicle, then a body of the rear vehicle"},
-    {"after", integers, "", "(all but the last)", {0, 100000}, "", 0, "the vehicles behind which this coupler is, counted from 0"},
+    {"after", integers, "", "(all but the last)", {0, 100000}, "", 0, "the vehicles behind which this coupler is, counted from 0", true},
     {"point", numbers, "m", "", any, "", 2, with_types(has_point, "x, y at t = 0, relative to the front vehicle's origin")},
     {"axis", numbers, "1", "", any, "", 2, with_types(has_axis, "direction of the axis, fixed in the front vehicle's body")},
     {"from", numbers, "m", "", any, "", 2, with_types(has_ends, "x, y on the front vehicle's body, relative to its origin", "spring, ")},

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "base/text.hpp"
 #include "options/data_file.hpp"
 #include "options/input_texts.hpp"
 #include "results/origin.hpp"
@@ -21,15 +22,10 @@ namespace {
 
 constexpr std::size_t most_given_modes = 10'000, most_shape_stations = 100'000, most_characters = std::size_t{1} << 30;
 
-std::string trimmed(const std::string& text) {
-  const std::size_t from = text.find_first_not_of(" \t\r"), past = text.find_last_not_of(" \t\r");
-  return from == std::string::npos ? "" : text.substr(from, past - from + 1);
-}
-
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream stream(line.substr(0, line.find('#')));
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(trimmed(cell));
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(base::trimmed(cell));
   if (cells.size() == 1 && cells.front().empty()) cells.clear();
   return cells;
 }
@@ -98,29 +94,31 @@ class ModesParser {
     parse_station(cells);
   }
 
+  /// Checks that the number of each mode is above 0, or not below 0 if `zero` is allowed.
+  void check_each(const std::vector<double>& values, const char* what, const char* unit, bool zero) const {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (!(zero ? values[i] >= 0.0 : values[i] > 0.0))
+        refuse(fmt::format("the {} of mode {} is {:g}{}; allowed: {} 0", what, i + 1, values[i], unit,
+                           zero ? "not below" : "above"));
+  }
+
   void parse_frequencies(const std::vector<std::string>& cells) {
     if (!frequency_.empty()) refuse("frequency is given twice");
     frequency_ = numbers(cells, 1);
     if (frequency_.empty() || frequency_.size() > most_given_modes)
       refuse(fmt::format("frequency has {} numbers; allowed: 1 to {}", frequency_.size(), most_given_modes));
-    for (std::size_t i = 0; i < frequency_.size(); ++i)
-      if (!(frequency_[i] > 0.0))
-        refuse(fmt::format("the frequency of mode {} is {:g} Hz; allowed: above 0", i + 1, frequency_[i]));
+    check_each(frequency_, "frequency", " Hz", false);
   }
 
   void parse_masses(const std::vector<std::string>& cells) {
     mass_ = modal_numbers(cells, 1);
-    for (std::size_t i = 0; i < mass_.size(); ++i)
-      if (!(mass_[i] > 0.0))
-        refuse(fmt::format("the modal mass of mode {} is {:g} kg; allowed: above 0", i + 1, mass_[i]));
+    check_each(mass_, "modal mass", " kg", false);
   }
 
   void parse_ratios(const std::vector<std::string>& cells) {
     ratio_ = cells.size() == 2 && !frequency_.empty() ? std::vector<double>(frequency_.size(), number(cells[1]))
                                                       : modal_numbers(cells, 1);
-    for (std::size_t i = 0; i < ratio_.size(); ++i)
-      if (!(ratio_[i] >= 0.0))
-        refuse(fmt::format("the damping ratio of mode {} is {:g}; allowed: not below 0", i + 1, ratio_[i]));
+    check_each(ratio_, "damping ratio", "", true);
     const auto lowest = std::min_element(frequency_.begin(), frequency_.end()) - frequency_.begin();
     if (const double first = ratio_[static_cast<std::size_t>(lowest)]; first >= 1.0)
       refuse(fmt::format(
@@ -177,9 +175,11 @@ class ModesParser {
   }
 
   void check_complete() const {
-    if (frequency_.empty()) refuse_file("the line frequency is missing: the frequencies of the modes in Hz");
-    if (mass_.empty()) refuse_file("the line modal_mass is missing: the masses of the modes in kg");
-    if (ratio_.empty()) refuse_file("the line damping_ratio is missing");
+    for (const auto& [numbers, line] :
+         {std::pair(&frequency_, "frequency is missing: the frequencies of the modes in Hz"),
+          {&mass_, "modal_mass is missing: the masses of the modes in kg"},
+          {&ratio_, "damping_ratio is missing: the damping ratios of the modes"}})
+      if (numbers->empty()) refuse_file(fmt::format("the line {}", line));
     const int tracks = std::max(tracks_, 1);
     if (track_ > tracks)
       refuse_file(fmt::format("bridge_track is {}; the file has {} track{}", track_, tracks, tracks == 1 ? "" : "s"));

@@ -57,10 +57,7 @@ std::string option_of_mesh(const options::Options& o, const Scene& scene) {
 }
 
 void check_elements(const options::Options& o, const Scene& scene) {
-  const double elements = elements_of(*scene.beam);
-  if (!(elements <= most_elements))
-    o.refuse(option_of_mesh(o, scene),
-             fmt::format("{:.3g} elements in total; allowed: at most {:g}", elements, most_elements));
+  o.check_at_most(option_of_mesh(o, scene), elements_of(*scene.beam), most_elements, "elements in total");
 }
 
 Need mesh(const Scene& scene) {
@@ -87,11 +84,8 @@ double runs_of(const Sweep& sweep) {
 std::string option_of(const Sweep& sweep) { return sweep.speeds.empty() ? "sweep_hslm_a" : "sweep_speed"; }
 
 void check_peaks(const options::Options& o, const Scene& scene) {
-  const double runs = runs_of(*scene.sweep), probes = static_cast<double>(scene.output.probes.size());
-  if (runs * probes > most_peaks)
-    o.refuse(option_of(*scene.sweep),
-             fmt::format("{:.3g} runs with {} probes each; allowed: at most {:g} runs times probes", runs, probes,
-                         most_peaks));
+  const double probes = static_cast<double>(scene.output.probes.size());
+  o.check_at_most(option_of(*scene.sweep), runs_of(*scene.sweep) * probes, most_peaks, "runs times probes");
 }
 
 Need sweep(const Scene& scene) {

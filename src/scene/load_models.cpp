@@ -8,9 +8,6 @@
 #include <array>
 #include <iterator>
 
-#include "options/data_file.hpp"
-#include "traverse/base/error.hpp"
-
 namespace traverse::scene {
 namespace {
 
@@ -82,8 +79,7 @@ AxleList en15528(std::string_view line, int wagons) {
   return axles;
 }
 
-AxleList read_axles(const std::string& path, bool backward) {
-  const std::vector<std::vector<double>> columns = options::read_columns(path, 2, 2);
+AxleList axles_of(const std::vector<std::vector<double>>& columns, bool backward) {
   AxleList axles{columns[1], columns[0]};
   if (backward)
     for (double& offset : axles.offsets) offset = -offset;

@@ -22,8 +22,7 @@ AxleList hslm_b(int forces, double distance);
 /// A number of reference wagons of a line category of EN 15528, annex A: four axles, 9.81 m/s2.
 AxleList en15528(std::string_view line, int wagons);
 
-/// The forces of a file with two columns: x in m, growing in the travel direction or `backward`, and force in N. Throws
-/// InputError.
-AxleList read_axles(const std::string& path, bool backward);
+/// The forces of two columns: x in m, growing in the travel direction or `backward`, and force in N.
+AxleList axles_of(const std::vector<std::vector<double>>& columns, bool backward);
 
 }  // namespace traverse::scene

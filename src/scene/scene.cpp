@@ -10,6 +10,7 @@
 
 #include "limits.hpp"
 #include "options/read_verdict_limits.hpp"
+#include "options/relations.hpp"
 #include "scene_parts.hpp"
 #include "train/wheel_paths.hpp"
 #include "traverse/base/error.hpp"
@@ -18,21 +19,7 @@
 namespace traverse::scene {
 namespace {
 
-using options::Options;
-
-constexpr double largest_window_tolerance = 0.1;
-
-/// The relative motion below which parts of the bridge are excluded from the time steps; -1: automatic.
-double read_window(const Options& o) {
-  const std::string value = o.text("model_window");
-  if (value == "auto") return -1.0;
-  char* end = nullptr;
-  const double fraction = std::strtod(value.c_str(), &end);
-  if (value.empty() || *end != 0 || !(fraction >= 0.0 && fraction <= largest_window_tolerance))
-    o.refuse("model_window",
-             fmt::format("allowed: auto, 0, or a fraction of the largest motion up to {:g}", largest_window_tolerance));
-  return fraction;
-}
+using options::Options, options::Related;
 
 void read_run(const Options& o, Scene& scene) {
   scene.gravity = o.number("gravity");
@@ -50,7 +37,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.model.step_kinks = o.flag("step_kinks");
   scene.model.step_probes = o.flag("step_probes");
   scene.all_ranks = o.choice("step_ranks") == "all";
-  scene.model.window_tolerance = read_window(o);
+  scene.model.window_tolerance = o.optional_number("model_window").value_or(-1.0);
   const std::string vehicles = o.choice("model_vehicles");
   scene.model.vehicles = vehicles == "linear" ? VehicleModel::linear
                          : vehicles == "auto" ? VehicleModel::automatic
@@ -124,17 +111,6 @@ void check_end(const Options& o, const Scene& scene) {
 void check_scene(const Options& o, Scene& scene) {
   if (!scene.beam && scene.vehicles.empty() && !scene.screen) {
     throw InputError("nothing to simulate: neither a beam (beam_spans) nor vehicles (train_vehicles) are given");
-  }
-  if (scene.analysis == Analysis::modes && !scene.beam) o.refuse("scene_analysis", "modes need a beam (beam_spans)");
-  if (scene.vehicles.empty()) {
-    for (const char* name : {"train_positions", "train_spacing", "train_drive"}) {
-      if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: there are no train_vehicles");
-    }
-  }
-  if (scene.load.forces.empty()) {
-    for (const char* name : {"load_positions", "load_speed"}) {
-      if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: there are no load_forces");
-    }
   }
   if (scene.sweep && !scene.sweep->speeds.empty() && greatest_speed(scene) == 0.0)
     o.refuse("sweep_speed", "nothing moves, because the speed that is given for it is 0");
@@ -223,14 +199,31 @@ NamedVehicles declare_parts(Options& o) {
   return vehicles;
 }
 
+void check_options(const Options& o) {
+  o.check_names();
+  o.check_values();
+  check_relations(o, Related::study);
+}
+
 namespace {
+
+/// Checks the relations between the options of one run, and adds a note on each option without effect.
+void check_scene_options(const Options& o, std::vector<std::string>& notes) {
+  const auto check = [&](Related related, const std::string& block) {
+    for (std::string& note : check_relations(o, related, block)) notes.push_back(std::move(note));
+  };
+  check(Related::scene, "");
+  for (const char* list : {"trains", "loads"})
+    for (const Block& block : blocks_of(o, list)) check(Related::course, block.option(""));
+  for (const Block& block : blocks_of(o, "loads")) check(Related::load, block.option(""));
+}
 
 /// A scene that is neither a study nor a fit.
 Scene read_one_scene(Options o) {
   Scene scene;
   const NamedVehicles vehicles = declare_parts(o);
-  o.check_names();
-  o.check_values();
+  check_options(o);
+  check_scene_options(o, scene.notes);
   read_run(o, scene);
   read_beam(o, scene);
   read_sweep(o, scene);
@@ -250,12 +243,6 @@ Scene read_one_scene(Options o) {
   read_rail_loads(o, scene);
   read_screen(o, scene);
   check_scene(o, scene);
-  if (const options::Entry* study = o.first_with_prefix("study_"))
-    scene.notes.push_back(study->name + " has no effect: study_vary names no option to vary");
-  if (const options::Entry* find = o.first_with_prefix("find_"))
-    scene.notes.push_back(find->name + " has no effect: find_option names no option to search");
-  if (const options::Entry* fit = o.first_with_prefix("fit_"))
-    scene.notes.push_back(fit->name + " has no effect: fit_vary names no option to estimate");
   check_plausibility(o, vehicles, scene);
   record_start(scene);
   check_size(o, scene);

@@ -17,7 +17,6 @@ bool is_nearly(double x, double other) { return std::abs(x - other) < station_ro
 
 /// Reads cracks with a width over which EI is reduced. Both ends become nodes of every mesh.
 void read_weak_stretches(const Options& o, const std::vector<double>& x, beam::BeamModel& beam) {
-  if (!o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_width", "needs beam_cracks_EI_factor");
   const std::vector<double> width = o.numbers("beam_cracks_width", x.size(), "one per station");
   const std::vector<double> factor = o.numbers("beam_cracks_EI_factor", x.size(), "one per station");
   double before = 0.0;
@@ -84,17 +83,9 @@ double as_division(const beam::BeamModel& beam, double x) {
 }
 
 void read_cracks(const Options& o, beam::BeamModel& beam) {
-  if (!o.has("beam_cracks_x")) {
-    if (const options::Entry* entry = o.first_with_prefix("beam_cracks"))
-      o.refuse(entry->name, "needs beam_cracks_x, the stations of the cracks");
-    return;
-  }
+  if (!o.has("beam_cracks_x")) return;
   const std::vector<double> x = o.numbers("beam_cracks_x");
-  const bool springs = o.has("beam_cracks_k"), wide = o.has("beam_cracks_width");
-  if (springs == wide)
-    o.refuse("beam_cracks_x", "needs either beam_cracks_k, or beam_cracks_width with beam_cracks_EI_factor");
-  if (wide) return read_weak_stretches(o, x, beam);
-  if (o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_EI_factor", "needs beam_cracks_width");
+  if (o.has("beam_cracks_width")) return read_weak_stretches(o, x, beam);
   const std::vector<double> k = o.numbers("beam_cracks_k", x.size(), "one per station");
   for (std::size_t i = 0; i < x.size(); ++i) beam.cracks.push_back({as_division(beam, x[i]), k[i]});
 }
@@ -102,8 +93,6 @@ void read_cracks(const Options& o, beam::BeamModel& beam) {
 void read_bearings(const Options& o, beam::BeamModel& beam) {
   const std::size_t ends = beam.spans.size() + 1;
   const auto numbers = [&](const char* name) { return o.numbers(name, ends, "one per span end"); };
-  if (o.has("support_scour") && !o.has("support_stiffness"))
-    o.refuse("support_scour", "needs support_stiffness, which it reduces");
   if (o.has("support_settlement")) beam.settlement = numbers("support_settlement");
   if (!o.has("support_stiffness")) return;
   const std::vector<double> stiffness = numbers("support_stiffness"), scour = numbers("support_scour");
@@ -118,12 +107,7 @@ std::optional<beam::Temperature> read_temperature(const Options& o) {
   t.uniform = o.number("beam_temperature_uniform");
   t.gradient = o.number("beam_temperature_gradient");
   t.expansion = o.number("beam_temperature_expansion");
-  if (t.uniform == 0.0 && t.gradient == 0.0) {
-    for (const char* name : {"beam_temperature_expansion", "beam_temperature_depth"})
-      if (o.has(name) && !o.has("beam_temperature_uniform") && !o.has("beam_temperature_gradient"))
-        o.refuse(name, "needs beam_temperature_uniform or beam_temperature_gradient");
-    return std::nullopt;
-  }
+  if (t.uniform == 0.0 && t.gradient == 0.0) return std::nullopt;
   const std::optional<double> depth = o.optional_number("beam_temperature_depth");
   if (t.gradient != 0.0 && !depth) o.refuse("beam_temperature_gradient", "needs beam_temperature_depth");
   t.depth = depth.value_or(1.0);

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/notes.hpp"
 #include "limits.hpp"
-#include "options/data_file.hpp"
+#include "options/relations.hpp"
 #include "scene_parts.hpp"
 
 namespace traverse::scene {
@@ -35,10 +34,6 @@ void read_mesh(const Options& o, Scene& scene) {
     const int chosen = elements_from_accuracy(scene.accuracy);
     beam.elements.assign(spans, chosen);
     scene.mesh_open = true;
-  }
-  if (std::accumulate(beam.elements.begin(), beam.elements.end(), 0.0) > most_elements) {
-    o.refuse(o.has("beam_elements_per_span") ? "beam_elements_per_span" : "beam_spans",
-             fmt::format("more than {0:g} elements in total; allowed: at most {0:g}", most_elements));
   }
 }
 
@@ -80,12 +75,8 @@ std::pair<double, double> pair_of(const std::vector<double>& two) { return {two[
 
 void read_damping(const Options& o, Damping& damping) {
   if (o.has("beam_rayleigh")) damping.rayleigh = pair_of(o.numbers("beam_rayleigh"));
-  if (o.has("beam_damping_ratios")) {
-    if (damping.rayleigh) o.refuse("beam_damping_ratios", "give either damping ratios or beam_rayleigh");
-    damping.ratios = pair_of(o.numbers("beam_damping_ratios", 2, "zeta1 and zeta2"));
-  }
+  if (o.has("beam_damping_ratios")) damping.ratios = pair_of(o.numbers("beam_damping_ratios", 2, "zeta1 and zeta2"));
   if (!o.has("beam_damping_frequencies")) return;
-  if (!damping.ratios) o.refuse("beam_damping_frequencies", "needs beam_damping_ratios");
   damping.frequencies = pair_of(o.numbers("beam_damping_frequencies"));
   if (damping.frequencies->first == damping.frequencies->second) {
     o.refuse("beam_damping_frequencies", "allowed: two different frequencies");
@@ -133,8 +124,7 @@ std::vector<double> read_stations(const Options& o, const std::string& name) {
   if (!o.has(name + "_spacing")) return x;
   if (x.size() != 2 || !(x[1] > x[0])) o.refuse(name + "_x", "allowed with a spacing: the first and the last station");
   const double spacing = o.number(name + "_spacing"), bays = std::round((x[1] - x[0]) / spacing);
-  if (bays > most_stations)
-    o.refuse(name + "_spacing", fmt::format("{:.3g} stations; allowed: at most {:g}", bays, most_stations));
+  o.check_at_most(name + "_spacing", bays, most_stations, "stations");
   if (std::abs(x[0] + bays * spacing - x[1]) > 1e-6 * spacing)
     o.refuse(name + "_spacing",
              fmt::format("does not divide the distance from {:g} to {:g} m into equal parts", x[0], x[1]));
@@ -148,12 +138,8 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
   const std::string name = "foundation_" + std::string(kind.name);
   const bool vertical = kind.direction == beam::Direction::vertical;
   std::vector<beam::PointFoundation> points;
-  if (!o.has(name + "_x")) {
-    for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided", "_depth", "_limit", "_spacing"}) {
-      if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_x, the stations");
-    }
-    return points;
-  }
+  options::check_relations(o, options::Related::springs, name + "_");
+  if (!o.has(name + "_x")) return points;
   const std::vector<double> x = read_stations(o, name);
   const auto numbers = [&](const char* what) { return o.numbers(name + what, x.size(), "one per station"); };
   const auto words = [&](const char* what) { return o.texts(name + what, x.size(), "one per station"); };
@@ -165,15 +151,10 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
   const std::vector<std::string> side = words("_side");
   const std::vector<std::string> one_sided =
       vertical ? words("_one_sided") : std::vector<std::string>(x.size(), "false");
-  if (!o.has(name + "_k") && !o.has(name + "_c") && !o.has(name + "_cubic"))
-    o.refuse(name + "_x", "needs " + name + "_k, " + name + "_c or " + name + "_cubic");
   const double length = beam.length();
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (x[i] > length * (1.0 + 1e-12)) {
-      o.refuse(name + "_x", fmt::format("{:g} is outside the beam; allowed: from 0 to {:g} m", x[i], length));
-    }
     const beam::FoundationLaw law{one_sided[i] == "true", gap[i], cubic[i], limit[i]};
-    beam::PointFoundation point{std::min(x[i], length), k[i], c[i], false, law};
+    beam::PointFoundation point{place_on_beam(o, name + "_x", x[i], length), k[i], c[i], false, law};
     point.depth = depth[i];
     if (point.depth != 0.0 && !is_span_end(beam, point.x))
       o.refuse(name + "_depth", fmt::format("at {:g} m, within a span; allowed: 0, or stations at span ends", point.x));
@@ -187,12 +168,8 @@ std::optional<beam::Bed> read_bed(const Options& o, const beam::FoundationKind& 
   const bool vertical = kind.direction == beam::Direction::vertical;
   const beam::FoundationLaw law{vertical && o.flag(name + "_one_sided"), o.number(name + "_gap"),
                                 o.number(name + "_cubic")};
-  if (!o.has(name + "_k") && !o.has(name + "_c") && !o.has(name + "_cubic")) {
-    for (const char* what : {"_gap", "_one_sided"}) {
-      if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_k, the stiffness of the bed");
-    }
-    return std::nullopt;
-  }
+  options::check_relations(o, options::Related::bed, name + "_");
+  if (!o.has(name + "_k") && !o.has(name + "_c") && !o.has(name + "_cubic")) return std::nullopt;
   return beam::Bed{read_distribution(o, name + "_k"), read_distribution(o, name + "_c"), law};
 }
 
@@ -239,11 +216,17 @@ std::string longitudinal_action(const options::Options& o, const Scene& scene) {
 
 }  // namespace
 
+double place_on_beam(const Options& o, const std::string& name, double x, double length) {
+  if (x > length * (1.0 + 1e-12))
+    o.refuse(name, fmt::format("{:g} is outside the beam; allowed: from 0 to {:g} m", x, length));
+  return std::min(x, length);
+}
+
 beam::Distribution read_distribution(const Options& o, const std::string& name) {
   if (o.is_number(name)) return o.number(name);
-  const std::string path = o.path(name);
-  const auto columns = options::read_columns(path, 2, 2);
-  beam::Distribution table(columns[0], columns[1], name + " (" + path + ")");
+  const beam::Distribution table = from_table(o, name, 2, 2, options::Order::unsorted, [&](const auto& columns) {
+    return beam::Distribution(columns[0], columns[1], fmt::format("{} ({})", name, o.path(name)));
+  });
   const options::Row& row = *o.find_known(name);
   for (const double value : {table.minimum(), table.maximum()}) {
     if (!row.range.contains(value))
@@ -270,17 +253,10 @@ namespace {
 /// v'^2/2 per length to the strain energy, as a rotational bed of the stiffness T does. SharedBeam refuses a
 /// compression at which the beam buckles.
 void read_tension(const Options& o, beam::BeamModel& beam) {
-  if (o.has("foundation_shear_layer")) {
-    if (beam.foundation.rotational_bed || o.has("beam_tension"))
-      o.refuse("foundation_shear_layer", "acts as a rotational bed and as a tension; give only one of the three");
-    if (beam.GA) o.refuse("foundation_shear_layer", "allowed for beams without shear deformation (beam_GA)");
+  if (o.has("foundation_shear_layer"))
     beam.foundation.rotational_bed =
         beam::Bed{read_distribution(o, "foundation_shear_layer"), 0.0, {}, "foundation_shear_layer"};
-  }
   if (!o.has("beam_tension")) return;
-  if (beam.foundation.rotational_bed)
-    o.refuse("beam_tension", "acts as a rotational bed; give either this or foundation_rotational_bed");
-  if (beam.GA) o.refuse("beam_tension", "allowed for beams without shear deformation (beam_GA)");
   beam::Distribution tension = read_distribution(o, "beam_tension");
   if (tension.minimum() < 0.0 && tension.maximum() > 0.0)
     o.refuse("beam_tension", "allowed: tension everywhere, or compression everywhere");
@@ -296,15 +272,7 @@ void read_ground(const Options& o, beam::BeamModel& beam) {
 
 void read_beam(const Options& o, Scene& scene) {
   if (read_given_bridge(o, scene)) return read_ground(o, *scene.beam);
-  if (!o.has("beam_spans")) {
-    for (const char* prefix :
-         {"beam_E", "beam_GA", "beam_mass", "beam_rotary", "beam_tension", "beam_cracks", "beam_temperature",
-          "beam_damping", "beam_rayleigh", "support_", "foundation_", "surface_"}) {
-      const options::Entry* entry = o.first_with_prefix(prefix);
-      if (entry != nullptr) o.refuse(entry->name, "there is no beam without beam_spans");
-    }
-    return;
-  }
+  if (!o.has("beam_spans")) return;
   scene.beam.emplace();
   beam::BeamModel& beam = *scene.beam;
   read_mesh(o, scene);
@@ -336,16 +304,14 @@ void decide_axial(const options::Options& o, Scene& scene) {
   }
   const bool stiffness = missing.empty();
   const bool axial_strain = scene.beam->temperature && scene.beam->temperature->strain() != 0.0;
-  if (axial_strain && (!stiffness || setting == "false"))
-    o.refuse("beam_temperature_uniform", stiffness ? "causes axial strain; allowed with it: model_axial auto or true"
-                                                   : "causes axial strain, which needs " + missing);
-  if (o.has("support_motion_along") && (!stiffness || setting == "false"))
-    o.refuse("support_motion_along", stiffness ? "acts along x; allowed with it: model_axial auto or true"
-                                               : "acts along x, which needs " + missing);
+  const auto check = [&](const std::string& option, const std::string& acts) {
+    if (!stiffness || setting == "false")
+      o.refuse(option, acts + (stiffness ? "; allowed with it: model_axial auto or true" : ", which needs " + missing));
+  };
+  if (axial_strain) check("beam_temperature_uniform", "causes axial strain");
+  if (o.has("support_motion_along")) check("support_motion_along", "acts along x");
   if (setting == "true" && !stiffness) o.refuse("model_axial", "needs " + missing);
-  if (const std::string along = option_along_the_track(o, scene); !along.empty() && (!stiffness || setting == "false"))
-    o.refuse(along, stiffness ? "acts along x; allowed with it: model_axial auto or true"
-                              : "acts along x, which needs " + missing);
+  if (const std::string along = option_along_the_track(o, scene); !along.empty()) check(along, "acts along x");
   if (setting != "auto") {
     scene.beam->axial = setting == "true";
     scene.notes.push_back(

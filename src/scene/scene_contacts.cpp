@@ -12,12 +12,7 @@ using Eigen::Vector2d;
 
 double VehicleReader::stiffness(contact::LawKind kind, double radius, const std::string& other) const {
   const std::string other_young = other + "_young", other_poisson = other + "_poisson";
-  if (has("stiffness")) {
-    for (const std::string& field : {std::string("young"), std::string("poisson"), other_young, other_poisson}) {
-      if (has(field)) o_.refuse(key(field), "give either stiffness or young and poisson");
-    }
-    return number("stiffness");
-  }
+  if (has("stiffness")) return number("stiffness");
   if (!has("young")) o_.refuse(key("stiffness"), "missing: a contact needs stiffness, or young and poisson (eq. 48)");
   if (kind != contact::LawKind::hertz)
     o_.refuse(key("young"), "is only for law hertz; law " + o_.choice(key("law")) + " needs stiffness");
@@ -38,12 +33,9 @@ contact::Law VehicleReader::law(double radius, const std::string& other) const {
                   fmt::format("is only for one-sided contacts, not for law {}", contact::row_of(law.kind).name));
   law.damping = number("damping");
   if (has("restitution")) {
-    if (has("damping")) o_.refuse(key("restitution"), "give either restitution or damping");
     const double e = number("restitution");
     law.hysteresis = o_.choice(key("restitution_law")) == "exact" ? contact::exact_hysteresis(e)
                                                                   : contact::lankarani_nikravesh_hysteresis(e);
-  } else if (has("restitution_law")) {
-    o_.refuse(key("restitution_law"), "needs " + key("restitution"));
   }
   law.friction = number("friction");
   law.transition_speed = number("transition_speed");
@@ -75,7 +67,6 @@ void VehicleReader::body_contact(const std::string& name) {
     if (!((c.line[1] - c.line[0]).norm() > 0.0)) o_.refuse(key("line"), "allowed: x, y of two different points");
     if (!(c.radii[0] > 0.0)) o_.refuse(key("radii"), "allowed on a line: a radius above 0");
   } else {
-    if (has("line")) o_.refuse(key("line"), "is only for type arc_line");
     const auto [i, j] = c.radii;
     const bool fits = (i > 0.0 && j > 0.0) || (i * j < 0.0 && i + j < 0.0);
     if (!fits)
@@ -91,17 +82,9 @@ track::WheelShape VehicleReader::wheel_shape(double radius) const {
   if (has("flat_length")) {
     shape.flat_length = number("flat_length");
     if (shape.flat_length > radius) o_.refuse(key("flat_length"), "allowed: up to the wheel's radius");
-  } else if (has("flat_angle")) {
-    o_.refuse(key("flat_angle"), "needs " + key("flat_length"));
   }
   shape.flat_angle = has("flat_angle") ? number("flat_angle") : std::numbers::pi;
-  if (has("polygon_order") != has("polygon_amplitude"))
-    o_.refuse(key(has("polygon_order") ? "polygon_amplitude" : "polygon_order"),
-              "missing: a polygonal wheel needs polygon_order and polygon_amplitude");
-  if (!has("polygon_order")) {
-    if (has("polygon_phase")) o_.refuse(key("polygon_phase"), "needs " + key("polygon_order"));
-    return shape;
-  }
+  if (!has("polygon_order")) return shape;
   shape.polygon_order = o_.integer(key("polygon_order"));
   shape.polygon_amplitude = number("polygon_amplitude");
   shape.polygon_phase = number("polygon_phase");

@@ -6,15 +6,12 @@
 #include <cmath>
 
 #include "base/notes.hpp"
-#include "options/data_file.hpp"
 #include "scene_parts.hpp"
-#include "traverse/base/error.hpp"
 
 namespace traverse::scene {
 namespace {
 
 using options::Options;
-using options::Order;
 
 bool is_plain_word(const std::string& name) {
   return !name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) != 0 &&
@@ -50,16 +47,10 @@ void declare_list(Options& o, const std::string& list, const std::string& kind) 
   }
 }
 
-/// x or t, and v, of a block's speed_file.
-std::vector<std::vector<double>> read_speeds_of(const Options& o, const Block& block) {
-  const std::string file = block.option("speed_file");
-  if (o.has(block.option("speed"))) o.refuse(file, "give either a table of speeds or " + block.option("speed"));
-  try {
-    return options::read_columns(o.path(file), 2, 2, Order::rising);
-  } catch (const InputError& error) {
-    if (std::string_view(error.what()).starts_with(file)) throw;  // an error of the path itself
-    o.refuse(file, error.what());
-  }
+/// What `make` returns for x or t, and v, of a block's speed_file.
+template <class Make>
+auto from_speeds(const Options& o, const Block& block, Make&& make) {
+  return from_table(o, block.option("speed_file"), 2, 2, options::Order::rising, make);
 }
 
 std::string direction_text(double direction) { return direction < 0.0 ? "to the left" : "to the right"; }
@@ -89,10 +80,8 @@ std::vector<Block> blocks_of(const Options& o, const char* list) {
 }
 
 double direction_of(const Options& o, const Block& block) {
-  if (o.has(block.option("speed_file"))) {
-    const std::vector<double> speeds = read_speeds_of(o, block)[1];
-    return *std::min_element(speeds.begin(), speeds.end()) < 0.0 ? -1.0 : 1.0;
-  }
+  if (o.has(block.option("speed_file")))
+    return from_speeds(o, block, [](const auto& table) { return std::ranges::min(table[1]) < 0.0 ? -1.0 : 1.0; });
   const std::string speed = block.option("speed");
   return o.has(speed) && o.number(speed) < 0.0 ? -1.0 : 1.0;
 }
@@ -107,14 +96,11 @@ double entrance(const Scene& scene, double direction) {
 }
 
 base::SpeedLaw read_speed_file(const Options& o, const Block& block, double front) {
-  std::vector<std::vector<double>> table = read_speeds_of(o, block);
   const bool over_place = o.choice(block.option("speed_over")) == "position";
-  try {
-    return over_place ? base::SpeedLaw::over_place(std::move(table[0]), std::move(table[1]), front)
-                      : base::SpeedLaw::over_time(std::move(table[0]), std::move(table[1]));
-  } catch (const InputError& error) {
-    o.refuse(block.option("speed_file"), error.what());
-  }
+  return from_speeds(o, block, [&](const auto& table) {
+    return over_place ? base::SpeedLaw::over_place(table[0], table[1], front)
+                      : base::SpeedLaw::over_time(table[0], table[1]);
+  });
 }
 
 bool needs_courses(const Options& o, const std::vector<Block>& blocks) {
@@ -132,10 +118,6 @@ bool several_courses(const Scene& scene) {
 }
 
 void check_courses(const Options& o, Scene& scene) {
-  for (const char* list : {"trains", "loads"})
-    for (const Block& block : blocks_of(o, list))
-      if (const std::string over = block.option("speed_over"); o.has(over) && !o.has(block.option("speed_file")))
-        o.refuse(over, "needs a table of speeds: " + block.option("speed_file"));
   const std::size_t trains = scene.train.courses.size(), loads = scene.load.courses.size();
   if (trains + loads == 0) return;
   for (const char* sweep : {"sweep_speed", "sweep_hslm_a"})

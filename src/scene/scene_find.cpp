@@ -61,20 +61,11 @@ bool describes_search(const Options& o) { return o.has("find_option"); }
 
 StudyDimension searched_dimension(const Options& o) {
   const std::string option = o.text("find_option");
-  if (o.find_known(option) == nullptr) {
-    const std::string near = o.nearest_known(option);
-    o.refuse("find_option", fmt::format("there is no option {}{}", option,
-                                        near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-  }
+  o.check_known("find_option", option);
   const VaryReader reader(o, option);
   if (reader.whole()) o.refuse("find_option", option + " has whole numbers; vary it by study_vary_" + option);
-  if (!o.has("find_between")) o.refuse("find_option", "find_between is missing: the least and the greatest value");
   StudyDimension searched{{option}, std::string(reader.unit().empty() ? "1" : reader.unit()), false, "list", {}, 0};
-  if (o.has("find_also"))
-    for (const std::string& other : o.texts("find_also")) {
-      if (o.find_known(other) == nullptr) o.refuse("find_also", "there is no option " + other);
-      searched.options.push_back(other);
-    }
+  reader.add_others("find_also", searched);
   for (const std::string& one : searched.options)
     if (const std::string why = why_not_varied(o, one); !why.empty())
       o.refuse(one == option ? "find_option" : "find_also", fmt::format("{} cannot be varied: {}", one, why));
@@ -89,7 +80,6 @@ StudyDimension searched_dimension(const Options& o) {
 
 void read_search(const Options& o, Study& study) {
   if (!describes_search(o)) return;
-  if (o.choice("study_combine") != "grid") o.refuse("study_combine", "a search (find_option) needs grid");
   options::Find find;
   const std::string option = o.text("find_option");
   const auto of_option = [&](const std::string& name) {
@@ -128,11 +118,8 @@ void finish_search(const Options& o, Scene& scene) {
   StudyDimension& searched = scene.study->dimensions[find.dimension];
   searched.values = first_values(searched.values.front(), searched.values.back(), points_for(o, scene, searched));
   scene.study->axes[searched.axis].length = searched.values.size();
-  if (o.has("find_quantity") != o.has("find_equals"))
-    o.refuse(o.has("find_equals") ? "find_equals" : "find_quantity", "find_quantity and find_equals need each other");
   const std::string keep = o.text("find_keep");
   if (o.has("find_quantity")) {
-    if (o.has("find_keep")) o.refuse("find_keep", "give either this or find_quantity");
     find.quantity = o.text("find_quantity");
     find.value = o.number("find_equals");
   } else if (keep != "limits") {

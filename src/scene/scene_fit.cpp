@@ -6,10 +6,10 @@
 #include <optional>
 #include <set>
 
-#include "options/data_file.hpp"
+#include "options/relations.hpp"
 #include "scene_parts.hpp"
-#include "traverse/base/error.hpp"
 #include "traverse/options/fit.hpp"
+#include "vary_reader.hpp"
 
 namespace traverse::scene {
 namespace {
@@ -58,10 +58,7 @@ void declare_fit(Options& o) {
   for (const Entry& entry : o.entries()) {
     const std::string& name = entry.name;
     if (name.starts_with(fit_vary)) {
-      const std::string option = name.substr(fit_vary.size()), near = o.nearest_known(option);
-      if (o.find_known(option) == nullptr)
-        o.refuse(name, fmt::format("there is no option {}{}", option,
-                                   near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+      o.check_known(name, name.substr(fit_vary.size()));
       o.declare(name, options::fit_bounds_row());
     } else if (name.starts_with(fit_to)) {
       const std::optional<Target> target = target_of(name);
@@ -69,14 +66,6 @@ void declare_fit(Options& o) {
       o.declare(name, *target->row);
     }
   }
-}
-
-double number_of(const Options& o, const std::string& given, const std::string& word, const Row& row) {
-  double value = 0.0;
-  if (!(row.unit == "m/s" ? options::parse_speed(word, value) : options::parse_number(word, value)) ||
-      !row.range.contains(value) || !options::is_quantity(value))
-    o.refuse(given, fmt::format("'{}' is no value of the option; allowed: {}", word, options::allowed(row)));
-  return value;
 }
 
 /// The reason why an option cannot be estimated; empty if it can.
@@ -105,8 +94,11 @@ FitParameter read_parameter(const Options& o, const std::string& given) {
     o.refuse(given, fmt::format("{} cannot be estimated: {}", option, why));
   const std::vector<std::string> words = o.texts(given);
   FitParameter parameter{option, std::string(row.unit.empty() ? "1" : row.unit)};
-  parameter.low = number_of(o, given, words[0], row);
-  parameter.high = number_of(o, given, words[1], row);
+  const VaryReader reader(o, option);
+  for (const auto& [bound, word] : {std::pair(&parameter.low, words[0]), std::pair(&parameter.high, words[1])}) {
+    *bound = reader.number(given, word);
+    reader.check(given, *bound);
+  }
   parameter.copies = std::max(row.count, 1);
   if (!(parameter.low < parameter.high))
     o.refuse(given, "the lowest value must be below the highest; allowed: lowest, highest");
@@ -120,30 +112,18 @@ FitParameter read_parameter(const Options& o, const std::string& given) {
   return parameter;
 }
 
-void refuse_without(const Options& o, const std::string& target, std::string_view needed, std::string_view by) {
-  if (!o.has(name_of(target, needed))) o.refuse(name_of(target, by), fmt::format("needs {}", name_of(target, needed)));
-}
-
-void refuse_with(const Options& o, const std::string& target, std::string_view other, std::string_view with) {
-  if (o.has(name_of(target, other)))
-    o.refuse(name_of(target, other), fmt::format("is not allowed with {}", name_of(target, with)));
-}
-
 options::MeasuredFrequency read_frequency(const Options& o, const std::string& target) {
-  for (const char* needed : {"value", "sd"}) refuse_without(o, target, needed, "frequency");
-  for (const Row& row : options::fit_rows())
-    if (row.name != "frequency" && row.name != "value" && row.name != "sd")
-      refuse_with(o, target, row.name, "frequency");
   return {target, o.integer(name_of(target, "frequency")), o.number(name_of(target, "value")),
           o.number(name_of(target, "sd"))};
 }
 
 /// Reads the rows of a series between fit_to_NAME_from and fit_to_NAME_to.
 void read_values(const Options& o, const std::string& target, options::MeasuredSeries& series) {
-  const std::string option = name_of(target, "series"), path = o.path(option);
+  const std::string option = name_of(target, "series");
   const auto column =
       static_cast<std::size_t>(o.has(name_of(target, "column")) ? o.integer(name_of(target, "column")) : 2);
-  const std::vector<std::vector<double>> table = options::read_columns(path, 2, most_columns, options::Order::rising);
+  const auto table =
+      from_table(o, option, 2, most_columns, options::Order::rising, [](auto columns) { return columns; });
   if (table.size() < column)
     o.refuse(option, fmt::format("the table has {} columns; allowed: at least {} ({})", table.size(), column,
                                  name_of(target, "column")));
@@ -185,20 +165,16 @@ void check_filter(const Options& o, const std::string& target, const options::Me
 /// Reads what was measured: a quantity at a station of the bridge, or any dataset.
 void read_place(const Options& o, const std::string& target, options::MeasuredSeries& series) {
   if (o.has(name_of(target, "dataset"))) {
-    for (const char* other : {"quantity", "x"}) refuse_with(o, target, other, "dataset");
     const std::string path = o.text(name_of(target, "dataset"));
     series.dataset = (path.starts_with("/") ? "" : "/") + path;
     if (o.has(name_of(target, "component"))) series.component = o.integer(name_of(target, "component"));
     return;
   }
-  for (const char* needed : {"quantity", "x"}) refuse_without(o, target, needed, "series");
-  refuse_with(o, target, "component", "quantity");
   series.dataset = "/probes/" + o.choice(name_of(target, "quantity"));
   series.x = o.number(name_of(target, "x"));
 }
 
 options::MeasuredSeries read_series(const Options& o, const std::string& target) {
-  refuse_with(o, target, "value", "series");
   options::MeasuredSeries series;
   series.name = target;
   read_place(o, target, series);
@@ -222,11 +198,14 @@ Fit read_measurements(const Options& o) {
     if (entry.name.starts_with(fit_vary)) fit.parameters.push_back(read_parameter(o, entry.name));
     const std::optional<Target> target = target_of(entry.name);
     if (!target || !names.insert(target->name).second) continue;
-    const bool frequency = o.has(name_of(target->name, "frequency")), series = o.has(name_of(target->name, "series"));
-    if (frequency == series)
+    options::check_relations(o, options::Related::measurement, name_of(target->name, ""));
+    const bool frequency = o.has(name_of(target->name, "frequency"));
+    if (!frequency && !o.has(name_of(target->name, "series")))
       o.refuse(entry.name, fmt::format("the measurement {} needs either frequency or series", target->name));
-    if (frequency) fit.frequencies.push_back(read_frequency(o, target->name));
-    if (series) fit.series.push_back(read_series(o, target->name));
+    if (frequency)
+      fit.frequencies.push_back(read_frequency(o, target->name));
+    else
+      fit.series.push_back(read_series(o, target->name));
   }
   if (fit.parameters.empty())
     throw InputError("fit_vary is missing: the options to be estimated, each with its lowest and highest value");
@@ -268,8 +247,7 @@ void check_stations(const Options& o, const Fit& fit) {
   double length = 0.0;
   for (const double span : o.numbers("beam_spans")) length += span;
   for (const options::MeasuredSeries& series : fit.series)
-    if (series.x && *series.x > length)
-      o.refuse(name_of(series.name, "x"), fmt::format("is outside the bridge; allowed: from 0 to {:g} m", length));
+    if (series.x) (void)place_on_beam(o, name_of(series.name, "x"), *series.x, length);
 }
 
 /// The stations of the series in place of the scene's probes.
@@ -292,8 +270,7 @@ Scene read_fit(const Options& given) {
   Options o = given;
   declare_parts(o);
   declare_fit(o);
-  o.check_names();
-  o.check_values();
+  check_options(o);
   for (const char* other : {"sweep_speed", "sweep_hslm_a", "restart"})
     if (o.has(other)) o.refuse(other, "is not allowed in a fit, which computes single runs of one scene");
   const Fit fit = read_measurements(o);

@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "load_models.hpp"
-#include "options/data_file.hpp"
 #include "scene_parts.hpp"
-#include "traverse/base/error.hpp"
 
 namespace traverse::scene {
 namespace {
@@ -58,7 +56,10 @@ void spread(double spacing, bool from_zero, double direction, MovingLoad& load) 
 AxleList named_train(const Options& o, const Block& block, const std::string& option) {
   if (option == block.option("hslm_a")) return hslm_a(o.integer(option));
   if (option == block.option("en15528")) return en15528(o.text(option), o.integer(block.option("wagons")));
-  if (option == block.option("file")) return read_axles(o.path(option), o.text(block.option("file_x")) == "backward");
+  if (option == block.option("file"))
+    return from_table(o, option, 2, 2, options::Order::unsorted, [&](const auto& columns) {
+      return axles_of(columns, o.text(block.option("file_x")) == "backward");
+    });
   const std::vector<double> given = o.numbers(option);  // load_hslm_b
   if (given[0] != std::floor(given[0]) || given[0] > most_forces)
     o.refuse(option, fmt::format("allowed: a whole number of forces up to {:g}, and their distance in m", most_forces));
@@ -69,15 +70,10 @@ void read_forces(const Options& o, const LoadBlock& from, const Scene& scene, Mo
   const std::string positions_option = from.block.option("positions"), forces_option = from.block.option("forces");
   const std::vector<double> positions =
       o.has(positions_option) ? o.numbers(positions_option) : std::vector<double>{entrance(scene, from.direction)};
-  const std::vector<double> forces = o.numbers(forces_option);
-  if (forces.size() == 1 || forces.size() == positions.size()) {
-    load.forces = o.numbers(forces_option, positions.size(), "one per position");
-    load.positions = positions;
-    return;
-  }
-  const std::string why =
-      fmt::format("{} forces but {} positions; allowed: one position per force", forces.size(), positions.size());
-  o.refuse(positions_option, o.has(positions_option) ? why : "missing: x of each force at t = 0");
+  if (!o.has(positions_option) && o.numbers(forces_option).size() > 1)
+    o.refuse(positions_option, "missing: x of each force at t = 0");
+  load.forces = o.numbers(forces_option, positions.size(), "one per position");
+  load.positions = positions;
 }
 
 /// The forces of one load with their positions; `option` selects them.
@@ -104,10 +100,6 @@ MovingLoad read_one_load(const Options& o, const LoadBlock& from, const std::str
   if (o.has(from.block.option("moments")) && option != from.block.option("moments")) add_moments(o, from.block, load);
   if (o.has(from.block.option("distributed"))) add_line_loads(o, from.block, load);
   if (swept) scene.sweep->loads = std::move(others);
-  if (option != from.block.option("en15528") && o.has(from.block.option("wagons")))
-    scene.notes.push_back(from.block.option("wagons") + " has no effect: it is for " + from.block.option("en15528"));
-  if (option != from.block.option("file") && o.has(from.block.option("file_x")))
-    scene.notes.push_back(from.block.option("file_x") + " has no effect: it is for " + from.block.option("file"));
   return load;
 }
 
@@ -132,35 +124,17 @@ double read_load_speed(const Options& o, const Block& block, const Scene& scene)
   return o.has("train_speed") ? o.number("train_speed") : 0.0;
 }
 
-using options::Options;
-
 constexpr double highest_frequency = 1e4;  // Hz
-
-base::TimeFunction read_force_table(const Options& o, const std::string& option) {
-  try {
-    std::vector<std::vector<double>> table = options::read_columns(o.path(option), 2, 2, options::Order::rising);
-    return base::TimeFunction::piecewise_linear(std::move(table[0]), std::move(table[1]));
-  } catch (const InputError& error) {
-    if (std::string_view(error.what()).starts_with(option)) throw;  // the message of the path itself
-    o.refuse(option, error.what());
-  }
-}
 
 }  // namespace
 
 std::string load_option(const Options& o, const std::string& load) {
-  std::string given;
-  std::vector<std::string> names;
-  for (const char* word : {"_forces", "_hslm_a", "_hslm_b", "_en15528", "_file"}) names.push_back(load + word);
-  if (load == "load") names.emplace_back("sweep_hslm_a");
-  for (const std::string& option : names)
-    if (o.has(option)) {
-      if (!given.empty()) o.refuse(option, fmt::format("give either {} or {}", given, option));
-      given = option;
-    }
+  for (const char* word : {"_forces", "_hslm_a", "_hslm_b", "_en15528", "_file"})
+    if (o.has(load + word)) return load + word;
+  if (load == "load" && o.has("sweep_hslm_a")) return "sweep_hslm_a";
   for (const char* word : {"_moments", "_distributed"})
-    if (given.empty() && o.has(load + word)) given = load + word;
-  return given;
+    if (o.has(load + word)) return load + word;
+  return "";
 }
 
 bool forces_move(const Options& o) { return o.has("loads") || !load_option(o).empty(); }
@@ -170,7 +144,6 @@ void read_load(const Options& o, Scene& scene) {
   const std::vector<Block> blocks = blocks_of(o, "loads");
   const bool courses =
       needs_courses(o, blocks) || (o.has("train_speed") && !o.has("load_speed") && o.number("train_speed") < 0.0);
-  if (swept && o.has("loads")) o.refuse("sweep_hslm_a", "is for one load; loads names several");
   for (const Block& block : blocks) {
     const std::string option = swept ? "sweep_hslm_a" : load_option(o, block.name);
     if (option.empty() && o.has("loads")) o.refuse(block.option("forces"), "missing: the forces of this load");
@@ -212,8 +185,6 @@ void place_moments(const Options& o, const Block& block, double entrance, Moving
 }
 
 void add_moments(const Options& o, const Block& block, MovingLoad& load) {
-  if (o.has(block.option("spread")))
-    o.refuse(block.option("moments"), "give either moments or " + block.option("spread"));
   load.moments = o.numbers(block.option("moments"), load.forces.size(), "one per force");
 }
 
@@ -237,15 +208,13 @@ void add_line_loads(const Options& o, const Block& block, MovingLoad& load) {
 
 train::ForceVariation read_variation(const Options& o, const Block& block) {
   train::ForceVariation variation;
-  if (const std::string table = block.option("table"); o.has(table)) variation.table = read_force_table(o, table);
+  if (const std::string table = block.option("table"); o.has(table))
+    variation.table = from_table(o, table, 2, 2, options::Order::rising, [](auto columns) {
+      return base::TimeFunction::piecewise_linear(std::move(columns[0]), std::move(columns[1]));
+    });
   const std::string frequency = block.option("frequency"), amplitude = block.option("amplitude"),
                     unbalance = block.option("unbalance"), phase = block.option("phase");
-  if (!o.has(frequency)) {
-    for (const std::string& option : {amplitude, unbalance, phase})
-      if (o.has(option)) o.refuse(option, "needs " + frequency);
-    return variation;
-  }
-  if (!o.has(amplitude) && !o.has(unbalance)) o.refuse(frequency, "needs " + amplitude + " or " + unbalance);
+  if (!o.has(frequency)) return variation;
   variation.frequency = o.number(frequency);
   if (o.has(amplitude)) variation.amplitudes = o.numbers(amplitude);
   if (o.has(unbalance)) {

@@ -1,7 +1,6 @@
 // Reads the mechanism of one vehicle (bodies, joints, springs, actuators, drivers) and the couplers of trains.
 #include <fmt/format.h>
 
-#include "options/data_file.hpp"
 #include "traverse/base/error.hpp"
 #include "vehicle_reader.hpp"
 
@@ -14,6 +13,7 @@ Coupler VehicleReader::read_coupler(const std::string& name) {
   part_ = prefix_ + name + "_";
   Coupler c;
   c.name = name;
+  options::check_relations(o_, options::Related::part, part_);
   const std::vector<std::string> bodies = o_.texts(key("bodies"));
   c.bodies = {bodies[0], bodies[1]};
   if (o_.choice(key("type")) == "spring") {
@@ -86,19 +86,9 @@ void VehicleReader::joint_numbers(multibody::Joint& j) const {
   }
 }
 
-/// The result of `make` for the columns of the option's file; errors also name the option.
-template <class Make>
-auto VehicleReader::from_table(std::string_view field, std::size_t least, std::size_t most, Make&& make) const {
-  try {
-    return make(options::read_columns(o_.path(key(field)), least, most, options::Order::rising));
-  } catch (const InputError& error) {
-    if (std::string_view(error.what()).starts_with(key(field))) throw;  // an error of the path itself
-    o_.refuse(key(field), error.what());
-  }
-}
-
 base::Polyline VehicleReader::polyline(std::string_view field) const {
-  return from_table(field, 2, 2, [](auto columns) { return base::Polyline(columns[0], columns[1]); });
+  return from_table(o_, key(field), 2, 2, options::Order::rising,
+                    [](const auto& columns) { return base::Polyline(columns[0], columns[1]); });
 }
 
 /// The force law of a nonlinear spring; none for a linear one.
@@ -110,9 +100,6 @@ std::optional<base::ForceLaw> VehicleReader::force_law() const {
              : side == "compression" ? base::Side::compression
                                      : base::Side::both;
   if (!law.can_disengage() && !has("table") && !has("damper_table")) return {};
-  for (const auto& [table, constant] : {std::pair("table", "stiffness"), std::pair("damper_table", "damping")}) {
-    if (has(table) && has(constant)) o_.refuse(key(table), fmt::format("give either {} or {}", table, key(constant)));
-  }
   law.elastic = has("table") ? polyline("table") : base::Polyline::line(number("stiffness"));
   law.damper = has("damper_table") ? polyline("damper_table") : base::Polyline::line(number("damping"));
   if (const std::string where = law.damper.opposing(); !where.empty())
@@ -146,7 +133,6 @@ void VehicleReader::spring(const std::string& name) {
   }
   s.free_length = o_.optional_number(key("free_length"));
   s.preload = o_.optional_number(key("preload"));
-  if (s.free_length && s.preload) o_.refuse(key("preload"), "give either a preload or " + key("free_length"));
   if (s.law && s.preload && !s.law->elongation_at(*s.preload)) {
     o_.refuse(key("preload"),
               "allowed: a force that the spring has at exactly one elongation, or " + key("free_length"));
@@ -157,8 +143,7 @@ void VehicleReader::spring(const std::string& name) {
 
 /// Reads the length that a winch adds to a spring.
 void VehicleReader::winding(multibody::Spring& s) const {
-  if (s.preload) o_.refuse(key("preload"), "with a winding_table give " + key("free_length"));
-  s.winding = from_table("winding_table", 2, 2, [&](const auto& columns) {
+  s.winding = from_table(o_, key("winding_table"), 2, 2, options::Order::rising, [&](const auto& columns) {
     const double length = s.free_length.value_or((s.to - s.from).norm());
     for (const double change : columns[1])
       if (!(length + change > 0.0))
@@ -182,7 +167,7 @@ void VehicleReader::torsion_spring(const std::string& name) {
 }
 
 void VehicleReader::actuator_table(multibody::Actuator& a) const {
-  a.action = from_table("table", 2, 4, [](const auto& columns) {
+  a.action = from_table(o_, key("table"), 2, 4, options::Order::rising, [](const auto& columns) {
     auto action = multibody::Actuator().action;
     const std::size_t first = columns.size() == 2 ? 2 : 0;  // t,moment or t,fx,fy[,moment]
     for (std::size_t i = 1; i < columns.size(); ++i)
@@ -196,7 +181,6 @@ void VehicleReader::actuator(const std::string& name) {
   multibody::Actuator a;
   a.name = name;
   if (has("bodies")) {
-    if (has("body") || has("reaction_body")) o_.refuse(key("bodies"), "give either bodies or body and reaction_body");
     a.body = moving_body(key("bodies"), o_.texts(key("bodies"))[0]);
     a.reaction_body = two_bodies()[1];
   } else {
@@ -205,10 +189,8 @@ void VehicleReader::actuator(const std::string& name) {
     if (a.reaction_body == a.body) o_.refuse(key("reaction_body"), "allowed: another body");
   }
   if (has("table")) {
-    if (has("force") || has("moment")) o_.refuse(key("table"), "give either a table or force and moment");
     actuator_table(a);
   } else {
-    if (has("delay")) o_.refuse(key("delay"), "needs a table");
     if (!has("force") && !has("moment")) o_.refuse(key("force"), "missing: an actuator needs force, moment or table");
     const Vector2d force = vector("force");
     a.action = {base::TimeFunction(force.x(), 0.0), base::TimeFunction(force.y(), 0.0),
@@ -224,8 +206,8 @@ void VehicleReader::driver(const std::string& name) {
   const std::string coordinate = o_.choice(key("coordinate"));
   d.coordinate = coordinate == "x" ? 0 : coordinate == "y" ? 1 : 2;
   if (has("table")) {
-    if (has("value") || has("rate")) o_.refuse(key("table"), "give either a table or value and rate");
-    d.value = from_table("table", 2, 2, [](const auto& columns) { return base::TimeFunction(columns[0], columns[1]); });
+    d.value = from_table(o_, key("table"), 2, 2, options::Order::rising,
+                         [](const auto& columns) { return base::TimeFunction(columns[0], columns[1]); });
   } else {
     const double initial = vehicle_.mechanism.bodies[static_cast<std::size_t>(d.body)].position[d.coordinate];
     d.value = base::TimeFunction(has("value") ? number("value") : initial, number("rate"));

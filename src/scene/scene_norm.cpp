@@ -32,7 +32,6 @@ std::string option_of_static_effects(const Options& o, const Scene& scene) {
   return limited ? "limits" : "";
 }
 
-using options::Options;
 using options::RailLoads;
 
 constexpr double most_fronts = 1e4;
@@ -55,14 +54,7 @@ std::vector<double> read_fronts(const Options& o, double length) {
 }  // namespace
 
 void read_damping_bound(const Options& o, Scene& scene) {
-  if (!o.has("model_damping_bound")) {
-    if (o.has("model_additional_damping"))
-      o.refuse("model_additional_damping", "needs model_damping_bound, to which it is added");
-    return;
-  }
-  if (!scene.beam) o.refuse("model_damping_bound", "needs a bridge (beam_spans)");
-  for (const char* name : {"model_damping_ratios", "beam_damping_ratios", "beam_rayleigh"})
-    if (o.has(name)) o.refuse("model_damping_bound", fmt::format("give either this or {}", name));
+  if (!o.has("model_damping_bound")) return;
   const double span = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end());
   const double least = norm::least_damping(material_of(o.choice("model_damping_bound")), span);
   const double more = o.flag("model_additional_damping") ? norm::additional_damping(span) : 0.0;
@@ -103,25 +95,19 @@ void read_norm(const Options& o, Scene& scene) {
     scene.notes.push_back(asked + ": " + why + "; static effects and the verdict of EN 1991-2 are not computed");
     return;
   }
-  if (scene.beam->spans.size() > norm::StaticBridge::most_spans)
-    o.refuse(asked, fmt::format("static effects of {} spans; allowed: at most {}", scene.beam->spans.size(),
-                                norm::StaticBridge::most_spans));
+  o.check_at_most(asked, static_cast<double>(scene.beam->spans.size()), norm::StaticBridge::most_spans,
+                  "spans with static effects");
   options::NormRules rules;
   if (o.has("norm_load_models"))
     rules.load_models = o.texts("norm_load_models");
   else if (asked == "limits" || !scene.limits.empty())
     rules.load_models = {"lm71"};
-  std::vector<std::string> sorted = rules.load_models;
-  std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-    o.refuse("norm_load_models", "allowed: each load model once");
   rules.alpha = o.number("norm_alpha");
   rules.careful = o.choice("norm_track") == "careful";
   rules.length = o.optional_number("norm_length");
   rules.spacing = o.optional_number("norm_spacing").value_or(0.0);
-  if (const double sections = rules.spacing > 0.0 ? scene.beam->length() / rules.spacing : 0.0;
-      sections > most_sections)
-    o.refuse("norm_spacing", fmt::format("{:.3g} sections; allowed: at most {:g}", sections, most_sections));
+  if (rules.spacing > 0.0)
+    o.check_at_most("norm_spacing", scene.beam->length() / rules.spacing, most_sections, "sections");
   scene.norm = rules;
   if (scene.self_weight && scene.analysis == Analysis::transient)
     scene.notes.emplace_back(
@@ -134,15 +120,8 @@ void read_norm(const Options& o, Scene& scene) {
 }
 
 void read_rail_loads(const Options& o, Scene& scene) {
-  if (scene.analysis != Analysis::rail_forces) {
-    if (const options::Entry* entry = o.first_with_prefix("uic774_"))
-      scene.notes.push_back(entry->name + " has no effect: it belongs to scene_analysis rail");
-    return;
-  }
-  if (!scene.beam || !scene.beam->track)
-    o.refuse("scene_analysis", "rail needs a bridge with a layered track (beam_spans, track_rail_EI)");
+  if (scene.analysis != Analysis::rail_forces) return;
   if (!scene.beam->axial) o.refuse("scene_analysis", "rail needs beam_EA, track_rail_EA and track_longitudinal_k");
-  if (!o.has("track_rail_area")) o.refuse("scene_analysis", "rail needs track_rail_area, for the stress of the rails");
   if (!scene.vehicles.empty() || !scene.load.forces.empty())
     scene.notes.emplace_back(
         "scene_analysis rail: the train is that of uic774_train_length; vehicles and moving "

@@ -25,8 +25,7 @@ void add_even_probes(const Options& o, const std::vector<double>& spans, std::ve
   const double spacing = o.number("output_probes_spacing");
   double count = 1.0, left = 0.0;
   for (const double span : spans) count += std::ceil(span / spacing * nearly_one);
-  if (count > most_even_probes)
-    o.refuse("output_probes_spacing", fmt::format("{:.3g} stations; allowed: at most {:g}", count, most_even_probes));
+  o.check_at_most("output_probes_spacing", count, most_even_probes, "stations");
   for (const double span : spans) {
     const double parts = std::ceil(span / spacing * nearly_one);
     for (double i = left == 0.0 ? 0.0 : 1.0; i <= parts; ++i) probes.push_back(left + span * i / parts);
@@ -67,10 +66,7 @@ void add_probes_for_limits(Scene& scene) {
 
 void read_probes(const Options& o, Scene& scene) {
   const bool named = o.has("output_probes"), even = o.has("output_probes_spacing");
-  if (!scene.beam) {
-    if (named || even) o.refuse(named ? "output_probes" : "output_probes_spacing", "needs a beam (beam_spans)");
-    return;
-  }
+  if (!scene.beam) return;
   const std::vector<double>& spans = scene.beam->spans;
   std::vector<double>& probes = scene.output.probes;
   double length = 0.0;
@@ -82,11 +78,7 @@ void read_probes(const Options& o, Scene& scene) {
     scene.notes.push_back(
         fmt::format("probes: the middle of the first {} of {} spans", most_default_probes, spans.size()));
   if (named) probes = o.numbers("output_probes");
-  for (double& x : probes) {
-    if (x > length * (1.0 + 1e-12))
-      o.refuse("output_probes", fmt::format("{:g} is outside the beam; allowed: from 0 to {:g} m", x, length));
-    x = std::min(x, length);
-  }
+  for (double& x : probes) x = place_on_beam(o, "output_probes", x, length);
   if (!even) return add_probes_for_limits(scene);
   add_even_probes(o, spans, probes);
   std::sort(probes.begin(), probes.end());
@@ -94,25 +86,11 @@ void read_probes(const Options& o, Scene& scene) {
   probes.erase(std::unique(probes.begin(), probes.end(), same), probes.end());
 }
 
-constexpr double most_frequency = 1e6;  // Hz
-
-/// The cut-off frequency of deck accelerations: none for auto, 0 for no filter.
-std::optional<double> read_low_pass(const Options& o) {
-  const std::string value = o.text("output_lowpass");
-  if (value == "auto") return {};
-  if (value == "none") return 0.0;
-  char* end = nullptr;
-  const double frequency = std::strtod(value.c_str(), &end);
-  if (value.empty() || *end != 0 || !(frequency > 0.0 && frequency <= most_frequency))
-    o.refuse("output_lowpass",
-             fmt::format("allowed: auto, none, or a frequency above 0 and up to {:g} (Hz)", most_frequency));
-  return frequency;
-}
-
 constexpr const char* low_passed_peak = "acceleration_lowpass";  // in accuracy_of
 
 void read_filter(const Options& o, Scene& scene) {
-  scene.output.low_pass = read_low_pass(o);
+  scene.output.low_pass = o.optional_number("output_lowpass");
+  if (o.text("output_lowpass") == "none") scene.output.low_pass = 0.0;
   scene.output.low_passed_series = o.flag("output_lowpass_series");
   const std::vector<std::string>& estimated = scene.accuracy_of;
   const bool named = std::find(estimated.begin(), estimated.end(), low_passed_peak) != estimated.end();
@@ -152,7 +130,6 @@ void read_passages(const Options& o, Scene& scene) {
 
 void read_sleepers(const Options& o, Scene& scene) {
   if (!o.has("output_sleepers")) return;
-  if (!scene.beam || !scene.beam->track) o.refuse("output_sleepers", "needs a layered track (track_rail_EI)");
   const bool runs = scene.analysis == Analysis::transient || scene.analysis == Analysis::static_response;
   if (!runs || scene.sweep || describes_study(o)) {
     scene.notes.emplace_back("output_sleepers has no effect: it is for a single transient or static run");

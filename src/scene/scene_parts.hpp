@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "options/data_file.hpp"
+#include "traverse/base/error.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -19,6 +21,19 @@ struct Block {
   std::string option(std::string_view word) const { return name + "_" + std::string(word); }
 };
 
+/// What `make` returns for the columns of the file that an option names (options::read_columns). The message of an
+/// InputError names the option.
+template <class Make>
+auto from_table(const options::Options& o, const std::string& name, std::size_t least, std::size_t most,
+                options::Order order, Make&& make) {
+  try {
+    return make(options::read_columns(o.path(name), least, most, order));
+  } catch (const InputError& error) {
+    if (std::string_view(error.what()).starts_with(name)) throw;  // it names the option already
+    o.refuse(name, error.what());
+  }
+}
+
 /// The names of all vehicles.
 struct NamedVehicles {
   std::vector<std::string> train;   // vehicles of all trains, from the front
@@ -28,6 +43,8 @@ struct NamedVehicles {
 
 /// Declares the options of all named parts of a scene: trains and loads, vehicles, couplers, parts of a layered track.
 NamedVehicles declare_parts(options::Options& options);
+/// Checks the names and values of all options, and the relations between those of a study.
+void check_options(const options::Options& options);
 /// Finds the vehicles of a scene, reads their files and declares the options of their parts.
 NamedVehicles declare_vehicles(options::Options& options);
 /// Reads one vehicle.
@@ -88,6 +105,8 @@ void read_bearings(const options::Options& options, beam::BeamModel& beam);
 void read_support_motion(const options::Options& options, Scene& scene);
 /// The temperature of the beam; none without temperature differences.
 std::optional<beam::Temperature> read_temperature(const options::Options& options);
+/// x, at most the length of the beam but for rounding; InputError for an x of option `name` that is not on the beam.
+double place_on_beam(const options::Options& options, const std::string& name, double x, double length);
 /// A number or the table of a file x,value, checked for the range of the option.
 beam::Distribution read_distribution(const options::Options& options, const std::string& name);
 /// Reads the trains with their vehicles, positions and speeds.

@@ -27,7 +27,7 @@ std::vector<double> read_speeds(const Options& o, std::string_view name) {
     o.refuse(name, fmt::format("the step of {:g} m/s is larger than the range from {:g} to {:g} m/s; allowed: "
                                "from, to, step",
                                step, from, to));
-  if (steps > most_speeds) o.refuse(name, fmt::format("{:g} speeds; allowed: at most {:g}", steps, most_speeds));
+  o.check_at_most(name, steps, most_speeds, "speeds");
   return speeds_between(from, to, step);
 }
 
@@ -39,13 +39,7 @@ std::vector<double> speeds_between(double from, double to, double step) {
 }
 
 void read_sweep(const Options& o, Scene& scene) {
-  if (!o.has("sweep_speed") && !o.has("sweep_hslm_a")) {
-    if (o.has("sweep_refine")) scene.notes.emplace_back("sweep_refine has no effect: sweep_speed gives no speeds");
-    return;
-  }
-  const char* given = o.has("sweep_speed") ? "sweep_speed" : "sweep_hslm_a";
-  if (scene.analysis != Analysis::transient) o.refuse(given, "a sweep needs scene_analysis transient");
-  if (!o.has("beam_spans") && !o.has("bridge_modes_file")) o.refuse(given, "a sweep needs a bridge (beam_spans)");
+  if (!o.has("sweep_speed") && !o.has("sweep_hslm_a")) return;
   scene.sweep.emplace();
   scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
   scene.sweep->instants = o.number("sweep_instants");
@@ -59,25 +53,18 @@ void read_sweep(const Options& o, Scene& scene) {
   }
   if (!o.has("sweep_hslm_a")) return;
   scene.sweep->trains = o.integers("sweep_hslm_a");
-  std::vector<int> sorted = scene.sweep->trains;
-  std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-    o.refuse("sweep_hslm_a", "allowed: each train once");
 }
 
 void read_modal(const Options& o, Scene& scene) {
   if (scene.beam && scene.beam->given) return read_modes_of_given(o, scene);
   const std::string value = o.text("model_modes");
-  if (value == "auto" || value == "0") {
+  const int modes = static_cast<int>(o.optional_number("model_modes").value_or(0.0));
+  if (modes == 0) {
     scene.modes_open =
         value == "auto" && !(scene.beam && (scene.beam->foundation.nonlinear() || scene.beam->strained()));
     if (o.has("model_damping_ratios")) o.refuse("model_damping_ratios", "needs model_modes");
     return;
   }
-  char* end = nullptr;
-  const double modes = std::strtod(value.c_str(), &end);
-  if (*end != 0 || modes < 1.0 || modes > 1e5 || modes != std::floor(modes))
-    o.refuse("model_modes", "allowed: auto, 0 or a number of modes up to 100000");
   if (scene.analysis != Analysis::transient) {
     scene.notes.emplace_back("model_modes has no effect: it is for transient runs");
     return;
@@ -93,32 +80,16 @@ void read_modal(const Options& o, Scene& scene) {
   if (const options::Entry* type = o.entries().find("ts_type");
       scene.vehicles.empty() && type != nullptr && type->value != "modal")
     o.refuse("ts_type", "with model_modes and forces alone the motion is exact in time; allowed: modal, or no ts_type");
-  scene.model.modes = static_cast<int>(modes);
+  scene.model.modes = modes;
   if (scene.model.window_tolerance > 0.0)
     scene.notes.emplace_back("model_window has no effect: with modes the bridge has no parts that could be excluded");
   if (!o.has("model_damping_ratios")) return;
-  if (scene.damping.rayleigh || scene.damping.ratios)
-    o.refuse("model_damping_ratios", "give either these or Rayleigh damping (beam_damping_ratios, beam_rayleigh)");
+  (void)o.numbers("model_damping_ratios", static_cast<std::size_t>(modes), "one per mode");
   scene.damping_of_modes = o.numbers("model_damping_ratios");
-  if (scene.damping_of_modes.size() > 1 && static_cast<int>(scene.damping_of_modes.size()) != scene.model.modes)
-    o.refuse("model_damping_ratios", fmt::format("{} ratios for {} modes; allowed: one, or one per mode",
-                                                 scene.damping_of_modes.size(), scene.model.modes));
 }
 
-using options::Options;
-
 void read_screen(const Options& o, Scene& scene) {
-  if (scene.analysis != Analysis::screen) {
-    if (const options::Entry* entry = o.first_with_prefix("screen_"))
-      scene.notes.push_back(entry->name + " has no effect: it belongs to scene_analysis screen");
-    return;
-  }
-  if (scene.beam || !scene.vehicles.empty() || !scene.load.forces.empty())
-    o.refuse("scene_analysis",
-             "screen takes its bridges and trains from screen_stock and screen_fleet; allowed: no beam_, train_ and "
-             "load_ options");
-  for (const char* name : {"screen_stock", "screen_fleet", "limits"})
-    if (!o.has(name)) o.refuse("scene_analysis", fmt::format("screen needs {}", name));
+  if (scene.analysis != Analysis::screen) return;
   if (scene.limits.empty())
     o.refuse("limits", "a screen computes deck_acceleration and deflection_over_span; the file has neither of them");
   options::Screen screen;

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 
-#include "options/data_file.hpp"
 #include "scene_parts.hpp"
-#include "traverse/base/error.hpp"
 
 namespace traverse::scene {
 namespace {
@@ -14,8 +12,7 @@ namespace {
 std::vector<base::TimeFunction> displacements(const options::Options& o, const std::string& file,
                                               std::size_t supports) {
   const bool integrated = o.choice("support_motion_values") == "acceleration";
-  try {
-    const auto columns = options::read_columns(o.path(file), 2, supports + 1, options::Order::rising);
+  return from_table(o, file, 2, supports + 1, options::Order::rising, [&](const auto& columns) {
     if (columns.size() != 2 && columns.size() != supports + 1)
       throw InputError("allowed: a time and one column, or one for each span end");
     std::vector<base::TimeFunction> all;
@@ -25,16 +22,12 @@ std::vector<base::TimeFunction> displacements(const options::Options& o, const s
                                : base::TimeFunction(columns[0], values));
     }
     return all;
-  } catch (const InputError& error) {
-    o.refuse(file, error.what());
-  }
+  });
 }
 
 /// Refuses what does not go with moving supports.
 void check_motion(const options::Options& o, const std::string& file, const Scene& scene) {
-  if (!scene.beam || scene.by_given_modes()) o.refuse(file, "needs a beam with supports (beam_spans)");
   const beam::BeamModel& beam = *scene.beam;
-  if (scene.analysis != Analysis::transient) o.refuse(file, "is for transient runs only (scene_analysis)");
   const auto on_ground =
       [&](const beam::FoundationKind& kind) {  // a tension is a rotational bed, but not on the ground
         const bool tension = kind.bed == &beam::Foundation::rotational_bed && o.has("beam_tension");
@@ -43,7 +36,6 @@ void check_motion(const options::Options& o, const std::string& file, const Scen
   if (beam.track || std::ranges::any_of(beam::foundation_kinds, on_ground))
     o.refuse(file, "is not allowed with a foundation or a layered track, whose ground would move too");
   if (scene.model.modes > 0) o.refuse(file, "needs elements; allowed: model_modes 0");
-  if (scene.sweep) o.refuse(file, "is for single runs; allowed in studies, one by one, without sweep options");
 }
 
 void check_motion_along(const options::Options& o, const std::string& file, const Scene& scene) {
@@ -60,11 +52,8 @@ void check_motion_along(const options::Options& o, const std::string& file, cons
 }
 
 void read_motion(const options::Options& o, Scene& scene) {
-  const std::string upward = "support_motion", along = "support_motion_along", values = "support_motion_values";
-  if (!o.has(upward) && !o.has(along)) {
-    if (o.has(values)) o.refuse(values, "needs " + upward + " or " + along);
-    return;
-  }
+  const std::string upward = "support_motion", along = "support_motion_along";
+  if (!o.has(upward) && !o.has(along)) return;
   check_motion(o, o.has(upward) ? upward : along, scene);
   const std::vector<beam::Support>& supports = scene.beam->supports;
   if (o.has(upward)) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "options/data_file.hpp"
 #include "scene_parts.hpp"
 #include "track/spectrum_names.hpp"
 
@@ -41,11 +40,7 @@ double start_of_roughness(const Scene& scene, bool& to_the_left) {
 
 /// Adds dips and humps to the profile.
 void read_dips(const Options& o, Scene& scene) {
-  if (!o.has("track_dips_x")) {
-    if (const options::Entry* entry = o.first_with_prefix("track_dips"))
-      o.refuse(entry->name, "belongs to dips, which need track_dips_x");
-    return;
-  }
+  if (!o.has("track_dips_x")) return;
   const std::vector<double> x = o.numbers("track_dips_x");
   const std::vector<double> length = o.numbers("track_dips_length", x.size(), "one per dip");
   const std::vector<double> depth = o.numbers("track_dips_depth", x.size(), "one per dip");
@@ -85,10 +80,13 @@ ReadProfile read_profile(const Options& o, const std::string& prefix, double sta
     o.refuse(option, fmt::format("allowed: none, bump, {}, or a file x,height",
                                  static_cast<std::string_view>(track::names_of_spectra)));
   }
-  const std::string path = o.path(option);
-  auto columns = options::read_columns(path, 2, 2);
   const auto profile_of = o.text(key("profile_shape")) == "spline" ? track::Profile::spline : track::Profile::lines;
-  return {profile_of(std::move(columns[0]), std::move(columns[1]), option + " (" + path + ")"), {}};
+  return {from_table(o, option, 2, 2, options::Order::unsorted,
+                     [&](auto columns) {
+                       return profile_of(std::move(columns[0]), std::move(columns[1]),
+                                         fmt::format("{} ({})", option, o.path(option)));
+                     }),
+          {}};
 }
 
 void read_track(const Options& o, Scene& scene) {

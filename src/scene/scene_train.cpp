@@ -56,12 +56,7 @@ std::vector<double> read_positions(const Options& o, const TrainBlock& train, co
   if (o.has(positions)) x = o.numbers(positions);
   if (x.size() > 1 || (order.size() == 1 && !x.empty())) {
     if (x.size() > 1 && o.has(spacing)) o.refuse(spacing, "not allowed if all positions are given");
-    if (x.size() != order.size()) {
-      o.refuse(positions, order.size() == 1 ? fmt::format("has {} entries; allowed: 1 (one per vehicle)", x.size())
-                                            : fmt::format("has {} entries; allowed: one, or {} (one per vehicle)",
-                                                          x.size(), order.size()));
-    }
-    return x;
+    return o.numbers(positions, order.size(), "one per vehicle");
   }
   if (x.empty()) x.push_back(entrance(scene, train.direction) - front_of(vehicle(0), train.direction));
   std::vector<double> gaps;
@@ -90,7 +85,6 @@ std::vector<int> read_gaps(const Options& o, const TrainBlock& train, const Scen
   if (gaps.empty())
     o.refuse(train.block.option("couplers"), fmt::format("{} needs a train of at least two vehicles", name));
   std::sort(gaps.begin(), gaps.end());
-  if (std::adjacent_find(gaps.begin(), gaps.end()) != gaps.end()) o.refuse(after, "allowed: each vehicle once");
   for (const int gap : gaps) {
     if (gap >= last)
       o.refuse(after, fmt::format("there is no vehicle behind vehicle {}; allowed: from 0 to {}", gap, last - 1));

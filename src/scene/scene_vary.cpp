@@ -50,10 +50,11 @@ void declare_study(Options& o) {
     if (!what) {
       std::string option = name.substr(study_prefix.size());
       for (const Row& row : options::vary_rows())
-        if (option.ends_with("_" + std::string(row.name))) option.resize(option.size() - row.name.size() - 1);
-      const std::string near = o.nearest_known(option);
-      o.refuse(name, fmt::format("there is no option {}{}", option,
-                                 near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+        if (const std::size_t own = row.name.size() + 1; option.ends_with("_" + std::string(row.name))) {
+          option.resize(option.size() - own);
+          break;
+        }
+      o.check_known(name, option);  // varied() knows it otherwise
     }
     const std::span<const Row> rows = options::vary_rows();
     o.declare(name, what->how.empty() ? options::vary_list_row() : *options::find_row(rows, what->how));
@@ -102,11 +103,7 @@ StudyDimension dimension_of(const Options& o, const std::string& option, const V
   const std::string given = o.first_with_prefix(reader.name())->name;
   const std::string unit(reader.unit().empty() ? "1" : reader.unit());
   StudyDimension dimension{{option}, unit, reader.whole(), "list", {}, 0};
-  if (reader.has("also"))
-    for (const std::string& other : o.texts(reader.name("also"))) {
-      if (o.find_known(other) == nullptr) o.refuse(reader.name("also"), "there is no option " + other);
-      dimension.options.push_back(other);
-    }
+  reader.add_others(reader.name("also"), dimension);
   for (const std::string& one : dimension.options) {
     if (const std::string why = why_not_varied(o, one); !why.empty())
       o.refuse(given, fmt::format("{} cannot be varied: {}", one, why));
@@ -246,11 +243,8 @@ void check_study(const Options& o, Scene& scene) {
     if (d.name() == "track_seed" && !scene.roughness)
       o.refuse(first, fmt::format("track_seed has no effect: track_profile is {}", o.text("track_profile")));
   record_coarse_speeds(scene);
-  const double peaks =
-      static_cast<double>(results::rows_of(study).runs()) * static_cast<double>(scene.output.probes.size());
-  if (peaks > most_study_peaks)
-    o.refuse(first, fmt::format("{} runs with {} probes each; allowed: at most {:g} runs times probes", study.runs(),
-                                scene.output.probes.size(), most_study_peaks));
+  const double runs = static_cast<double>(results::rows_of(study).runs());
+  o.check_at_most(first, runs * static_cast<double>(scene.output.probes.size()), most_study_peaks, "runs times probes");
 }
 
 }  // namespace
@@ -263,7 +257,8 @@ std::string why_not_varied(const Options& o, const std::string& option) {
   const bool of_petsc = options::owned_by_petsc(option);
   if (of_petsc && option != "ts_dt" && option != "ts_max_time") return "PETSc reads it once, for all runs";
   if (of_petsc && o.entries().has(option)) return "it is given for all runs too; remove that option";
-  const bool number = row.kind == Kind::number || row.kind == Kind::integer || row.kind == Kind::number_or_file ||
+  const bool number = (row.kind == Kind::number && row.choices.empty()) ||
+                      (row.kind == Kind::integer && row.choices.empty()) || row.kind == Kind::number_or_file ||
                       ((row.kind == Kind::numbers || row.kind == Kind::integers) && row.count <= 1);
   if (number) return "";
   return row.count > 1 ? fmt::format("it needs {}, not one number", options::allowed(row)) : "it is not a number";
@@ -283,8 +278,7 @@ Scene read_study(const Options& given) {
   Options o = given;
   const NamedVehicles vehicles = declare_parts(o);
   declare_study(o);
-  o.check_names();
-  o.check_values();
+  check_options(o);
   Study study;
   read_dimensions(o, vehicles, study);
   read_statistics(o, study);

@@ -12,7 +12,6 @@
 
 #include "base/random_stream.hpp"
 #include "base/sampling_design.hpp"
-#include "options/data_file.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::scene {
@@ -24,13 +23,12 @@ std::string VaryReader::name(std::string_view how) const {
   return std::string(prefix) + option_ + (how.empty() ? "" : "_" + std::string(how));
 }
 
-double VaryReader::number(const std::string& given, const std::string& word) const {
-  double value = 0.0;
-  const bool parsed = row_.unit == "m/s" ? options::parse_speed(word, value) : options::parse_number(word, value);
-  if (!parsed || !options::is_quantity(value))
-    o_.refuse(given, fmt::format("'{}' is not a finite number; allowed: values of {}, {}", word, option_,
-                                 options::allowed(row_)));
-  return value;
+void VaryReader::add_others(const std::string& also, options::StudyDimension& dimension) const {
+  if (!o_.has(also)) return;
+  for (const std::string& other : o_.texts(also)) {
+    o_.check_known(also, other);
+    dimension.options.push_back(other);
+  }
 }
 
 void VaryReader::check(const std::string& given, double value, const std::string& what, const char* advice) const {
@@ -169,7 +167,6 @@ StudyAxes::StudyAxes(const options::Options& o, Study& study)
   if (o.has("study_draws")) draws_ = static_cast<std::size_t>(o.integer("study_draws"));
   const std::string method = o.choice("study_sensitivity");
   if (method == "none") return;
-  if (combine_ != "grid") o.refuse("study_combine", "a sensitivity analysis (study_sensitivity) needs grid");
   using Method = options::Sensitivity::Method;
   study_.sensitivity.emplace();
   study_.sensitivity->method = method == "local" ? Method::local : method == "morris" ? Method::morris : Method::sobol;
@@ -177,9 +174,8 @@ StudyAxes::StudyAxes(const options::Options& o, Study& study)
 }
 
 void StudyAxes::add_listed(StudyDimension dimension, double count) {
-  if (combine_ != "grid" && count > VaryReader::most_values)
-    o_.refuse("study_combine", fmt::format("{} has {:g} values; allowed: at most {:g}", dimension.name(), count,
-                                           VaryReader::most_values));
+  if (combine_ != "grid")
+    o_.check_at_most("study_combine", count, VaryReader::most_values, "values of " + dimension.name());
   if (combine_ == "grid") {
     dimension.axis = study_.axes.size();
     study_.axes.push_back({dimension.name(), static_cast<std::size_t>(std::min(count, 1e15))});
@@ -231,9 +227,7 @@ void StudyAxes::finish_design() {
                       static_cast<double>(std::max<std::size_t>(analysis.base_samples, 1));
   runs_ *= points;
   sizes_ += fmt::format("{}{:g} points of the design", sizes_.empty() ? "" : " times ", points);
-  if (points > VaryReader::most_values)
-    o_.refuse("study_draws",
-              fmt::format("{:g} points of the design; allowed: at most {:g}", points, VaryReader::most_values));
+  o_.check_at_most("study_draws", points, VaryReader::most_values, "points of the design");
   if (runs_ > most_runs()) return;
   study_.axes[analysis.axis].length = static_cast<std::size_t>(points);
   const std::vector<double> cube =

@@ -44,8 +44,10 @@ class VaryReader {
   double quantile(double probability) const;
   /// Checks that the values are given in one way only.
   void check_one_way() const;
+  /// Adds the options of the list `also` that take the same value in every run.
+  void add_others(const std::string& also, options::StudyDimension& dimension) const;
   /// A number in the option's unit, the text `word` of the option `given`; speeds may be given in km/h.
-  double number(const std::string& given, const std::string& word) const;
+  double number(const std::string& given, const std::string& word) const { return o_.to_quantity(given, word, row_); }
 
  private:
   /// The two numbers of the law, checked.

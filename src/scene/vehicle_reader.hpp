@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "options/relations.hpp"
 #include "repeated_parts.hpp"
 #include "scene_parts.hpp"
 
@@ -48,6 +49,7 @@ class VehicleReader {
   void each(options::Part part, Read&& read) {
     for (const std::string& name : part_names(o_, prefix_, part)) {
       part_ = prefix_ + name + "_";
+      options::check_relations(o_, options::Related::part, part_);
       read(name);
     }
   }
@@ -92,8 +94,6 @@ class VehicleReader {
   void joint(const std::string& name);
   void joint_friction(multibody::Joint& j) const;
   void joint_numbers(multibody::Joint& j) const;
-  template <class Make>
-  auto from_table(std::string_view field, std::size_t least, std::size_t most, Make&& make) const;
   base::Polyline polyline(std::string_view field) const;
   std::optional<base::ForceLaw> force_law() const;
   void check_spring_given(std::string_view kind) const;

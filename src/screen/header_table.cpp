@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "options/data_file.hpp"
 #include "options/input_texts.hpp"
 #include "traverse/base/error.hpp"
@@ -15,18 +16,11 @@ namespace {
 
 constexpr std::size_t longest_line = 1 << 16, most_characters = std::size_t{1} << 28, most_rows = 2'000'000;
 
-std::string trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r";
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == text.npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
-}
-
 std::vector<std::string> cells_of(std::string_view line) {
   std::vector<std::string> cells;
   while (true) {
     const std::size_t end = line.find_first_of(",;");
-    cells.push_back(trimmed(line.substr(0, end)));
+    cells.push_back(base::trimmed(line.substr(0, end)));
     if (end == line.npos) return cells;
     line.remove_prefix(end + 1);
   }
@@ -56,7 +50,7 @@ HeaderTable::HeaderTable(const std::string& path, const std::vector<std::string_
     if (line.size() > longest_line)
       throw InputError(where + fmt::format("longer than {} characters, so this is not a table", longest_line));
     line = line.substr(0, line.find('#'));
-    if (trimmed(line).empty()) continue;
+    if (base::trimmed(line).empty()) continue;
     if (line.find(';') != line.npos && line.find(',') != line.npos)
       throw InputError(fmt::format("{}commas and semicolons in one row; {}", where, options::decimal_point));
     std::vector<std::string> cells = cells_of(line);

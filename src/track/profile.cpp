@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/spline.hpp"
+#include "base/table_rows.hpp"
 #include "traverse/base/error.hpp"
 #include "two_pi.hpp"
 
@@ -50,20 +51,6 @@ std::vector<Corner> corners_of(const std::vector<double>& x, const std::vector<d
   return corners;
 }
 
-void check_table(const std::vector<double>& x, const std::vector<double>& h, const std::string& name) {
-  if (x.size() != h.size() || x.size() < 2) {
-    throw InputError(name + ": a profile needs two columns, x and height, and at least two lines");
-  }
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (!std::isfinite(x[i]) || !std::isfinite(h[i])) {
-      throw InputError(name + ": number " + std::to_string(i + 1) + " of the profile is not finite");
-    }
-    if (i > 0 && !(x[i] > x[i - 1])) {
-      throw InputError(name + ": x must increase from line to line; it does not at x = " + std::to_string(x[i]));
-    }
-  }
-}
-
 /// A smooth transition from 0 to 1 over s in [0, 1], with slope and curvature 0 at both ends; derivatives with respect
 /// to s.
 Height smooth_step(double s) {
@@ -91,7 +78,7 @@ Profile Profile::bump(double start, double length, double height) {
 }
 
 Profile Profile::lines(std::vector<double> x, std::vector<double> h, const std::string& name) {
-  check_table(x, h, name);
+  base::check_rows(x, h, name);
   Profile p;
   p.kind_ = Kind::table;
   const std::vector<Corner> corners = corners_of(x, h);
@@ -123,7 +110,7 @@ Profile Profile::lines(std::vector<double> x, std::vector<double> h, const std::
 }
 
 Profile Profile::spline(std::vector<double> x, std::vector<double> h, const std::string& name) {
-  check_table(x, h, name);
+  base::check_rows(x, h, name);
   Profile p;
   p.kind_ = Kind::table;
   p.slope_ = base::spline_slopes(x, h);

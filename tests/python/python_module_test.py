@@ -137,7 +137,7 @@ class Runs(InFolder):
     def test_refusals_of_searches_and_sensitivity_analyses(self):
         between, uncertain = [1e10, 1e11], {"beam_EI": {"normal": [3e10, 1e9]}}
         self.refused(2, "no limits of runs", traverse.find, FORCES, "beam_EI", between)
-        self.refused(2, "find_equals need each other", traverse.find, FORCES, "beam_EI", between, quantity="peak_deflection")
+        self.refused(2, "needs find_equals", traverse.find, FORCES, "beam_EI", between, quantity="peak_deflection")
         self.refused(2, "not above the first", traverse.find, FORCES, "beam_EI", between[::-1], "limits", "peak_deflection", 1e-3)
         self.refused(2, "give either", traverse.find, FORCES, "beam_EI", between, "end_rotation", "peak_deflection", 1e-3)
         self.refused(2, "study_draws is missing", traverse.sensitivity, FORCES, uncertain)

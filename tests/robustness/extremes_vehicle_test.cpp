@@ -186,7 +186,7 @@ TEST(TrackStep, OfFourLinesIsRefusedAsASpline) {
         {"step.csv", "beside a jump", "give lines as close together"});
   }
   const std::string twice = folder.write("twice.csv", "-100, 0\n10, 0\n10, 0.001\n100, 0.001\n");
-  expect_refused([&] { run_yaml(small_scene(), {{"track_profile", twice}}); }, {"twice.csv", "x must increase"});
+  expect_refused([&] { run_yaml(small_scene(), {{"track_profile", twice}}); }, {"twice.csv", "must increase strictly"});
 }
 
 // Slowly, the wheel's centre follows the roll-over curve, max over s of h(s) + sqrt(R^2 - (x - s)^2) - R, but for the

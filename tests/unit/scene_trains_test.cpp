@@ -67,7 +67,7 @@ TEST(SceneTrains, WhatIsRefused) {
   EXPECT_TRUE(test::contains(refused("trains: [up]\nup: {speed: 3}\n"), "up_vehicles: missing"));
   EXPECT_TRUE(test::contains(refused("trains: [up]\nup: {vehicles: car}\n"), "up_speed is missing"));
   EXPECT_TRUE(test::contains(refused("trains: [up]\ntrain: {speed: 3}\nup: {vehicles: car}\n"), "train_speed"));
-  EXPECT_TRUE(test::contains(refused(train + ", speed: 3}\n"), "either a table of speeds or train_speed"));
+  EXPECT_TRUE(test::contains(refused(train + ", speed: 3}\n"), "either this or train_speed"));
   EXPECT_TRUE(test::contains(refused(train + ", drive: free}\n"), "train_drive free"));
   EXPECT_TRUE(test::contains(refused("train: {vehicles: car, speed_file: " + both + "}\n"), "both signs"));
   EXPECT_TRUE(test::contains(refused("train: {vehicles: car, speed: 3, speed_over: position}\n"), "train_speed_file"));

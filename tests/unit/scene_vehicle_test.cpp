@@ -75,7 +75,8 @@ TEST(SceneVehicle, Refusals) {
   EXPECT_PRED2(contains, refused_with("vehicle_car_guide_axis", "0,0"), "a direction");
   EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_body", "ground"), "ground does not move");
   EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_stiffness", "0"), "above 0");
-  EXPECT_PRED2(contains, refused_with("vehicle_car_spring_free_length", "1"), "give either a preload");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_spring_free_length", "1"),
+               "give either this or vehicle_car_spring_free_length");
   EXPECT_PRED2(contains, refused_with("vehicle_car_spring_to", "0.5,2"), "the same point");
   EXPECT_PRED2(contains, refused_with("vehicle_car_springs", "spring,axle"), "'axle' is already the name of a body");
   EXPECT_PRED2(contains, refused_with("vehicle_car_bodies", "body,axle,ground"), "'ground' cannot be a part's name");
@@ -124,11 +125,11 @@ TEST(SceneVehicle, WheelsOutOfRound) {
   EXPECT_PRED2(contains, message_of([] {
                  scene_with({{"vehicle_car_wheel_polygon_order", "3"}});
                }),
-               "vehicle_car_wheel_polygon_amplitude: missing");
+               "needs vehicle_car_wheel_polygon_amplitude");
   EXPECT_PRED2(contains, message_of([] {
                  scene_with({{"vehicle_car_wheel_polygon_amplitude", "1e-5"}});
                }),
-               "vehicle_car_wheel_polygon_order: missing");
+               "needs vehicle_car_wheel_polygon_order");
   EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_polygon_phase", "1"), "needs vehicle_car_wheel_polygon_order");
   EXPECT_PRED2(
       contains, message_of([] {

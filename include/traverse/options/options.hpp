@@ -42,6 +42,10 @@ class Options {
   /// The known name that is most similar to `name`; empty if none is similar.
   std::string nearest_known(const std::string& name) const;
 
+  /// Checks that an option that the value of option `name` names is known. InputError with the most similar known name.
+  void check_known(std::string_view name, const std::string& other) const;
+  /// Checks that option `name` does not give more than `most` things; what: their name in the plural.
+  void check_at_most(std::string_view name, double count, double most, std::string_view what) const;
   /// Checks that each given option is known. Throws InputError with the most similar known name.
   void check_names() const;
   /// Checks that each known given option has the type of its row and is in its range.
@@ -57,13 +61,15 @@ class Options {
   std::vector<int> integers(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;
 
-  /// The given number; none if it is not given.
+  /// The given number; none if it is not given, or if one of the row's words is given in its place.
   std::optional<double> optional_number(std::string_view name) const;
   /// A list of `count` entries. A single given entry is used for all. `what` describes the entries for the message.
   std::vector<double> numbers(std::string_view name, std::size_t count, std::string_view what) const;
   std::vector<int> integers(std::string_view name, std::size_t count, std::string_view what) const;
   std::vector<std::string> texts(std::string_view name, std::size_t count, std::string_view what) const;
 
+  /// The number in a word of option `name`, in the unit of `row` and of any range; speeds may be in km/h.
+  double to_quantity(std::string_view name, const std::string& word, const Row& row) const;
   /// Whether the value of a number_or_file option is a number.
   bool is_number(std::string_view name) const;
   /// The path of the file that an option names, relative to the file that names it or to the working directory.
@@ -84,6 +90,8 @@ class Options {
   std::vector<std::string> list(std::string_view name) const;
   double to_number(std::string_view name, const std::string& word) const;
   int to_integer(std::string_view name, const std::string& word) const;
+  template <class T>
+  void check_once(std::string_view name, const std::vector<T>& values) const;
   template <class T>
   std::vector<T> spread(std::string_view name, std::vector<T> list, std::size_t count, std::string_view what) const;
 

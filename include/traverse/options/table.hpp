@@ -41,9 +41,10 @@ struct Row {
   std::string_view unit;
   std::string_view fallback;  // the default value, or a remark on the default in brackets; empty: none
   Range range;
-  std::string_view choices;  // permitted words, separated by blanks
+  std::string_view choices;  // permitted words, separated by blanks; of a number: words in its place
   int count = 0;             // required number of entries of a list; 0: any number
   std::string_view text;
+  bool once = false;  // no entry of a list may be repeated
 };
 
 /// The kinds of parts of a vehicle, in the order of the table in table_vehicle.cpp.
