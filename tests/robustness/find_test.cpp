@@ -24,7 +24,7 @@ TEST(Find, BadInputIsRefused) {
     words.insert(words.begin(), {"-find_quantity", "peak_deflection", "-find_equals", "1e-3"});
     return words;
   };
-  refused(with({"-find_option", "beam_E"}), {"find_option", "beam_EI"});
+  refused(with({"-find_option", "beam_E", "-find_between", "1,2"}), {"find_option", "beam_EI"});
   refused(with({"-find_option", "beam_EI"}), {"find_between is missing"});
   refused(with({"-find_option", "beam_EI", "-find_between", "2,1"}), {"find_between", "not above the first"});
   refused(with({"-find_option", "beam_EI", "-find_between", "-1,1"}),

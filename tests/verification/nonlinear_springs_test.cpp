@@ -224,7 +224,8 @@ TEST(SpringLaws, Refusals) {
   const std::string gains = folder.write("gains.csv", "-1 -1\n0 0\n1 -2\n"),
                     off = folder.write("off.csv", "0 1\n1 2\n");
   expect({}, {spring + "stiffness", "missing", "a table"});
-  expect({{spring + "table", good}, {spring + "stiffness", "1"}}, {spring + "table = ", "either table or"});
+  expect({{spring + "table", good}, {spring + "stiffness", "1"}},
+         {spring + "table = ", "give either this or " + spring + "stiffness"});
   expect({{spring + "damper_table", good}, {spring + "damping", "1"}}, {spring + "damper_table = ", "either"});
   expect({{spring + "table", back}}, {spring + "table = ", "increase strictly", "row 2"});
   expect({{spring + "damper_table", gains}}, {spring + "damper_table = ", "dissipates energy", "-2 at 1"});
