@@ -183,8 +183,7 @@ std::optional<Choice> choose_modes(const Scene& scene, std::vector<std::string>&
     choice.accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     notes.push_back(
         fmt::format("accuracy {:g}: {} modes instead of the elements, of {} elements a span; trial runs took {:.2g} s; "
-                    "-model_modes 0 "
-                    "selects the elements",
+                    "-model_modes 0 selects the elements",
                     scene.accuracy, choice.model.modes, choice.model.elements, choice.accuracy.seconds));
     std::vector<std::string> lines = choice.accuracy.lines();
     std::ranges::move(lines, std::back_inserter(notes));
