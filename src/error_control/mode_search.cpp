@@ -38,12 +38,12 @@ constexpr std::size_t code_modes = 3;
 constexpr int max_required = 64, max_nodes = 1000;
 
 /// The largest relative difference of low-passed accelerations with a limit.
-double difference_low_passed(const Scene& scene, const CaseResult& modes, const CaseResult& elements) {
+double difference_low_passed(const Scene& scene, const CaseResult& rough, const CaseResult& fine) {
   double worst = 0.0;
   for (std::size_t i = 0; i < scene.limits.size(); ++i) {
-    const double value = elements.evaluated[i].value;
+    const double value = fine.evaluated[i].value;
     if (scene.limits[i].quantity == "deck_acceleration" && value > 0.0)
-      worst = std::max(worst, std::abs(modes.evaluated[i].value / value - 1.0));
+      worst = std::max(worst, std::abs(rough.evaluated[i].value / value - 1.0));
   }
   return worst;
 }

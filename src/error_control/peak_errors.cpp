@@ -30,6 +30,4 @@ PeakErrors difference(const scene::Scene& scene, const base::PassagePeaks& rough
   return errors;
 }
 
-double greatest(const PeakErrors& errors) { return *std::max_element(errors.begin(), errors.end()); }
-
 }  // namespace traverse::error_control

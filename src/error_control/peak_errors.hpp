@@ -15,6 +15,5 @@ using PeakErrors = std::array<double, run::quantities>;
 /// For each controlled quantity the largest difference at any probe, relative to the largest peak in `fine`; 0 for
 /// other quantities.
 PeakErrors difference(const scene::Scene& scene, const base::PassagePeaks& rough, const base::PassagePeaks& fine);
-double greatest(const PeakErrors& errors);
 
 }  // namespace traverse::error_control

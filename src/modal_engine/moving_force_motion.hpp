@@ -205,16 +205,16 @@ class ForcedModes : Lanes<W> {
   Advance advance_by(int i, Lane time, double longest) const {
     const Series& own = series_[i];
     const double c = task_.damping[i], w = task_.omega2[i];
-    double phase = own.rate * longest;
+    double share = 1.0;  // of a part in the time
     int doublings = 0;
-    for (; phase > most_phase; phase *= 0.5) ++doublings;
-    Lane t = time * (1.0 / static_cast<double>(1L << doublings)), Q2{}, Q3{};
+    for (; own.rate * longest * share > most_phase; share *= 0.5) ++doublings;
+    Lane t = time * share, Q2{}, Q3{};
     const int terms = longest <= task_.instant ? own.terms : own.long_terms;
     for (int k = terms - 1; k >= 0; --k) {
       Q2 = Q2 * t + own.by_2[k];
       Q3 = Q3 * t + own.by_3[k];
     }
-    Lane square = t * t;
+    const Lane square = t * t;
     Q2 *= square * square;
     Q3 *= square * square * t;
     Lane Q1 = t * square * (1.0 / 6.0) - c * Q2 - w * Q3;
