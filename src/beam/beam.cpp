@@ -110,7 +110,10 @@ void hold_supports(const Line& bridge, Slice& slice) {
 }  // namespace
 
 Beam::Beam(MPI_Comm comm, BeamModel model)
-    : comm_(comm), layout_(checked(model)), bridge_(std::move(model), layout_, false, first_column_of(model)) {
+    : comm_(comm),
+      layout_(checked(model)),
+      bridge_(std::move(model), layout_, false, first_column_of(model)),
+      support_lines_(bridge_.model) {
   if (bridge_.model.track) rail_.emplace(rail_model(bridge_.model), layout_, true, 0);
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm_, &rank);

@@ -40,6 +40,8 @@ class Beam {
   /// The bridge: the beam of the model.
   const Line& bridge() const { return bridge_; }
   const Mesh& mesh() const { return bridge_.mesh; }
+  /// The lines between the supports of the bridge.
+  const SupportLines& support_lines() const { return support_lines_; }
   /// The rail of a layered track, or null.
   const Line* rail() const { return rail_ ? &*rail_ : nullptr; }
   /// The line on which wheels run: the rail, or the bridge if there is no rail.
@@ -142,6 +144,7 @@ class Beam {
   MPI_Comm comm_;
   Layout layout_;
   Line bridge_;
+  SupportLines support_lines_;
   std::optional<Line> rail_;
   std::vector<int> parts_, rank_begins_;
   int first_ = 0, local_ = 0;  // columns

@@ -32,28 +32,6 @@ bool level_with_ground(const BeamModel& model, bool last) {
 
 constexpr double same_place = 1e-9;  // relative to the length of the bridge
 
-struct Bearing {
-  double x = 0.0;
-  std::size_t end = 0;  // span end
-};
-
-bool has_spring(const BeamModel& model, double x) {
-  return std::ranges::any_of(model.foundation.vertical, [&](const PointFoundation& point) {
-    return std::abs(point.x - x) <= same_place * model.length();
-  });
-}
-
-/// The supports in ascending order.
-std::vector<Bearing> bearings_of(const BeamModel& model) {
-  std::vector<Bearing> bearings;
-  double x = model.start;
-  for (std::size_t end = 0; end < model.supports.size(); ++end) {
-    if (fixes_vertical(model.supports[end]) || has_spring(model, x)) bearings.push_back({x, end});
-    if (end < model.spans.size()) x += model.spans[end];
-  }
-  return bearings;
-}
-
 }  // namespace
 
 Mesh::Mesh(const BeamModel& model) : ground_(model.ground) {
@@ -114,15 +92,30 @@ std::pair<double, double> Mesh::smooth_reach(int element) const {
   return {*std::prev(after), *after};
 }
 
-SupportLine support_line(const BeamModel& model, double x) {
-  const std::vector<Bearing> bearings = bearings_of(model);
-  if (bearings.empty()) return {};
-  const bool before = x<bearings.front().x, behind = x> bearings.back().x;
-  const Bearing& outermost = before ? bearings.front() : bearings.back();
-  if (bearings.size() == 1 || ((before || behind) && fixes_rotation(model.supports[outermost.end])))
-    return {{outermost.end, outermost.end}, {1.0, 0.0}};
-  const auto after = std::ranges::upper_bound(bearings, x, {}, &Bearing::x);
-  const auto right = std::clamp(after, bearings.begin() + 1, bearings.end() - 1), left = right - 1;
+SupportLines::SupportLines(const BeamModel& model) {
+  const double tolerance = same_place * model.length();
+  std::vector<double> springs;
+  for (const PointFoundation& point : model.foundation.vertical) springs.push_back(point.x);
+  std::ranges::sort(springs);
+  double x = model.start;
+  for (std::size_t end = 0; end < model.supports.size(); ++end) {
+    const auto spring = std::ranges::lower_bound(springs, x - tolerance);
+    const bool has_spring = spring != springs.end() && *spring <= x + tolerance;
+    if (fixes_vertical(model.supports[end]) || has_spring) bearings_.push_back({x, end});
+    if (end < model.spans.size()) x += model.spans[end];
+  }
+  if (bearings_.empty()) return;
+  level_before_ = fixes_rotation(model.supports[bearings_.front().end]);
+  level_behind_ = fixes_rotation(model.supports[bearings_.back().end]);
+}
+
+SupportLine SupportLines::at(double x) const {
+  if (bearings_.empty()) return {};
+  const auto level = [](const Bearing& b) { return SupportLine{{b.end, b.end}, {1.0, 0.0}}; };
+  if (bearings_.size() == 1 || (level_before_ && x < bearings_.front().x)) return level(bearings_.front());
+  if (level_behind_ && x > bearings_.back().x) return level(bearings_.back());
+  const auto after = std::ranges::upper_bound(bearings_, x, {}, &Bearing::x);
+  const auto right = std::clamp(after, bearings_.begin() + 1, bearings_.end() - 1), left = right - 1;
   const double part = (x - left->x) / (right->x - left->x);
   return {{left->end, right->end}, {1.0 - part, part}};
 }

@@ -84,9 +84,22 @@ struct SupportLine {
   }
 };
 
-/// The line at a station x, m. The supports are those that hold the deflection, and the vertical springs at span ends.
-/// Beyond the outermost supports the line goes on as a rigid overhang does: straight on, but level behind a support
-/// that holds the rotation and beside a single support.
-SupportLine support_line(const BeamModel& model, double x);
+/// The lines between neighbouring supports of a bridge. The supports are those that hold the deflection, and the
+/// vertical springs at span ends. Beyond the outermost supports the line goes on as a rigid overhang does: straight on,
+/// but level behind a support that holds the rotation and beside a single support.
+class SupportLines {
+ public:
+  explicit SupportLines(const BeamModel& model);
+  /// The line at a station x, m.
+  SupportLine at(double x) const;
+
+ private:
+  struct Bearing {
+    double x = 0.0;
+    std::size_t end = 0;  // span end
+  };
+  std::vector<Bearing> bearings_;  // ascending
+  bool level_before_ = false, level_behind_ = false;
+};
 
 }  // namespace traverse::beam

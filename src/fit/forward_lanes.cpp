@@ -121,7 +121,7 @@ void ForwardModel::add_samples(const std::vector<double>& samples, const scene::
     const auto probe =
         static_cast<std::size_t>(std::find(probes.begin(), probes.end(), *fit_.series[s].x) - probes.begin());
     const double ground = stored_[s] == engine::Response::deflection  // measured in space
-                              ? beam::support_line(*scene.beam, *fit_.series[s].x).height(scene.beam->settlement)
+                              ? beam::SupportLines(*scene.beam).at(*fit_.series[s].x).height(scene.beam->settlement)
                               : 0.0;
     for (std::size_t k = 0; k < count; ++k) of_series[k] = samples[k * row + s * probes.size() + probe] + ground;
     const Spline spline(of_series, spacing / scene.train.speed);

@@ -31,7 +31,7 @@ Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<d
     sections_.back().add_weight(line.model, self_weight);
     if (&line == &beam.bridge()) {
       sections_.back().record_sleepers(beam);
-      sections_.back().support_line = beam::support_line(beam.model(), x).height(beam.model().settlement);
+      sections_.back().support_line = beam.support_lines().at(x).height(beam.model().settlement);
     }
     size += 18 + 4 * sections_.back().sleepers.size();
   }

@@ -54,7 +54,7 @@ Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, cons
     now_.ground.emplace(*beam);
     if (!scene.support_motion.empty()) {
       ground_.assign(beam->model().supports.size(), 0.0);
-      for (const double x : scene.output.probes) support_lines_.push_back(beam::support_line(beam->model(), x));
+      for (const double x : scene.output.probes) support_lines_.push_back(beam->support_lines().at(x));
     }
     if (wants.stored && !scene.output.sleepers.empty()) now_.sleepers.emplace(*beam, scene.output.sleepers);
     if (beam->rail() != nullptr) {

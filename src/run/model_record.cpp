@@ -272,7 +272,7 @@ results::Shape shape_of(const beam::Beam& beam, const scene::Scene& scene, const
     which.clear();
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const beam::SupportLine line = beam::support_line(beam.model(), points[i].x);
+    const beam::SupportLine line = beam.support_lines().at(points[i].x);
     out.deflection[i] -= line.height(beam.model().settlement) + line.height(worst.ground);
   }
   return out;

@@ -6,17 +6,24 @@
 #include <cmath>
 
 #include "beam/shape.hpp"
+#include "structure/ranges.hpp"
 
 namespace traverse::structure {
 
 Extent extent_of(const double* v, const beam::Layout& layout, int count) {
+  constexpr int columns = 8;  // whose numbers are compared side by side
+  std::array<double, columns* static_cast<std::size_t>(beam::kinds)> largest{};
+  with_block(layout.block, [&](auto B) {
+    const int side_by_side = columns * (B > 0 ? B : layout.block);
+    for (int first = 0; first < count; first += side_by_side)
+      for (int i = 0; i < std::min(side_by_side, count - first); ++i)
+        largest[i] = std::max(largest[i], std::abs(v[first + i]));
+  });
   Extent extent;
-  for (int first = 0; first < count; first += layout.block)
-    for (int place = 0; place < layout.block; ++place) {
-      const bool rotation = beam::Layout::rotation(layout.kind[static_cast<std::size_t>(place)]);
-      double& largest = rotation ? extent.rotation : extent.displacement;
-      largest = std::max(largest, std::abs(v[first + place]));
-    }
+  for (int i = 0; i < columns * layout.block; ++i) {
+    double& of_kind = beam::Layout::rotation(layout.kind[i % layout.block]) ? extent.rotation : extent.displacement;
+    of_kind = std::max(of_kind, largest[i]);
+  }
   return extent;
 }
 

@@ -25,7 +25,7 @@ using test::model_of;
 TEST(SupportLine, GoesThroughSupportsAndSpringsAtSpanEnds) {
   const std::vector<double> ground = {0.01, 0.05, -0.03, 0.0};
   BeamModel model = model_of({10.0, 20.0, 5.0}, 2, false);
-  const auto height = [&](double x) { return beam::support_line(model, x).height(ground); };
+  const auto height = [&](double x) { return beam::SupportLines(model).at(x).height(ground); };
   model.supports = {Support::pinned, Support::roller, Support::roller, Support::free};
   EXPECT_NEAR(height(5.0), 0.03, 1e-15);
   EXPECT_NEAR(height(10.0), 0.05, 1e-15);
