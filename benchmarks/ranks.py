@@ -22,16 +22,21 @@ PART_ROUNDS = 15
 PARTS = ["bare solve", "esdirk4 stage", "esdirk4 step", "genalpha step"]
 OPTIONS = os.path.join(runs.ROOT, "options")
 LONG, SHORT = "5,150 isolated spans, 16 coaches, every span stepped", "three spans, eight coaches"
+TRAFFIC = "5,150 isolated spans, 11 trains each way, shared"
 SCENES = {
     LONG: {
         "options_file": os.path.join(OPTIONS, "bridges", "danyang_kunshan.yml"),
         "vehicle_coach_file": os.path.join(OPTIONS, "vehicles", "s300.yml"),
         "train_vehicles": "coach*16", "train_speed": 83.333, "model_window": 0,
         "ts_dt": 1e-3, "ts_max_time": 10.0, "ts_max_steps": 200, "output_interval": 1.0},
+    TRAFFIC: runs.two_way_traffic(5150, 11) | {
+        "output_probes": "7504.0,12512.0", "ts_max_time": 300.0, "output_interval": 60.0},
     SHORT: {"options_file": runs.scene("three_span_train"), "beam_elements_per_span": 10, "ts_dt": 1e-3},
 }
 FEW_STEPS = {
     "3 isolated spans, 16 coaches, 50 steps": SCENES[LONG] | {"beam_spans": "32.0*3", "ts_max_time": 0.05},
+    "200 isolated spans, a train each way, 10 steps": runs.two_way_traffic(200, 1, 60.0) | {
+        "output_probes": 5040.0, "ts_max_time": 0.2, "output_interval": 0.1},
     f"{SHORT}, 50 steps": SCENES[SHORT] | {"ts_max_time": 0.05},
 }
 

@@ -23,6 +23,20 @@ PEAKS = {"deflection": "deflection", "acceleration": "acceleration", "moment": "
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
+def two_way_traffic(spans, pairs, apart=5000.0, pitch=15000.0):
+    """Options of trains of eight coaches each way, pairs of them that start so far apart and meet, m, on separate spans."""
+    options = {
+        "options_file": os.path.join(ROOT, "options", "bridges", "danyang_kunshan.yml"), "beam_spans": f"32.0*{spans}",
+        "beam_elements_per_span": 10, "vehicle_coach_file": os.path.join(ROOT, "options", "vehicles", "s300.yml"),
+        "model_vehicles": "linear", "step_kinks": "false", "ts_dt": 0.02,
+        "trains": ",".join(f"{way}_{k}" for k in range(pairs) for way in ("up", "down"))}
+    for k in range(pairs):
+        for way, place, speed in (("up", 5000.0 + pitch * k, 83.333333), ("down", 5000.0 + pitch * k + apart, -83.333333)):
+            options |= {f"{way}_{k}_vehicles": "coach*8", f"{way}_{k}_spacing": 25.0, f"{way}_{k}_positions": place,
+                        f"{way}_{k}_speed": speed}
+    return options
+
+
 def scene(name):
     return os.path.join(ROOT, "options", "scenes", name + ".yml")
 

@@ -50,6 +50,18 @@ WAYS = [
             Check('{"/vehicles/1/front_wheel/normal_force", "{}"}', ".*normal_force", "wheel force")]),
         Row("residual of 1e-4 on a bridge bent by its own weight: all peaks", "the mechanism",
             "LinearVehicle.IsKeptWhereWhatItNeglectsChangesNoPeak", [Check("EXPECT_LT(std::abs(off), {}) << peak;", "deflection|acceleration|moment|.*force")]),
+        Row("pitch and wheel force of a car under constant braking", "balance of moments", "LinearVehicle.PitchOfABrakedCar", [
+            Check("found / pitch, 1.0, {});", "pitch_to.*", "pitch"), Check("/ (m * a * d / l), 1.0, {});", what="wheel force")]),
+        Row("half the accelerations along the track: neglected terms", "a quarter of them",
+            "LinearVehicle.LeavesOutSquaresOfAccelerations", [Check("left_out[1], 4.0, {});")]),
+        Row("coaches that brake to rest, start, and run to the left", "the mechanisms", "LinearVehicle.TrainsAtChangingSpeeds", [
+            Check('"/probes/deflection", "{}"', ".*/probes/deflection", "deflection"),
+            Check('"/vehicles/0/wheel_1/normal_force", "{}"', ".*normal_force", "wheel force"),
+            Check('"/energy/work", "{}"', ".*work", "work of the drives")]),
+        Row("three trains with different speed laws in one block of lanes", "the mechanisms",
+            "LinearVehicle.TrainsThatMeetAtChangingSpeeds", [
+            Check('"/probes/deflection", "{}"', ".*/probes/deflection", "deflection"),
+            Check('"/energy/work", "{}"', ".*work", "work of the drives")]),
         Row("loss of contact over a bump: instants", "the mechanism", "LinearVehicle.LosesContactAndGainsItAgain",
             [Check('EXPECT_LT(relative_difference(run("/separations/start"), full("/separations/start")), {});')]),
     ]),

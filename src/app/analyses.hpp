@@ -13,6 +13,7 @@
 #include "prepare.hpp"
 #include "results/checkpoint_file.hpp"
 #include "results/place.hpp"
+#include "run/rank_choice.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/options/analyses.hpp"
 #include "traverse/scene/scene.hpp"
@@ -29,6 +30,7 @@ struct Job {
   run::SharedBeam& beam;
   std::vector<std::string> notes;
   const results::Checkpoint* earlier = nullptr;  // checkpoint that the run continues; null: none
+  run::WaitingRanks* waiting = nullptr;          // ranks that can share the trains; null: none
 };
 
 // Collective. Each function writes the results file and the summary, and returns the exit status like `run`.

@@ -19,6 +19,7 @@
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
 #include "run/checkpoints.hpp"
+#include "run/passage.hpp"
 #include "run/rank_choice.hpp"
 #include "study/study.hpp"
 #include "traverse/base/error.hpp"
@@ -33,7 +34,7 @@ namespace {
 void take_linear_vehicles(scene::Scene& scene, std::vector<std::string>& notes) {
   const bool viaduct = scene.beam && scene.beam->all_separate() && scene.beam->spans.size() > 1;
   if (scene.model.vehicles != scene::VehicleModel::automatic || scene.analysis != options::Analysis::transient ||
-      !viaduct || scene.vehicles.empty() || !scene.train.steady() || scene.start != scene::Start::equilibrium)
+      !viaduct || scene.vehicles.empty() || !scene.train.driven() || scene.start != scene::Start::equilibrium)
     return;
   scene.model.vehicles = scene::VehicleModel::linear;
   scene.model.residual_limit = error_control::default_residual_limit(scene);
@@ -69,7 +70,10 @@ void say_unusual(scene::Scene& scene) {
 int run_one(Request request) {
   const std::optional<results::Checkpoint>& earlier = request.earlier;
   const run::RankChoice at_first = ranks_for(request.comm, request.scene, earlier);
-  return run::run_on_first(request.comm, at_first.ranks, [&](MPI_Comm some) {
+  const auto serve = [&](MPI_Comm all, const scene::NumericalModel& model) {
+    run::serve_trains(all, error_control::with(request.scene, model));
+  };
+  const auto work = [&](MPI_Comm some, run::WaitingRanks* waiting) {
     scene::Scene scene = request.scene;
     std::vector<std::string> notes;
     std::optional<OpenChoice> open;
@@ -77,14 +81,16 @@ int run_one(Request request) {
     take_linear_vehicles(scene, notes);
     const run::RankChoice ranks = ranks_for(some, scene, earlier);
     if (const std::string& said = ranks.note.empty() ? at_first.note : ranks.note; !said.empty()) notes.push_back(said);
-    return run::run_on_first(some, ranks.ranks, [&](MPI_Comm fewer) {
+    const auto work_on = [&](MPI_Comm fewer, run::WaitingRanks* more) {
       run::SharedBeam shared(fewer, scene, notes);
       notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
       return run_of(scene.analysis)
           ->run({fewer, scene, std::move(request.place), accuracy, open ? &*open : nullptr, shared, std::move(notes),
-                 earlier ? &*earlier : nullptr});
-    });
-  });
+                 earlier ? &*earlier : nullptr, more != nullptr ? more : waiting});
+    };
+    return run::run_on_first(some, ranks.ranks, work_on, serve);
+  };
+  return run::run_on_first(request.comm, at_first.ranks, work, serve);
 }
 
 constexpr Application applications[] = {

@@ -37,11 +37,6 @@ struct RunEnd {
   double step = 0.0;  // s, longest computed time step, for shorter_steps
 };
 
-std::optional<run::Plan> plan_of(const results::Checkpoint* earlier) {
-  if (earlier == nullptr) return std::nullopt;
-  return run::Plan{0.0, earlier->time_step, earlier->interval, earlier->stored};
-}
-
 /// A run at its start: the input is checked, the notes are printed, and no motion is computed yet.
 struct ReadyRun {
   /// Collective. The job must outlive this object. Throws InputError if the job cannot be run. Prints the notes.
@@ -56,8 +51,9 @@ struct ReadyRun {
   int rank = 0;
   scene::Scene scene;
   error_control::Accuracy accuracy;
-  double counting;                   // Hz, cut-off frequency of deck accelerations; 0: no filter
-  std::optional<run::Plan> earlier;  // plan of the run that this run continues
+  double counting;                                  // Hz, cut-off frequency of deck accelerations; 0: no filter
+  std::optional<run::Plan> earlier;                 // plan of the run that this run continues
+  std::unique_ptr<coupling::TrainSharing> sharing;  // until the simulation has it; null: no other ranks
   run::Simulation simulation;
 };
 
@@ -66,7 +62,10 @@ ReadyRun::ReadyRun(Job& given)
       scene(given.scene),
       accuracy(given.accuracy),
       counting(prepare(scene, accuracy, given.beam, given.notes)),
-      earlier(plan_of(given.earlier)),
+      earlier(given.earlier == nullptr ? std::nullopt
+                                       : std::optional(run::Plan{0.0, given.earlier->time_step, given.earlier->interval,
+                                                                 given.earlier->stored})),
+      sharing(run::call_to_share(given.waiting, scene)),
       simulation(scene, given.beam,
                  {.stored = true,
                   .limits = !scene.limits.empty(),
@@ -82,6 +81,7 @@ ReadyRun::ReadyRun(Job& given)
   if (is_continued() && !(simulation.plan().end_time > job.earlier->time))
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  simulation.plan().end_time));
+  simulation.system().share_trains(std::move(sharing));
   for (const std::string& note : options::notes_on_unused(*scene.given)) job.notes.push_back(note);
   reject_unfiltered();
   if (is_continued()) {
@@ -132,7 +132,6 @@ class RecordedRun : private run::Observer {
 
  private:
   using Clock = std::chrono::steady_clock;
-
   void sample(const integrate::Instant& instant) override;
   bool step(double t, long steps) override;
   void before_step(double t) override;
@@ -363,8 +362,9 @@ int run_in_time(Job job) {
     own.emplace(job.comm, scene, ignored);
   }
   while (true) {
-    Job one{job.comm,   scene, std::move(job.place), accuracy, job.open, own ? *own : job.beam, std::move(job.notes),
-            job.earlier};
+    Job one{
+        job.comm,    scene,      std::move(job.place), accuracy, job.open, own ? *own : job.beam, std::move(job.notes),
+        job.earlier, job.waiting};
     const RunEnd end = run_once(one, repeated, halvings > 0);
     if (end.again == Retry::none) return end.status;
     if (end.again == Retry::mechanisms) {

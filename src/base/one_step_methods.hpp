@@ -59,6 +59,11 @@ std::pair<double, double> advanced(const Rule& rule, const Accelerations& A, int
 /// Power lost in damping, and power of loads: W, or their integrals, J.
 struct Powers {
   double dissipation = 0.0, work = 0.0;
+  Powers& operator+=(const Powers& more) {
+    dissipation += more.dissipation;
+    work += more.work;
+    return *this;
+  }
 };
 
 /// The powers at the accelerations of a step, and their integrals over all steps.

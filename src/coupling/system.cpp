@@ -176,7 +176,7 @@ System::Powers System::powers(Powers of_structure) {
 
 // Powers of this rank's vehicles and contacts at their last state.
 System::Powers System::fleet_powers() {
-  const multibody::MechanismPowers vehicles = fleet_.powers();
+  const base::Powers vehicles = fleet_.powers();
   double work = vehicles.work;
   if (structure_ && structure_->support_motion() != nullptr) {  // it works on the vehicles through their contacts
     const double lost = structure_->power_with_supports(contact_loads());

@@ -38,7 +38,8 @@
 #include "coupling/contact_events.hpp"
 #include "coupling/contact_newton.hpp"
 #include "coupling/quasi_static_response.hpp"
-#include "engine/linear_train.hpp"
+#include "coupling/train_sharing.hpp"
+#include "engine/linear_trains.hpp"
 #include "recovery/recovery.hpp"
 #include "structure/structure.hpp"
 #include "train/fleet.hpp"
@@ -46,7 +47,9 @@
 #include "train/vehicle_share.hpp"
 #include "train/wheel_paths.hpp"
 
-namespace traverse::coupling {}
+namespace traverse::structure {
+class ElementStructure;
+}
 
 namespace traverse::coupling {
 
@@ -120,10 +123,12 @@ class System {
   std::vector<std::string> start(bool equilibrium, double* y, bool stays = false);
 
   /// Collective. After start: linearises vehicles about the initial state if possible. Returns Fleet::linearise's
-  /// lines.
-  std::vector<std::string> linearise_vehicles(const double* y) {
+  /// lines. At a changing speed the coordinates in y are measured from another steady motion afterwards.
+  std::vector<std::string> linearise_vehicles(double* y) {
     evaluate_fleet(0.0, y);
-    return fleet_.linearise();
+    std::vector<std::string> lines = fleet_.linearise();
+    if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
+    return lines;
   }
   /// Collective. The largest linearisation residual of the linear vehicles in the observed states, over their weights.
   double linearisation_residual() const {
@@ -169,6 +174,17 @@ class System {
   }
   /// Sets y to the start of the last step; restart_motion has to follow.
   void reject_step(double* y);
+
+  /// Before begin_motion, with a communicator of one rank and a bridge by elements: ranks share the trains of this
+  /// scene, as far as possible. The first of them takes the steps, the others serve(), until it ends.
+  void share_trains(std::unique_ptr<TrainSharing> sharing) { sharing_ = std::move(sharing); }
+  void serve(double* y);
+  /// Between observe and the next step: completes the observed nodal values by those of other ranks.
+  void complete_motion() {
+    if (!is_shared()) return;
+    sharing_->request(TrainSharing::motion);
+    receive_motion(accepted_, false);
+  }
 
   /// Collective. Computes `out` for a state with the structure's w' = a (null: that at the end of the last step), and
   /// accelerations, reactions and wheel forces of the fleet. If `all` is false, the fleet has only the wheels'
@@ -229,7 +245,11 @@ class System {
 
   /// Largest estimated relative rounding error of static solutions so far.
   double static_error() const { return structure_ ? structure_->statics().static_error() : 0.0; }
-  long beam_solves() const { return structure_ ? structure_->statics().solves : 0; }
+  long beam_solves() const {
+    return (structure_ ? structure_->statics().solves : 0) + static_cast<long>(sums_of_others().solves);
+  }
+  /// Collective. Energy lost so far by setting nodes to rest, J.
+  double energy_left() const;
   long factorisations() const { return structure_ ? structure_->statics().factorisations() : 0; }
 
   /// Collective. Writes or reads the state between two steps, y and all data that the next steps depend on. Before
@@ -282,7 +302,10 @@ class System {
   bool stage_of_fleet(const StageTime& at);
   bool stage_by_passes(const StageTime& at);
   bool solve_stages(double t, const double* v, const double* w);
+  bool solve_by_passes(double t, const double* y);
+  bool is_length(double h) const;
   void make_linear_train();
+  bool select_sides();
   void finish_passes();
   bool stage_of_motion(double t, std::size_t stage, const double* v, const double* w);
   const std::vector<structure::Reach>& loaded(double t, double h);
@@ -305,6 +328,19 @@ class System {
   Powers fleet_powers();
   void move_supports(double t);
   Energy energy(const double* y);
+  bool is_shared() const { return sharing_ && sharing_->divided_now; }
+  bool may_share();
+  structure::ElementStructure& elements();
+  std::vector<TrainReach> reaches_of_trains(double t, double end);
+  void begin_shared_step(double t, double h, double* y);
+  void divide_trains(double t, double h, double* y);
+  void recall(double* y, bool rejected = false);
+  void receive_motion(double* y, bool kept);
+  bool receive_trains(bool solved);
+  SharedSums sums_of_others() const;
+  void take_portion(double* y);
+  void serve_step(double t, double h, double* y);
+  void send_motion(const std::vector<structure::Range>& columns, double* y);
   double force_sum_ = 0.0, moment_sum_ = 0.0;  // magnitudes of all loads, N and N m
 
   MPI_Comm comm_;
@@ -326,6 +362,7 @@ class System {
   std::map<double, double> applied_;                    // N by station, m: the forces of apply_to_beam
   bool applied_changed_ = false;                        // since the last step
   std::vector<char> on_beam_;                           // whether each moving force is on the beam during the step
+  double step_middle_ = 0.0;                            // s, middle of the step
   std::vector<double> middle_;                          // m, x of each moving force in the middle of the step
   std::string unsupported_;                             // known reason why there is no static equilibrium
   std::vector<double> p_, c_p_, pdd_;                   // p, p' and their c, p'', the same on all ranks
@@ -338,10 +375,14 @@ class System {
   std::vector<double> v_, w_;  // displacements and rates of elements, 2*per_node each
   std::vector<double> element_loads_;
   std::vector<structure::Reach> reaches_;
-  std::unique_ptr<Motion> motion_;              // null before begin_motion
-  std::unique_ptr<engine::LinearTrain> train_;  // null unless all vehicles are linear with plain contacts
-  bool by_passes_ = false;                      // the step is computed with train_
-  std::size_t stage_ = 0;                       // number of the present stage in the step
+  std::unique_ptr<Motion> motion_;                // null before begin_motion
+  std::unique_ptr<engine::LinearTrains> trains_;  // null unless all vehicles are linear with plain contacts
+  bool by_passes_ = false;                        // the step is computed with trains_
+  std::unique_ptr<TrainSharing> sharing_;         // null: this rank moves all trains
+  SharedSums returned_;                           // what other ranks have given back
+  structure::StructureEnergy energy_;             // of this rank's spans, where it serves
+  double* accepted_ = nullptr;                    // y of the last accept, to which the motion of other ranks is added
+  std::size_t stage_ = 0;                         // number of the present stage in the step
   bool store_steps_ = false;
 };
 

@@ -6,7 +6,7 @@
 
 #include "base/broadcast.hpp"
 #include "coupling/system.hpp"
-#include "engine/linear_train.hpp"
+#include "engine/linear_trains.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::coupling {
@@ -37,6 +37,8 @@ void System::set_vehicles(double t, const double* y) {
 }
 
 bool System::accept(double t, double* y) {
+  accepted_ = y;
+  if (is_shared()) sharing_->request(TrainSharing::accept);
   if (structure_) structure_->accept(y, y + n_, motion_ ? reaches_ : loaded(t, 0.0));
   if (fleet_.vehicles.empty()) return false;
   set_vehicles(t, y);
@@ -58,6 +60,7 @@ bool System::accept(double t, double* y) {
 }
 
 void System::keep(base::Archive& archive, double* y) {
+  if (is_shared()) recall(y);
   const auto n = static_cast<std::size_t>(n_);
   archive.cut({y, n});
   archive.cut({y + n, n});
@@ -67,16 +70,20 @@ void System::keep(base::Archive& archive, double* y) {
   if (motion_) {
     Motion& m = *motion_;
     if (rank_ != 0 && !share_.distributed()) m.powers.at[0] = {};  // which are valid on the first rank only
+    if (trains_ && rank_ == 0 && !archive.reads()) m.powers.at[0] = trains_->powers_at_start();
     archive.same(m.length, m.p, m.pd, m.pdd[0], m.energy_scale);
     archive.sum(m.powers.at[0].dissipation, m.powers.at[0].work, m.powers.sum.dissipation, m.powers.sum.work);
     if (archive.reads() && m.length > 0.0) set_step(m.length);
   }
+  archive.same(step_middle_, returned_);
+  if (archive.reads()) select_sides();
   archive.same(on_beam_, braking_force_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, flags_);
   std::vector<int> owners = share_.owners(fleet_.vehicles.size());
   archive.same(owners);
   fleet_.keep(archive, owners);
   archive.same(events_, newton_);
-  if (train_) archive.same(*train_);
+  if (trains_) archive.same(*trains_);
+  if (trains_ && archive.reads()) trains_->set_powers_at_start(motion_->powers.at[0]);
   if (structure_) structure_->keep(archive);
 }
 

@@ -137,13 +137,18 @@ bool System::update_braking(double t) {
   return changed;
 }
 
+// The prescribed motions of the step that jump. True if one has jumped.
+bool System::select_sides() {
+  const bool jumped = fleet_.begin_step(step_middle_);
+  structure::SupportMotion* supports = line_ != nullptr ? structure_->support_motion() : nullptr;
+  return (supports != nullptr && supports->select_sides(step_middle_)) || jumped;
+}
+
 bool System::begin_step(double from, double to) {
-  const double middle = 0.5 * (from + to);
+  const double middle = step_middle_ = 0.5 * (from + to);
   bool changed = std::exchange(applied_changed_, false);
-  changed = fleet_.begin_step(middle) || changed;
+  changed = select_sides() || changed;
   if (line_ == nullptr) return changed;
-  if (structure::SupportMotion* supports = structure_->support_motion())
-    changed = supports->select_sides(middle) || changed;
   changed = update_braking(middle) || changed;
   for (std::size_t i = 0; i < on_beam_.size(); ++i) {
     const double x = train::place_of(input_.load, i, middle), speed = train::speed_of(input_.load, i, middle);

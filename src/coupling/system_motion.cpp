@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "coupling/system.hpp"
-#include "engine/linear_train.hpp"
+#include "engine/linear_trains.hpp"
 
 namespace traverse::coupling {
 namespace {
@@ -23,19 +23,22 @@ void System::begin_motion(const base::Method& method) {
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
   make_linear_train();
-  if (!train_) share_.distribute(comm_, fleet_);
+  if (!trains_) share_.distribute(comm_, fleet_);
 }
 
 // If vehicles are linear with plain contacts, every rank computes all of them: messages would cost more time.
 void System::make_linear_train() {
-  train_.reset();
+  trains_.reset();
   if (structure_ && structure_->support_motion() != nullptr) return;
   const int own = static_cast<int>(engine::best_target());
   int bounds[2] = {own, -own};  // all ranks must compute the same to the last bit
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm_);
   if (bounds[0] != -bounds[1] || !engine::LinearTrain::obstacle(fleet_).empty()) return;
-  train_ = std::make_unique<engine::LinearTrain>(fleet_, line_ != nullptr ? &line_->mesh : nullptr, per_node(),
-                                                 surface_height());
+  std::vector<std::size_t> first{0};
+  for (const train::Course& course : input_.train.courses)
+    if (sharing_ && course.first > 0) first.push_back(static_cast<std::size_t>(fleet_.members[course.first].unit));
+  trains_ = std::make_unique<engine::LinearTrains>(fleet_, first, line_ != nullptr ? &line_->mesh : nullptr, per_node(),
+                                                   surface_height());
 }
 
 // The reaches of wheels and forces during a step.
@@ -45,7 +48,7 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
     reaches_.push_back({std::min(from, to) - width, std::max(from, to) + width});
   };
   for (const train::WheelContact& c : fleet_.wheels) {
-    if (c.is_further) continue;
+    if (c.is_further || (trains_ && !trains_->moves(c.vehicle))) continue;
     const double x = fleet_.coordinates(c).x(), travel = fleet_.velocities(c).x() * h;
     add(x, x + 2.0 * travel, fleet_.reach(c));  // a wheel may touch beside its centre
   }
@@ -59,7 +62,8 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
 
 void System::restart_motion(double t, double h, double* y) {
   Motion& m = *motion_;
-  if (std::abs(h - m.length) > same_length * m.length) set_step(h);
+  if (is_shared()) recall(y);
+  if (!is_length(h)) set_step(h);
   m.rate.resize(static_cast<std::size_t>(local_size()));
   rate(t, y, m.rate.data());
   const int f = fleet_.freedom();
@@ -67,12 +71,15 @@ void System::restart_motion(double t, double h, double* y) {
   m.pd.assign(p_.begin() + f, p_.end());
   m.pdd[0] = pdd_;
   m.powers.at[0] = fleet_powers();
-  if (train_) train_->restart(fleet_, m.p.data(), m.pd.data(), m.pdd[0].data());
+  if (trains_) trains_->restart(fleet_, m.p.data(), m.pd.data(), m.pdd[0].data());
   if (structure_) structure_->restart(loaded(t, 0.0), y, y + n_, m.rate.data() + n_);
 }
 
+bool System::is_length(double h) const { return std::abs(h - motion_->length) <= same_length * motion_->length; }
+
 void System::reject_step(double* y) {
   Motion& m = *motion_;
+  if (is_shared()) recall(y, true);
   m.powers.sum = m.powers.before;
   if (structure_) structure_->reject_step(y, y + n_);
   std::copy(m.before.begin(), m.before.end(), y + 2 * n_);
@@ -83,23 +90,23 @@ void System::set_step(double h) {
   m.method = m.unit;
   m.method.scale_to(h);
   m.length = h;
-  if (train_) train_->set_method(m.method, h);
+  if (trains_) trains_->set_method(m.method, h);
   if (structure_) structure_->set_method(m.method, h);
 }
 
 bool System::step_motion(double t, double h, double* y, const std::function<bool()>& good_enough) {
   Motion& m = *motion_;
-  if (std::abs(h - m.length) > same_length * m.length) set_step(h);
+  if (sharing_) begin_shared_step(t, h, y);
+  if (!is_length(h)) set_step(h);
   m.powers.before = m.powers.sum;
   if (store_steps_) m.before.assign(y + 2 * n_, y + local_size());
-  by_passes_ = train_ != nullptr;
-  bool solved = false;
-  if (by_passes_) {
-    train_->begin_step();
-    solved = solve_stages(t, y, y + n_);
-    by_passes_ = solved;
-    if (!solved) evaluate_fleet(t, y);
+  bool solved = trains_ && solve_by_passes(t, y);
+  if (is_shared() && !receive_trains(solved)) {
+    recall(y, true);
+    restart_motion(t, h, y);
+    return step_motion(t, h, y, good_enough);  // all trains on this rank
   }
+  if (trains_ && !solved) evaluate_fleet(t, y);
   if (!solved && !solve_stages(t, y, y + n_)) return false;
   if (good_enough && !good_enough()) return false;
   finish_step(y);
@@ -108,6 +115,15 @@ bool System::step_motion(double t, double h, double* y, const std::function<bool
     is_evaluated_ = false;
   }
   return true;
+}
+
+// Solves all stages of a step from t by passes over the contacts of linear vehicles.
+bool System::solve_by_passes(double t, const double* y) {
+  by_passes_ = true;
+  trains_->begin_step();
+  motion_->powers.at[0] = trains_->powers_at_start();
+  by_passes_ = solve_stages(t, y, y + n_);
+  return by_passes_;
 }
 
 // Solves all stages of a step from t.
@@ -142,8 +158,8 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   if (solve_coupled({t, shift, shift2}) != Solution::found) return false;
   if (structure_) structure_->end_stage(stage, v, w);
   if (by_passes_) {
-    train_->accelerations(m.pdd[rule.known].data());
-    m.powers.at[rule.known] = {train_->dissipation(), train_->drive_power()};
+    trains_->accelerations(m.pdd[rule.known].data());
+    m.powers.at[rule.known] = trains_->powers();
     return true;
   }
   for (int i = first; i < past; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
@@ -153,21 +169,21 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
 
 // The stage of solve_coupled by passes over all contacts, repeated until their forces no longer change.
 bool System::stage_by_passes(const StageTime& at) {
-  train_->predict(stage_, at.t);
-  if (!train_->place(fleet_)) return false;
+  trains_->predict(fleet_, stage_, at.t);
+  if (!trains_->place(fleet_)) return false;
   if (structure_) {
-    const auto [field, own] = structure_->begin_passes(train_->elements());
-    train_->set_contact_field(field, &own);
+    const auto [field, own] = structure_->begin_passes(trains_->elements());
+    trains_->set_contact_field(field, &own);
   }
   const auto respond = [&](double shift) {
-    if (structure_) structure_->respond([this] { train_->add_loads(); }, shift);
+    if (structure_) structure_->respond([this] { trains_->add_loads(); }, shift);
   };
   do {
     respond(0.0);
-    if (!train_->update_forces()) return false;
-  } while (!train_->converged());
+    if (!trains_->update_forces()) return false;
+  } while (!trains_->converged());
   respond(stage_ + 1 == motion_->method.stages.size() ? at.shift : 0.0);  // the last stage also needs rates
-  train_->end_stage();
+  trains_->end_stage();
   return true;
 }
 
@@ -188,7 +204,7 @@ void System::finish_step(double* y) {
     finish_passes();
   else
     share_step();
-  if (train_ && !by_passes_) train_->restart(fleet_, m.p.data(), m.pd.data(), m.pdd[0].data());
+  if (trains_ && !by_passes_) trains_->restart(fleet_, m.p.data(), m.pd.data(), m.pdd[0].data());
   if (rank_ != 0) return;
   double* p = y + 2 * n_;
   std::copy(m.p.begin(), m.p.end(), p);
@@ -198,10 +214,11 @@ void System::finish_step(double* y) {
 // Copies the positions and contacts that contact events need to the fleet.
 void System::finish_passes() {
   Motion& m = *motion_;
-  train_->finish_step(m.p.data(), m.pd.data(), m.pdd[0].data());
-  train_->copy_contacts_to(fleet_);
+  trains_->finish_step();
+  trains_->state(m.p.data(), m.pd.data(), m.pdd[0].data());
+  trains_->copy_contacts_to(fleet_);
   std::copy(m.p.begin(), m.p.end(), p_.begin());
-  if (!train_->ends_with_stage()) flags_ |= train::VehicleShare::moved;
+  if (!trains_->ends_with_stage()) flags_ |= train::VehicleShare::moved;
 }
 
 // Exchanges p, p' and p'' of all vehicles at the end of the step.

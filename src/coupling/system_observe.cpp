@@ -2,19 +2,23 @@
 #include <algorithm>
 
 #include "coupling/system.hpp"
-#include "engine/linear_train.hpp"
+#include "engine/linear_trains.hpp"
 
 namespace traverse::coupling {
 
 // Whether a step by passes has copied the wheels' positions and forces at t to the fleet.
 bool System::contacts_are_known(double t) const {
-  return by_passes_ && t == evaluated_time_ && train_->ends_with_stage() && surface_height() == 0.0 &&
+  return by_passes_ && t == evaluated_time_ && trains_->ends_with_stage() && surface_height() == 0.0 &&
          std::none_of(fleet_.wheels.begin(), fleet_.wheels.end(), [](const auto& wheel) { return wheel.further > 0; });
 }
 
 void System::observe(double t, const double* y, const double* a, Observation& out, bool all) {
-  const bool known = contacts_are_known(t), residual_grows = known && train_->residual_may_grow();
+  const bool known = contacts_are_known(t), residual_grows = known && trains_->residual_may_grow();
   const bool from_passes = known && !all && !residual_grows;
+  if (is_shared()) {
+    sharing_->request(from_passes ? TrainSharing::probes : all ? TrainSharing::energies : TrainSharing::motion);
+    receive_motion(accepted_, false);
+  }
   // Without passes, accept() has set vehicles and contacts to this instant, except for accelerations and reactions, and
   // for those of vehicles of other ranks.
   const bool accepted = is_evaluated_ || (!all && !by_passes_);
@@ -34,7 +38,7 @@ void System::observe(double t, const double* y, const double* a, Observation& ou
                            fleet_.velocities(c).x(), 0.0, wheel});
     }
     const structure::ElementLoads contacts =
-        from_passes ? structure::ElementLoads{train_->elements(), structure_->pass_loads()} : contact_loads();
+        from_passes ? structure::ElementLoads{trains_->elements(), structure_->pass_loads()} : contact_loads();
     structure_->observe(y, y + n_, a, contacts, all, out.beam);
     structure_->add_support_motion(out.beam);
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
@@ -64,6 +68,11 @@ Energy System::energy(const double* y) {
     s.dissipated += motion_->powers.sum.dissipation;
     s.work += motion_->powers.sum.work;
   }
+  const SharedSums others = sums_of_others();
+  s.kinetic += others.kinetic;
+  s.strain += others.strain;
+  s.dissipated += others.dissipated;
+  s.work += others.work;
   if (rank_ == 0) {
     s.dissipated += y[2 * (n_ + fleet_.freedom())];
     s.work += y[2 * (n_ + fleet_.freedom()) + 1];

@@ -1,7 +1,5 @@
-// The set-up, stages and steps of a linear train, and the data that it copies to the fleet between steps.
+// The stages and steps of a linear train, and the data that it copies to the fleet between steps.
 #include "engine/linear_train.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +7,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "train/linear_dynamics.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::engine {
@@ -36,7 +33,8 @@ constexpr double profile_reach = 2e-5;    // m: the parabola of the profile is e
 }  // namespace
 
 void LinearTrain::write(const double* rows, double* coordinates) const {
-  for (std::size_t i = 0; i < coordinate_.size(); ++i) coordinates[i] = rows[coordinate_[i]];
+  for (std::size_t i = 0; i < coordinate_.size(); ++i)
+    coordinates[first_coordinate_ + static_cast<std::ptrdiff_t>(i)] = rows[coordinate_[i]];
 }
 
 void LinearTrain::set_method(const base::Method& method, double h) {
@@ -55,26 +53,38 @@ void LinearTrain::begin_step() {
 }
 
 void LinearTrain::restart(const train::Fleet& fleet, const double* p, const double* pd, const double* pdd) {
-  for (std::size_t k = 0; k < coordinate_.size(); ++k) {
-    const std::size_t at = coordinate_[k];
+  for (std::size_t i = 0; i < coordinate_.size(); ++i) {
+    const std::size_t at = coordinate_[i];
+    const std::ptrdiff_t k = first_coordinate_ + static_cast<std::ptrdiff_t>(i);
     task_.x[at] = p[k];
     task_.w[at] = pd[k];
     task_.a[0][at] = pdd[k];
   }
-  for (std::size_t i = 0; i < wheel_.size(); ++i) arrays_.start_contact(wheel_[i], fleet.wheels[entry_[i]]);
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    const train::WheelContact& c = fleet.wheels[entry_[i]];
+    arrays_.start_contact(wheel_[i], c);
+    task_.station[wheel_[i]] = fleet.coordinates(c).x() + c.touch.ahead;
+    task_.along_rate[wheel_[i]] = fleet.velocities(c).x();
+  }
   length_before_ = last_time_ = time_before_ = 0.0;
   placed_ = false;
+  powers_at_start_ = {};
+  for (const train::MovingVehicle& vehicle : vehicles_of(fleet)) powers_at_start_ += vehicle.dynamics->powers(vehicle);
 }
 
-void LinearTrain::predict(std::size_t stage, double t) {
+void LinearTrain::predict(const train::Fleet& fleet, std::size_t stage, double t) {
   stage_ = stage;
   passes_ = 0;
   task_.extrapolation =
       last_time_ > time_before_ ? std::clamp((t - last_time_) / (last_time_ - time_before_), 0.0, 2.0) : 0.0;
   time_before_ = std::exchange(last_time_, t);
   converged_ = false;
-  for (std::size_t b = 0; b < arrays_.blocks.size(); ++b)
-    for (std::size_t l = 0; l < arrays_.lanes; ++l) arrays_.distance[b][l] = arrays_.speed[b][l] * t;
+  for (std::size_t k = 0; k < place_.size(); ++k) {
+    const auto [block, lane] = place_[k];
+    arrays_.move(block, lane, vehicles_of(fleet)[k].travel, t);
+    const double acceleration = arrays_.acceleration[block][lane];
+    if (std::exchange(acceleration_[k], acceleration) != acceleration) largest_departure_[k] = 0.0;
+  }
   TRAVERSE_LANES_CALL(predict_train(task_, static_cast<int>(stage), work_));
 }
 
@@ -123,7 +133,7 @@ bool LinearTrain::place(train::Fleet& fleet) {
   if (!placed_ || !elements_listed()) list_elements();
   evaluate_profiles(0.0);
   placed_ = true;
-  if (mesh_ == nullptr) set_contact_field(no_field_, nullptr);
+  if (mesh_ == nullptr) set_contact_field(no_field_, nullptr, elements_, false);
   return true;
 }
 
@@ -170,7 +180,7 @@ void LinearTrain::list_elements() {
     add(*patches_[i]);
     if (!surfaces_) continue;
     const SurfaceTable& table = surfaces_->tables()[table_[i]];
-    const double travel = speed_[i] * length_, x = task_.along[wheel_[i]] + travel;
+    const double travel = *speed_[i] * length_, x = task_.along[wheel_[i]] + travel;
     for (int k = interval_[i]; travel > 0.0 && k + 1 < table.count && table.patches[k].to < x;) add(table.patches[++k]);
     for (int k = interval_[i]; travel < 0.0 && k > 0 && table.patches[k].from > x;) add(table.patches[--k]);
   }
@@ -179,11 +189,12 @@ void LinearTrain::list_elements() {
   field_ = nullptr;
 }
 
-void LinearTrain::set_contact_field(const structure::ContactField& field, const structure::ElementCompliance* own) {
+void LinearTrain::set_contact_field(const structure::ContactField& field, const structure::ElementCompliance* own,
+                                    const std::vector<int>& listed, bool changed) {
   task_.nodal = field.v;
   task_.nodal_rate = field.w;
   task_.load = field.load;
-  const bool changed = &field != field_;
+  changed = changed || &field != field_;
   field_ = &field;
   if (changed) {
     std::copy_n(field.offset.begin(), 2 * task_.per_node, task_.offset);
@@ -194,7 +205,7 @@ void LinearTrain::set_contact_field(const structure::ContactField& field, const 
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
     if (!changed && moved_[i] == 0) continue;
     moved_[i] = 0;
-    for (int k = 0; k < 2; ++k) put_on_element(task_.patch[k], wheel_[i], patches_[i]->patch[k].element, own);
+    for (int k = 0; k < 2; ++k) put_on_element(task_.patch[k], wheel_[i], patches_[i]->patch[k].element, own, listed);
   }
   std::fill(arrays_.touches_two_patches.begin(), arrays_.touches_two_patches.end(), 0);
   for (std::size_t i = 0; i < wheel_.size(); ++i)
@@ -207,14 +218,14 @@ void LinearTrain::set_contact_field(const structure::ContactField& field, const 
     }
 }
 
-void LinearTrain::put_on_element(SurfacePatch& p, std::size_t at, int element,
-                                 const structure::ElementCompliance* own) {
+void LinearTrain::put_on_element(SurfacePatch& p, std::size_t at, int element, const structure::ElementCompliance* own,
+                                 const std::vector<int>& listed) {
   if (element < 0) {
     p.slot[at] = task_.ground;
     for (double* entry : p.compliance) entry[at] = 0.0;
     return;
   }
-  const auto number = std::lower_bound(elements_.begin(), elements_.end(), element) - elements_.begin();
+  const auto number = std::lower_bound(listed.begin(), listed.end(), element) - listed.begin();
   p.slot[at] = field_->slot[static_cast<std::size_t>(number)];
   const double* block = own->block(static_cast<int>(number), static_cast<int>(number));
   const int m = 2 * task_.per_node, o = task_.per_node - 2;
@@ -246,9 +257,13 @@ double LinearTrain::sum_in_stage(const double* rows) const {
   return std::accumulate(row, row + arrays_.lanes, 0.0);
 }
 
-void LinearTrain::finish_step(double* p, double* pd, double* pdd) {
+void LinearTrain::finish_step() {
   TRAVERSE_LANES_CALL(finish_train_step(task_));
   length_before_ = length_;
+  powers_at_start_ = powers();
+}
+
+void LinearTrain::state(double* p, double* pd, double* pdd) const {
   write(task_.x, p);
   write(task_.w, pd);
   write(task_.a[0], pdd);
@@ -268,6 +283,7 @@ bool LinearTrain::residual_may_grow() {
 }
 
 void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
+  if (!patches_.empty() && patches_.front() == nullptr) return;  // another rank moves the train
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
     train::WheelContact& c = fleet.wheels[entry_[i]];
     const std::size_t at = wheel_[i];
@@ -290,98 +306,60 @@ void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
   }
 }
 
-// The archive is written wheel by wheel, because another processor may have another number of lanes.
-void LinearTrain::keep(base::Bytes& bytes) {
-  const auto numbers = [&](auto* of_lanes, const std::vector<std::size_t>& places) {
-    auto list = std::vector<std::remove_pointer_t<decltype(of_lanes)>>(places.size());
-    std::transform(places.begin(), places.end(), list.begin(), [&](std::size_t at) { return of_lanes[at]; });
-    bytes(list);
-    if (list.size() != places.size()) throw FileError("the checkpoint does not fit this scene");
-    for (std::size_t i = 0; i < places.size(); ++i) of_lanes[places[i]] = list[i];
+void LinearTrain::given() {
+  double* to = numbers_.data();
+  for (const double number :
+       {contraction_, last_time_, time_before_, length_before_, powers_at_start_.dissipation, powers_at_start_.work})
+    *to++ = number;
+  for (const int k : interval_) *to++ = k;
+  for (const std::size_t at : wheel_) *to++ = task_.active[at];
+}
+
+void LinearTrain::taken() {
+  const double* from = numbers_.data();
+  for (double* number : {&contraction_, &last_time_, &time_before_, &length_before_, &powers_at_start_.dissipation,
+                         &powers_at_start_.work})
+    *number = *from++;
+  for (int& k : interval_) k = static_cast<int>(*from++);
+  for (const std::size_t at : wheel_) task_.active[at] = static_cast<int>(*from++);
+  for (std::size_t i = 0; i < wheel_.size(); ++i) patches_[i] = &surfaces_->tables()[table_[i]].patches[interval_[i]];
+  placed_ = false;
+}
+
+// The archive is written wheel by wheel, because another processor may have another number of lanes, and other ranks
+// other trains.
+void LinearTrain::keep(Lists& lists, bool reads) {
+  std::size_t number = 0;
+  const auto next = [&](std::size_t count, const auto& at) {  // at(i): entry i of this train
+    if (lists.size() == number) lists.emplace_back();
+    List& list = lists[number++];
+    if (reads && list.begin + count > list.values.size()) throw FileError("the checkpoint does not fit this scene");
+    for (std::size_t i = 0; i < count; ++i) {
+      auto& entry = at(i);
+      if (reads)
+        entry = static_cast<std::remove_reference_t<decltype(entry)>>(list.values[list.begin++]);
+      else
+        list.values.push_back(entry);
+    }
   };
-  for (double* of : {task_.x, task_.w, task_.a[0]}) numbers(of, coordinate_);
-  for (double* of :
-       {task_.normal, task_.root, task_.normal_up, task_.normal_along, task_.force_up, task_.force_along, task_.ahead,
-        task_.ahead_before, task_.turn, task_.history[most_stages], task_.history[most_stages + 1]})
-    numbers(of, wheel_);
-  numbers(task_.active, wheel_);
-  bytes(length_before_, contraction_, last_time_, time_before_, largest_departure_);
-  if (bytes.reads()) placed_ = false;
-}
-
-std::string LinearTrain::obstacle(const train::Fleet& fleet) {
-  return fleet.vehicles.empty() ? "no vehicles run" : TrainArrays::obstacle(fleet);
-}
-
-LinearTrain::LinearTrain(const train::Fleet& fleet, const beam::Mesh* mesh, int per_node, double surface_height)
-    : arrays_(TrainArrays::side_by_side(fleet), per_node, surface_height), mesh_(mesh) {
-  for (int e = 0; mesh_ != nullptr && e < mesh_->elements(); ++e)
-    task_.shears = task_.shears || mesh_->element(e).shear != 0.0;
-  work_ = arrays_.add(2 * static_cast<std::size_t>(task_.coordinates));
-  find_indices(fleet);
-  find_surfaces(fleet);
-}
-
-// Determines the indices of the fleet's coordinates and wheels in the arrays of rows.
-void LinearTrain::find_indices(const train::Fleet& fleet) {
-  const auto blocks = TrainArrays::side_by_side(fleet);
-  struct Place {
-    std::size_t block = 0, lane = 0;
+  const auto rows = [&](auto* of_lanes, const std::vector<std::size_t>& places) {
+    next(
+        places.size(), [&](std::size_t i) -> auto& { return of_lanes[places[i]]; });
   };
-  std::vector<Place> places(fleet.vehicles.size());
-  for (std::size_t block = 0; block < blocks.size(); ++block)
-    for (std::size_t lane = 0; lane < blocks[block].size(); ++lane)
-      places[static_cast<std::size_t>(blocks[block][lane] - fleet.vehicles.data())] = {block, lane};
-  coordinate_.resize(static_cast<std::size_t>(fleet.freedom()));
-  largest_departure_.assign(fleet.vehicles.size(), 0.0);
-  for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
-    const train::MovingVehicle& vehicle = fleet.vehicles[k];
-    first_entry_.push_back(roots_.size());
-    const std::vector<double> roots = train::residual_roots(vehicle);
-    roots_.insert(roots_.end(), roots.begin(), roots.end());
-    const VehicleBlock& b = arrays_.blocks[places[k].block];
-    for (int i = 0; i < b.freedom; ++i)
-      coordinate_[static_cast<std::size_t>(vehicle.offset + i)] =
-          static_cast<std::size_t>(b.first_coordinate + i) * arrays_.lanes + places[k].lane;
-  }
-  first_entry_.push_back(roots_.size());
-  for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
-    const train::WheelContact& c = fleet.wheels[i];
-    if (c.is_further) continue;
-    const Place& place = places[static_cast<std::size_t>(c.vehicle)];
-    entry_.push_back(i);
-    wheel_.push_back(static_cast<std::size_t>(arrays_.blocks[place.block].first_wheel + c.wheel) * arrays_.lanes +
-                     place.lane);
-    speed_.push_back(arrays_.speed[place.block][place.lane]);
-    const track::Profile& profile = fleet.profile(c);
-    profile_.push_back(profile.level() ? nullptr : &profile);
-    if (!profile.level()) arrays_.level[wheel_.back() / arrays_.lanes] = 0;
-  }
-}
-
-void LinearTrain::find_surfaces(const train::Fleet& fleet) {
-  found_.resize(wheel_.size());
-  patches_.resize(wheel_.size());
-  moved_.assign(wheel_.size(), 0);
-  always_places_ = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
-  const bool several_points =
-      std::any_of(fleet.wheels.begin(), fleet.wheels.end(), [](const auto& c) { return c.further > 0; });
-  if (!always_places_ && !several_points) {
-    surfaces_.emplace(fleet);
-    interval_.assign(wheel_.size(), 0);
-    for (const std::size_t entry : entry_) table_.push_back(surfaces_->number(fleet.wheel(fleet.wheels[entry]).radius));
-    return;
-  }
-  if (mesh_ == nullptr) return;
-  std::vector<double> radii;
-  for (const train::WheelContact& c : fleet.wheels) {
-    const double radius = fleet.wheel(c).radius;
-    if (std::find(radii.begin(), radii.end(), radius) != radii.end()) continue;
-    radii.push_back(radius);
-    const std::vector<double> more = fleet.borders_of_patches(c);
-    borders_.insert(borders_.end(), more.begin(), more.end());
-  }
-  std::sort(borders_.begin(), borders_.end());
+  for (double* of : {task_.x, task_.w, task_.a[0]}) rows(of, coordinate_);
+  for (double* of : {task_.normal, task_.root, task_.normal_up, task_.normal_along, task_.force_up, task_.force_along,
+                     task_.ahead, task_.ahead_before, task_.station, task_.along_rate, task_.turn,
+                     task_.history[most_stages], task_.history[most_stages + 1]})
+    rows(of, wheel_);
+  rows(task_.active, wheel_);
+  for (std::vector<double>* of : {&largest_departure_, &acceleration_})
+    next(
+        of->size(), [&](std::size_t i) -> auto& { return (*of)[i]; });
+  double* const of_train[] = {&length_before_, &contraction_, &last_time_, &time_before_};
+  if (reads && number < lists.size()) lists[number].begin = 0;  // the first train's are those of all
+  next(
+      std::size(of_train), [&](std::size_t i) -> auto& { return *of_train[i]; });
+  if (reads) placed_ = false;
 }
 
 }  // namespace traverse::engine

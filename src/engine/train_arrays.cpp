@@ -68,10 +68,11 @@ struct Instants {
 
 }  // namespace
 
-std::vector<std::vector<const train::MovingVehicle*>> TrainArrays::side_by_side(const train::Fleet& fleet) {
+std::vector<std::vector<const train::MovingVehicle*>> TrainArrays::side_by_side(
+    std::span<const train::MovingVehicle> vehicles) {
   const std::size_t most = best_width();
   std::vector<std::vector<const train::MovingVehicle*>> blocks;
-  for (const train::MovingVehicle& vehicle : fleet.vehicles) {
+  for (const train::MovingVehicle& vehicle : vehicles) {
     auto block = std::find_if(blocks.begin(), blocks.end(), [&](const auto& candidates) {
       return candidates.size() < most && in_block_with(*candidates.front(), vehicle);
     });
@@ -194,6 +195,13 @@ PairedRows TrainArrays::paired(const std::vector<Eigen::MatrixXd>& A, const std:
   return {static_cast<int>(width), column, one, other};
 }
 
+void TrainArrays::move(std::size_t block, std::size_t lane, const base::TimeFunction& travel, double t) {
+  rate[block][lane] = travel.rate(t);
+  distance[block][lane] = per_travel[block][lane] * travel.value(t);
+  speed[block][lane] = per_travel[block][lane] * rate[block][lane];
+  acceleration[block][lane] = travel.acceleration(t);
+}
+
 void TrainArrays::fill_block(std::size_t number, const std::vector<const train::MovingVehicle*>& vehicles) {
   VehicleBlock& b = blocks[number];
   const train::MovingVehicle& any = *vehicles.front();
@@ -204,7 +212,8 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
   b.first_wheel = task.wheels;
   task.coordinates += b.freedom;
   task.wheels += b.wheels;
-  double *M = add(f * f), *r0 = add(f), *driven = add(f), *its_speed = add(1), *drive = add(1);
+  double *M = add(f * f), *r0 = add(f), *driven = add(f), *driven_mass = add(1), *drive = add(1);
+  for (auto* of : {&rate, &acceleration, &distance, &speed, &per_travel}) of->push_back(add(1));
   for (std::size_t i = 0; i < f; ++i)  // lanes without a vehicle
     std::fill_n(M + (i * f + i) * lanes, lanes, 1.0);
   std::vector<Eigen::MatrixXd> C, K, G, G_along;
@@ -216,8 +225,10 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
     G.push_back(without_rounding(rows_of_wheels(vehicle, 1)));
     G_along.push_back(without_rounding(rows_of_wheels(vehicle, 0)));
     const bool drives = !vehicle.mechanism.model().drivers.empty();
-    its_speed[l] = of.u[3 * static_cast<Eigen::Index>(vehicle.wheels.front().body)];
-    drive[l] = drives ? its_speed[l] : 0.0;
+    per_travel[number][l] = of.u[3 * static_cast<Eigen::Index>(vehicle.wheels.front().body)];
+    drive[l] = drives ? per_travel[number][l] : 0.0;
+    driven_mass[l] = drives ? of.driven_mass : 0.0;
+    move(number, l, vehicle.travel, 0.0);
     for (std::size_t i = 0; i < f; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
       r0[i * lanes + l] = of.r0[row];
@@ -234,11 +245,12 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
   b.M = M;
   b.r0 = r0;
   b.driven = driven;
-  b.speed = its_speed;
-  speed.push_back(its_speed);
+  b.driven_mass = driven_mass;
   b.drive = drive;
-  distance.push_back(add(1));
+  b.rate = rate.back();
+  b.acceleration = acceleration.back();
   b.distance = distance.back();
+  b.speed = speed.back();
   b.active = &active.emplace_back(1);
   const auto end_of_earlier = blocks.begin() + static_cast<std::ptrdiff_t>(number);
   const auto other = std::find_if(blocks.begin(), end_of_earlier,

@@ -21,7 +21,8 @@ class TrainArrays {
   /// The reason why the vehicles of a fleet cannot be stored in rows; empty: they can.
   static std::string obstacle(const train::Fleet& fleet);
   /// The vehicles of each block, lane by lane: at most as many as there are lanes.
-  static std::vector<std::vector<const train::MovingVehicle*>> side_by_side(const train::Fleet& fleet);
+  static std::vector<std::vector<const train::MovingVehicle*>> side_by_side(
+      std::span<const train::MovingVehicle> vehicles);
 
   /// The vehicles of a block have equal numbers of coordinates and wheels. The vehicles need not outlive this object.
   TrainArrays(std::span<const std::vector<const train::MovingVehicle*>> blocks, int per_node, double surface_height);
@@ -39,6 +40,9 @@ class TrainArrays {
   /// Sets the contact of the wheel with that index to its initial state.
   void start_contact(std::size_t at, const train::WheelContact& c);
 
+  /// Sets the steady motion of a vehicle to that at t, from s(t).
+  void move(std::size_t block, std::size_t lane, const base::TimeFunction& travel, double t);
+
   /// Allocates rows, or integers, that are zero and exist as long as this object.
   double* add(std::size_t rows);
   int* add_integers(std::size_t rows);
@@ -46,8 +50,9 @@ class TrainArrays {
   const std::size_t lanes = best_width();  // numbers of a row
   TrainTask task;
   std::vector<VehicleBlock> blocks;
-  std::vector<double*> distance;                 // m travelled, for the lanes of every block
-  std::vector<double*> speed;                    // m/s, for the lanes of every block
+  /// The steady motion of every block's vehicles, for its lanes: s', s'', m travelled and its rate (VehicleBlock), and
+  /// the distance per unit of s.
+  std::vector<double*> rate, acceleration, distance, speed, per_travel;
   std::vector<char> touches_two_patches, level;  // one for each row of wheels, as in TrainTask
   std::deque<char> active;                       // one for each block: VehicleBlock::active
 

@@ -1,7 +1,7 @@
 // Linear vehicles and their contacts with the structure in a stage of a one-step method (one_step_methods.hpp), with
 // one vehicle in each SIMD lane.
 //
-//   vehicles   J a = G^T f - r0 - C w~ - K v~,   J = M + rate C + displacement K
+//   vehicles   J a = G^T f - r0 - driven s'' - C w~ - K v~,   J = M + rate C + displacement K
 //              The wheels move by H f, H = displacement G J^-1 G^T, from their positions without contact forces.
 //   contacts   Newton's method determines each wheel's closest point on the surface; then its force N follows from
 //
@@ -326,13 +326,15 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
       a[i] = sum;
     }
     if (task.dissipated == nullptr) continue;
+    const Row travel_rate = row(b.rate);
     for (int i = 0; i < f; ++i) {
       w[i] += rate * a[i];
-      drive_power += rows(b.driven)[i] * a[i];
+      drive_power += travel_rate * rows(b.driven)[i] * a[i];
     }
+    drive_power += travel_rate * row(b.driven_mass) * row(b.acceleration);
     const Row* value = rows(b.C.value);
     for (int e = 0; e < b.C.count; ++e) dissipated += value[e] * w[b.C.row[e]] * w[b.C.column[e]];
-    for (int j = 0; j < m; ++j) drive_power -= row(b.drive) * along[j];
+    for (int j = 0; j < m; ++j) drive_power -= travel_rate * row(b.drive) * along[j];
     if (!kinematics) continue;
     Row *up_rate = rows(task.up_rate) + b.first_wheel, *along_rate = rows(task.along_rate) + b.first_wheel;
     for (int j = 0; j < m; ++j) {

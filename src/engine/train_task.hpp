@@ -29,22 +29,23 @@ struct PairedRows {
   const double *first = nullptr, *second = nullptr;  // values, rows
 };
 
-/// Vehicles M x'' + C x' + K x + r0 + drive s'' = G^T f_up + G_along^T f_along, with the forces f on their wheels.
-/// Matrices by rows of `freedom` columns; units N, m, rad, s.
+/// Vehicles M x'' + C x' + K x + r0 + driven s'' = G^T f_up + G_along^T f_along, with the forces f on their wheels.
+/// s(t) is the time at a constant speed, otherwise the distance. Matrices by rows of `freedom` columns; units N, m,
+/// rad, s.
 struct VehicleBlock {
   int freedom = 0, wheels = 0;
   int first_coordinate = 0, first_wheel = 0;  // index among all rows of coordinates, and among all rows of wheels
   const double *M = nullptr, *r0 = nullptr;
   SparseRows C, K, G, G_along;  // G, G_along: row: the wheel, column: the coordinate
   PairedRows K_and_C, both_G;   // the matrices above in pairs: K and C; G and G_along
-  const double* driven =
-      nullptr;  // a row for each coordinate: driven^T x'' is the power that drives the masses at their speed, N s
-  const double* speed = nullptr;     // a row: speed of the steady motion, m/s
-  const double* drive = nullptr;     // a row: this speed if it is prescribed, otherwise 0
-  const double* distance = nullptr;  // a row: distance travelled at the stage's time, m
-  int same_as = -1;                  // an earlier block with equal matrices, whose arrays below are used; -1: none
-  const char* active = nullptr;      // whether the block moves: if not, it is at rest and is not computed
-  double* inverse = nullptr;         // (M + rate C + displacement K)^-1
+  // A row for each coordinate, and a row: s' (driven^T x'' + driven_mass s'') is the power that drives the masses.
+  const double *driven = nullptr, *driven_mass = nullptr;
+  const double* drive = nullptr;  // a row: distance per unit of s if it is prescribed, otherwise 0
+  // Rows at the stage's time: s', s''; distance travelled and its rate, m, m/s.
+  const double *rate = nullptr, *acceleration = nullptr, *distance = nullptr, *speed = nullptr;
+  int same_as = -1;              // an earlier block with equal matrices, whose arrays below are used; -1: none
+  const char* active = nullptr;  // whether the block moves: if not, it is at rest and is not computed
+  double* inverse = nullptr;     // (M + rate C + displacement K)^-1
   double *Y = nullptr, *Y_along = nullptr;  // freedom x wheels: inverse G^T, inverse G_along^T
   double* H =
       nullptr;  // 4 x wheels x wheels: displacement of wheels per force: up by up, up by along, along by up, ...

@@ -224,7 +224,9 @@ inline void predict(const TrainTask& task, int stage, double* work) {
     const int first = b.first_coordinate, f = b.freedom;
     Row *rate = rows(task.w_predicted) + first, *free = rows(task.a_free) + first;
     combine(stage + 1, rule, first, f, task.x, task.w, task.a, at, rate);
-    products(b.K_and_C, f, at, rate, [&](int i, Row Kx, Row Cw) { force[i] = -(rows(b.r0)[i] + Kx + Cw); });
+    const Row acceleration = row(b.acceleration);
+    products(b.K_and_C, f, at, rate,
+             [&](int i, Row Kx, Row Cw) { force[i] = -(rows(b.r0)[i] + rows(b.driven)[i] * acceleration + Kx + Cw); });
     multiply(rows(b.inverse), f, force, free);
     for (int i = 0; i < f; ++i) at[i] += displacement * free[i];
     Row *up = rows(task.up) + b.first_wheel, *along = rows(task.along) + b.first_wheel;

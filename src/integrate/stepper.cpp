@@ -199,6 +199,12 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
   return t;
 }
 
+void Stepper::serve() {
+  check(TSSetUp(ts_));
+  Array y(y_);
+  system_.serve(y.data);
+}
+
 // Sets the next time at which a step must end.
 void Stepper::set_target(double slack) {
   progress_.under_way = true;

@@ -61,6 +61,9 @@ class Stepper {
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
              const std::function<void(double)>& between = {});
 
+  /// After the start, in place of run(): System::serve.
+  void serve();
+
   /// Collective. Writes or reads the state between two steps; after start and reading, run() continues from that state.
   void keep(base::Archive& archive);
   /// The reason why the state cannot be written; empty: it can.

@@ -153,8 +153,8 @@ MechanismEnergy Mechanism::energy(const MechanismState& s) const {
   return e;
 }
 
-MechanismPowers Mechanism::powers(const MechanismState& s) const {
-  MechanismPowers e{s.dissipation};
+base::Powers Mechanism::powers(const MechanismState& s) const {
+  base::Powers e{s.dissipation};
   for (int k = 0; k < s.friction.force.size(); ++k) e.dissipation -= s.friction.force[k] * s.friction.speed[k];
   for (const Actuator& actuator : model_.actuators) {
     for (int c = 0; c < 3; ++c) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "base/one_step_methods.hpp"
 #include "multibody/augmented_system.hpp"
 #include "multibody/force_element.hpp"
 #include "multibody/joint.hpp"
@@ -103,13 +104,8 @@ struct MechanismState {
   }
 };
 
-/// Powers of a mechanism in a state, W.
-struct MechanismPowers {
-  double dissipation = 0.0;  // in dampers and friction, >= 0
-  double work = 0.0;         // work of actuators, applied forces and rheonomic constraints (drivers)
-};
 /// Powers and stored energies, J.
-struct MechanismEnergy : MechanismPowers {
+struct MechanismEnergy : base::Powers {
   double kinetic = 0.0;
   double strain = 0.0;     // springs, torsion springs: 1/2 k e^2, or the integral of a law
   double potential = 0.0;  // gravity
@@ -218,7 +214,7 @@ class Mechanism {
   double torsion_spring_moment(const MechanismState& s, int k) const;
 
   /// The powers in state s. Call after compute_forces; with drivers or friction also after accelerations or recover.
-  MechanismPowers powers(const MechanismState& s) const;
+  base::Powers powers(const MechanismState& s) const;
   MechanismEnergy energy(const MechanismState& s) const;
 
   /// The numbers of a state that observers, powers and energies use, observed_size() in total. A state that has read

@@ -181,6 +181,7 @@ void Evaluation::record_largest_deflection() {
   if (deflection > largest_deflection_value_) {
     largest_deflection_value_ = deflection;
     largest_deflection_.time = time_;
+    system_.complete_motion();
     const structure::NodalMotion& beam = now_.motion.beam;
     const int size = beam_->local_unknowns();
     largest_deflection_.v.assign(beam.v, beam.v + size);

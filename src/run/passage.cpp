@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "base/notes.hpp"
 #include "integrate/integrators.hpp"
 #include "results/stage.hpp"
 #include "run/exit_states.hpp"
+#include "run/process.hpp"
 #include "structure/active_window.hpp"
 #include "structure/modal_structure.hpp"
 #include "traverse/base/error.hpp"
@@ -242,6 +244,23 @@ void Passage::run(const std::function<void(const integrate::Instant&)>& sample,
     modal_->run(sample, step, between);
   } else {
     stepper_->run(sample, step, between);
+  }
+}
+
+void serve_trains(MPI_Comm comm, const scene::Scene& scene) {
+  auto sharing = std::make_unique<coupling::TrainSharing>(comm);
+  try {
+    std::vector<std::string> notes;
+    SharedBeam shared(MPI_COMM_SELF, scene, notes);
+    shared.set_up(scene, false, notes);
+    Passage passage(scene, shared, notes);
+    passage.start(notes);
+    passage.system().share_trains(std::move(sharing));
+    passage.serve();
+  } catch (const std::exception& failure) {
+    if (sharing != nullptr && sharing->next().what() == coupling::TrainSharing::end) return;  // the first rank says why
+    std::fputs(failure.what(), stderr);
+    MPI_Abort(comm, as_error(failure).status());
   }
 }
 

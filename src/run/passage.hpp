@@ -21,6 +21,9 @@ coupling::SystemInput system_input(const scene::Scene& scene, bool static_only);
 std::unique_ptr<structure::MovingStructure> carrier(const scene::Scene& scene, const SharedBeam& shared,
                                                     const coupling::SystemInput& input);
 
+/// On a rank that has been called by WaitingRanks: takes part in the run of a scene, which has its model.
+void serve_trains(MPI_Comm comm, const scene::Scene& scene);
+
 class Passage {
  public:
   /// Collective. InputError if the scene cannot be run. Scene and structure must outlive this object. earlier: the plan
@@ -34,6 +37,8 @@ class Passage {
   void begin(const std::function<void(const integrate::Instant&)>& sample) {
     stepper_ ? stepper_->begin(sample) : modal_->begin(sample);
   }
+  /// After start, of a system that shares its trains: System::serve.
+  void serve() { stepper_->serve(); }
   /// See Stepper::run.
   void run(const std::function<void(const integrate::Instant&)>& sample, const std::function<bool(double, long)>& step,
            const std::function<void(double)>& between = {});

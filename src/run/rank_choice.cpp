@@ -13,8 +13,11 @@
 #include <limits>
 #include <thread>
 
+#include "base/broadcast.hpp"
+#include "base/bytes.hpp"
 #include "base/one_step_methods.hpp"
 #include "beam/layered_track.hpp"
+#include "integrate/integrators.hpp"
 #include "run/process.hpp"
 
 namespace traverse::run {
@@ -30,9 +33,17 @@ constexpr int max_ranks_considered = 1024;  // ranks
 constexpr int batches = 7, batch = 100;     // numbers of messages, to measure their latency
 constexpr double pause = 2e-5;              // s, of computation between two of these messages
 
+constexpr int called = -1;  // the waiting ranks are called
+
+void exchange(base::Bytes& bytes, scene::NumericalModel& model) {
+  bytes(model.modes, model.elements, model.step, model.method, model.vehicles, model.residual_limit,
+        model.trials_lost_contact, model.window_tolerance, model.local_compliance, model.step_kinks, model.step_probes);
+}
+
 constexpr std::chrono::microseconds first_interval(100), longest_interval(10'000);
 
-/// Waits until the working and the waiting ranks have reached this point, and broadcasts the status.
+/// Waits until the working and the waiting ranks have reached this point, and broadcasts a number: the status of the
+/// work, or `called`.
 int synchronise(MPI_Comm comm, int status) {
   MPI_Request request = MPI_REQUEST_NULL;
   MPI_Ibarrier(comm, &request);
@@ -95,6 +106,7 @@ StageWork stage_work(const scene::Scene& scene) {
   // Every rank computes all linear vehicles.
   work.vehicles =
       scene.model.vehicles == scene::VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
+  if (shares_trains(scene)) work.single_rank_reason = "";
   work.cut = !(scene.model.window_tolerance > 0.0 || (scene.model.window_tolerance < 0.0 && spans_apart));
   if (scene.model.modes > 0)
     work.single_rank_reason = "the modes' steps have no more in them than a message";
@@ -156,6 +168,7 @@ RankChoice choose_ranks(MPI_Comm comm, const scene::Scene& scene) {
   if (ranks == 1) return {};
   const StageWork work = stage_work(scene);
   if (scene.all_ranks) return {ranks, fmt::format("ranks: all {} share the time steps (-step_ranks all)", ranks)};
+  if (shares_trains(scene)) return {1, fmt::format("ranks: {} share the {} trains", ranks, scene.train.courses.size())};
   if (!work.single_rank_reason.empty())
     return {1, fmt::format("ranks: 1 of {} takes all steps, the others wait: {}", ranks, work.single_rank_reason)};
   const double latency = message_latency(comm);
@@ -172,20 +185,62 @@ RankChoice choose_ranks(MPI_Comm comm, const scene::Scene& scene) {
   return {chosen, note + fmt::format(" ({})", measured)};
 }
 
-int run_on_first(MPI_Comm comm, int count, const std::function<int(MPI_Comm)>& work) {
+bool shares_trains(const scene::Scene& scene) {
+  if (!scene.beam || scene.all_ranks || scene.analysis != options::Analysis::transient) return false;
+  const beam::BeamModel& beam = *scene.beam;
+  const bool plain_bridge = beam.all_separate() && beam.spans.size() > 1 && !beam.track && !beam.nonlinear() &&
+                            !beam.strained() && !scene.self_weight && scene.support_motion.empty() &&
+                            scene.support_motion_along.empty();
+  const scene::NumericalModel& model = scene.model;
+  const bool by_window = model.modes == 0 && model.window_tolerance != 0.0 && !model.step_kinks;
+  const bool only_trains = scene.load.forces.empty() && scene.train.courses.size() > 1 &&
+                           std::all_of(scene.train.courses.begin(), scene.train.courses.end(),
+                                       [](const train::Course& c) { return c.drive == train::Drive::constant; });
+  const bool own_steps =
+      integrate::own_method(model.method).has_value() && std::ranges::none_of(scene.options, [](const auto& option) {
+        return option.first == "ts_adapt_type" && option.second != "none";
+      });
+  return plain_bridge && by_window && only_trains && own_steps && model.vehicles == scene::VehicleModel::linear;
+}
+
+void WaitingRanks::call(const scene::NumericalModel& model) {
+  base::Bytes bytes;
+  scene::NumericalModel copy = model;
+  exchange(bytes, copy);
+  synchronise(comm_, called);
+  base::broadcast(comm_, bytes.written(), 0);
+}
+
+std::unique_ptr<coupling::TrainSharing> call_to_share(WaitingRanks* waiting, const scene::Scene& scene) {
+  if (waiting == nullptr || !shares_trains(scene)) return nullptr;
+  waiting->call(scene.model);
+  return std::make_unique<coupling::TrainSharing>(waiting->comm());
+}
+
+int run_on_first(MPI_Comm comm, int count, const std::function<int(MPI_Comm, WaitingRanks*)>& work,
+                 const std::function<void(MPI_Comm, const scene::NumericalModel&)>& serve) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  if (count >= ranks) return work(comm);
+  if (count >= ranks) return work(comm, nullptr);
   MPI_Comm active = MPI_COMM_NULL;
   MPI_Comm_split(comm, rank < count ? 0 : MPI_UNDEFINED, rank, &active);
   if (active == MPI_COMM_NULL) {
     const DeferredSignals handlers;  // the working ranks end the run in order
-    return synchronise(comm, 0);
+    int status = synchronise(comm, 0);
+    for (; status == called; status = synchronise(comm, 0)) {
+      scene::NumericalModel model;
+      const std::string text = base::broadcast(comm, std::string(), 0);
+      base::Bytes bytes(text);
+      exchange(bytes, model);
+      serve(comm, model);
+    }
+    return status;
   }
   int status = 0;
+  WaitingRanks waiting(comm);
   try {
-    status = work(active);
+    status = work(active, count == 1 ? &waiting : nullptr);
   } catch (const std::exception& failure) {
     synchronise(comm, as_error(failure).status());
     MPI_Comm_free(&active);
@@ -225,7 +280,7 @@ double step_seconds(const scene::Scene& scene, const std::string& method, int el
   const base::MethodRow* row = base::find_method(method);
   const double stages = (row == nullptr ? base::methods().front() : *row).solves();
   const bool linear = scene.model.vehicles == scene::VehicleModel::linear ||
-                      (scene.model.vehicles == scene::VehicleModel::automatic && scene.beam && scene.train.steady());
+                      (scene.model.vehicles == scene::VehicleModel::automatic && scene.beam && scene.train.driven());
   const double body = linear ? per_linear_body : per_body;
   const double contacts = linear ? 0.0 : per_contact_pair * contact_pairs_of(scene);
   const double probes = per_probe * static_cast<double>(scene.output.probes.size());

@@ -9,8 +9,10 @@
 #include <mpi.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 
+#include "coupling/train_sharing.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::run {
@@ -61,8 +63,30 @@ struct RankChoice {
 /// Collective; the same on every rank.
 RankChoice choose_ranks(MPI_Comm comm, const scene::Scene& scene);
 
+/// Whether ranks can share the trains of a run (coupling/train_sharing.hpp): several linear trains of prescribed speed
+/// on separate spans without a deformation of their own, in steps of the program's own methods that do not end at the
+/// kinks of the surface and whose lengths are not controlled.
+bool shares_trains(const scene::Scene& scene);
+
+/// The ranks that wait while the first rank of comm works.
+class WaitingRanks {
+ public:
+  explicit WaitingRanks(MPI_Comm comm) : comm_(comm) {}
+  MPI_Comm comm() const { return comm_; }  // of all of them, with the working one
+  /// On the working rank: the others take part in a run by this model, which the working rank ends (serve_trains).
+  void call(const scene::NumericalModel& model);
+
+ private:
+  MPI_Comm comm_;
+};
+
+/// Calls the waiting ranks if they can share the trains of the scene; null: they cannot, or there are none.
+std::unique_ptr<coupling::TrainSharing> call_to_share(WaitingRanks* waiting, const scene::Scene& scene);
+
 /// Collective. Runs `work` on the first `count` ranks of comm in a separate communicator. Returns its status on all
-/// ranks. An exception is thrown on the working ranks; the others get its status.
-int run_on_first(MPI_Comm comm, int count, const std::function<int(MPI_Comm)>& work);
+/// ranks. An exception is thrown on the working ranks; the others get its status. With one working rank the others can
+/// be called meanwhile: they execute `serve` with the model.
+int run_on_first(MPI_Comm comm, int count, const std::function<int(MPI_Comm, WaitingRanks*)>& work,
+                 const std::function<void(MPI_Comm, const scene::NumericalModel&)>& serve);
 
 }  // namespace traverse::run

@@ -53,10 +53,7 @@ Result Simulation::result() {
   summary.factorisations = system().factorisations();
   summary.linearisation_residual = system().linearisation_residual();
   summary.static_error = system().static_error();
-  if (const structure::Structure* structure = system().structure()) {
-    summary.energy_left = structure->energy_left();
-    MPI_Allreduce(MPI_IN_PLACE, &summary.energy_left, 1, MPI_DOUBLE, MPI_SUM, comm_);
-  }
+  summary.energy_left = system().energy_left();
   return result;
 }
 

@@ -69,20 +69,36 @@ void ActiveWindow::open(const std::vector<Range>& loaded, int reach) {
   merge(moving_);
 }
 
-// The next node, or the end of the part that contains this node.
-int ActiveWindow::next(int node) const {
-  if (!parts_) return node + 1;
-  const auto& begins = beam_.parts();
-  return *std::upper_bound(begins.begin(), begins.end(), node + beam_.first_column()) - beam_.first_column();
+// Sets the quiet parts without loads to rest. Ranks may share a part.
+void ActiveWindow::close_parts(BeamMotion& motion, double* v, double* w) {
+  const std::vector<int>& begins = beam_.parts();
+  const auto for_parts = [&](const auto& use) {
+    for (const Range& range : moving_)
+      for (auto begin = std::lower_bound(begins.begin(), begins.end(), range.first); *begin < range.past; ++begin)
+        use(Range{begin[0], begin[1]});
+  };
+  quiet_.clear();
+  auto load = loaded_.begin();
+  for_parts([&](const Range& part) {
+    while (load != loaded_.end() && load->past <= part.first) ++load;
+    const bool loaded = load != loaded_.end() && load->first < part.past;
+    quiet_.push_back(!loaded && is_quiet(local(part.first), local(part.past), v, w) ? 1 : 0);
+  });
+  if (shared_)
+    MPI_Allreduce(MPI_IN_PLACE, quiet_.data(), static_cast<int>(quiet_.size()), MPI_CHAR, MPI_MIN, beam_.comm());
+  split_.clear();
+  auto is_at_rest = quiet_.begin();
+  for_parts([&](const Range& part) {
+    if (*is_at_rest++ == 0)
+      split_.push_back(part);
+    else
+      energy_left_ += motion.set_to_rest(local(part.first), local(part.past), at_rest_, v, w);
+  });
+  merge(split_);
+  std::swap(moving_, split_);
 }
 
-int ActiveWindow::previous(int node) const {
-  if (!parts_) return node - 1;
-  const auto& begins = beam_.parts();
-  return std::lower_bound(begins.begin(), begins.end(), node + beam_.first_column())[-1] - beam_.first_column();
-}
-
-// Trims a range of this rank's nodes, each end on the rank that has it, by whole parts or by nodes.
+// Trims a range of this rank's nodes, each end on the rank that has it.
 Range ActiveWindow::trimmed(const Range& range, const double* v, const double* w) const {
   Range r{local(range.first), local(range.past)};
   int low = r.past, high = r.first;
@@ -93,10 +109,8 @@ Range ActiveWindow::trimmed(const Range& range, const double* v, const double* w
   }
   const bool own_left = range.first >= beam_.first_column(),
              own_right = range.past <= beam_.first_column() + beam_.local_columns();
-  while (own_left && r.first < std::min(low, r.past) && is_quiet(r.first, std::min(next(r.first), r.past), v, w))
-    r.first = next(r.first);
-  while (own_right && r.past > std::max(high, r.first) && is_quiet(std::max(previous(r.past), r.first), r.past, v, w))
-    r.past = previous(r.past);
+  while (own_left && r.first < std::min(low, r.past) && is_quiet(r.first, r.first + 1, v, w)) ++r.first;
+  while (own_right && r.past > std::max(high, r.first) && is_quiet(r.past - 1, r.past, v, w)) --r.past;
   return r;
 }
 
@@ -118,9 +132,13 @@ void ActiveWindow::close(BeamMotion& motion, double* v, double* w) {
   const bool check_due = steps_ % steps_between_checks == 0;
   if (steps_ < steps_between_checks || check_due) {
     for (const Range& r : moving_) record_largest(v, w, local(r.first), local(r.past));
-    if (shared_) share_largest();
+    share_largest();
   }
   ++steps_;
+  if (parts_) {
+    if (check_due) close_parts(motion, v, w);
+    return;
+  }
   for (Range& range : moving_) {
     const Range r = trimmed(range, v, w);
     const int first = local(range.first), past = local(range.past);
@@ -141,7 +159,7 @@ void ActiveWindow::split(BeamMotion& motion, double* v, double* w) {
       if (!is_loaded_in(range, load)) continue;
       const Range quiet_range = before == nullptr ? Range{} : longest_quiet_range({before->past, load.first}, v, w);
       before = &load;
-      if (quiet_range.past - quiet_range.first <= (parts_ ? 0 : split_factor * std::max(reach_, 1))) continue;
+      if (quiet_range.past - quiet_range.first <= split_factor * std::max(reach_, 1)) continue;
       energy_left_ += motion.set_to_rest(quiet_range.first, quiet_range.past, at_rest_, v, w);
       split_.push_back({range.first, quiet_range.first});
       range.first = quiet_range.past;
@@ -154,18 +172,40 @@ void ActiveWindow::split(BeamMotion& motion, double* v, double* w) {
 
 Range ActiveWindow::longest_quiet_range(Range gap, const double* v, const double* w) const {
   Range longest, current{gap.first, gap.first};
-  for (int node = gap.first; node < gap.past;) {
-    const int end = std::min(next(node), gap.past);
-    current = is_quiet(node, end, v, w) ? Range{current.first, end} : Range{end, end};
+  for (int node = gap.first; node < gap.past; ++node) {
+    current = is_quiet(node, node + 1, v, w) ? Range{current.first, node + 1} : Range{node + 1, node + 1};
     if (current.past - current.first > longest.past - longest.first) longest = current;
-    node = end;
   }
   return longest;
 }
 
 void ActiveWindow::share_largest() {
-  MPI_Allreduce(MPI_IN_PLACE, largest_.data(), 2 * static_cast<int>(largest_.size()), MPI_DOUBLE, MPI_MAX,
-                beam_.comm());
+  const MPI_Comm comm = shared_ ? beam_.comm() : beside_;
+  if (comm == MPI_COMM_NULL) return;
+  MPI_Allreduce(MPI_IN_PLACE, largest_.data(), 2 * static_cast<int>(largest_.size()), MPI_DOUBLE, MPI_MAX, comm);
+}
+
+void ActiveWindow::add(const std::vector<Range>& columns) {
+  moving_.insert(moving_.end(), columns.begin(), columns.end());
+  merge(moving_);
+}
+
+void ActiveWindow::remove(const std::vector<Range>& columns) {
+  subtract(moving_, columns, split_);
+  std::swap(moving_, split_);
+}
+
+std::vector<Range> ActiveWindow::probed() const {
+  const std::vector<int>& begins = beam_.parts();
+  std::vector<Range> parts;
+  for (const Range& range : moving_)
+    for (auto probe = std::lower_bound(probe_columns_.begin(), probe_columns_.end(), range.first);
+         probe != probe_columns_.end() && *probe < range.past; ++probe) {
+      const auto next = std::upper_bound(begins.begin(), begins.end(), *probe);
+      parts.push_back({next[-1], next[0]});
+    }
+  merge(parts);
+  return parts;
 }
 
 }  // namespace traverse::structure

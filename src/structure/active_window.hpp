@@ -29,15 +29,35 @@ class ActiveWindow {
   /// Collective. Extends the window for a step with loads on these columns, whose effect is negligible outside `reach`
   /// columns.
   void open(const std::vector<Range>& loaded, int reach);
-  /// Collective. Trims both ends of each range after the step. On one rank a range with several loads is divided where
-  /// it is at rest between them.
+  /// Collective. Sets to rest what is quiet after the step: separate parts, one by one; of connected parts both ends of
+  /// each range, and on one rank also the nodes between several loads.
   void close(BeamMotion& motion, double* v, double* w);
 
   /// Energy lost so far by setting nodes to rest, J, this rank's share.
   double energy_left() const { return energy_left_; }
+  void forget_energy_left() { energy_left_ = 0.0; }
   double tolerance() const { return tolerance_; }
   /// The moving ranges of columns, as merge() returns them.
   const std::vector<Range>& moving() const { return moving_; }
+
+  // Several ranks, each with the window of other trains on a bridge of its own (coupling/train_sharing.hpp):
+
+  /// The ranks that compare their largest motions; MPI_COMM_NULL: this rank is alone.
+  void beside(MPI_Comm comm) { beside_ = comm; }
+  /// Adds ranges of columns that this rank steps from now on, or removes ranges that it does not step any more.
+  void add(const std::vector<Range>& columns);
+  void remove(const std::vector<Range>& columns);
+  /// The moving parts with probes.
+  std::vector<Range> probed() const;
+  /// Calls use(double*, count) for what the windows of all ranks have in common.
+  template <class Use>
+  void exchange(Use use) {
+    use(&largest_.front().displacement, 2 * largest_.size());
+    double steps = steps_;
+    use(&steps, 1);
+    steps_ = static_cast<int>(steps);
+  }
+
   void keep(base::Archive& archive) {
     archive.same(moving_, loaded_, reach_, largest_, steps_);
     archive.sum(energy_left_);
@@ -47,11 +67,10 @@ class ActiveWindow {
   void record_largest(const double* v, const double* w, int first, int past);
   bool is_quiet(int first, int past, const double* v, const double* w) const;
   void share_largest();
-  int next(int node) const;
-  int previous(int node) const;
   bool is_loaded_in(const Range& range, const Range& load) const {
     return load.first >= range.first && load.past <= range.past;
   }
+  void close_parts(BeamMotion& motion, double* v, double* w);
   Range trimmed(const Range& range, const double* v, const double* w) const;
   void share_ends();
   void split(BeamMotion& motion, double* v, double* w);
@@ -67,6 +86,7 @@ class ActiveWindow {
   std::vector<Range> loaded_;  // in the last step
   int reach_ = 0;
   std::vector<Range> split_;  // ranges of the next step, without the quiet ranges between them
+  std::vector<char> quiet_;   // one for each part of the moving ranges
   std::vector<int> ends_;
   struct Largest {
     double displacement = 0.0, rate = 0.0;
@@ -74,6 +94,7 @@ class ActiveWindow {
   std::array<Largest, beam::kinds> largest_{};  // largest motion of each unknown of a column
   double energy_left_ = 0.0;                    // J, this rank's share
   int steps_ = 0;
+  MPI_Comm beside_ = MPI_COMM_NULL;
 };
 
 }  // namespace traverse::structure

@@ -18,6 +18,7 @@ struct ContactField {
   std::array<int, 6> offset{};
   std::vector<int> slot;                    // slot of each element
   int ground = 0;                           // a slot with zeros, for rigid ground
+  bool of_list = false;                     // slots are places in the list of elements
   const double *v = nullptr, *w = nullptr;  // m and rad; their rates
   double* load = nullptr;                   // N, N m
 };

@@ -30,6 +30,24 @@ void ElementStructure::set_method(const base::Method& method, double h) {
   motion_->begin(method);
 }
 
+// The columns of the elements in a reach, or of whole parts with them.
+Range ElementStructure::columns_of(const Reach& reach) const {
+  const beam::Mesh& mesh = line_.mesh;
+  if (reach.to < mesh.start() || reach.from > mesh.end()) return {};
+  const int left = mesh.element(mesh.locate(reach.from, true).element).left;
+  const int right = mesh.element(mesh.locate(reach.to).element).left;
+  const Range range{line_.first_column + std::max(0, left - 1), line_.first_column + std::min(mesh.nodes(), right + 3)};
+  if (statics_->parts() == nullptr) return range;
+  const std::vector<int>& parts = beam_.parts();
+  const auto part_of = [&](int column) { return std::upper_bound(parts.begin(), parts.end(), column) - 1; };
+  return {*part_of(range.first), part_of(range.past - 1)[1]};
+}
+
+void ElementStructure::set_to_rest(const std::vector<Range>& columns, double* v, double* w) {
+  for (const Range& r : columns)
+    motion_->set_to_rest(r.first, r.past, static_displacements_.empty() ? nullptr : static_displacements_.data(), v, w);
+}
+
 // The columns of the elements under wheels and forces. Loads less than a span apart share one range.
 const std::vector<Range>& ElementStructure::find_loaded(const std::vector<Reach>& loaded) {
   const beam::Mesh& mesh = line_.mesh;
@@ -42,15 +60,7 @@ const std::vector<Range>& ElementStructure::find_loaded(const std::vector<Reach>
     Reach all = reaches_[i];
     for (++i; i < reaches_.size() && reaches_[i].from <= all.to + longest_span_; ++i)
       all.to = std::max(all.to, reaches_[i].to);
-    const int left = mesh.element(mesh.locate(all.from, true).element).left;
-    const int right = mesh.element(mesh.locate(all.to).element).left;
-    Range range{line_.first_column + std::max(0, left - 1), line_.first_column + std::min(mesh.nodes(), right + 3)};
-    if (statics_->parts() != nullptr) {
-      const std::vector<int>& parts = beam_.parts();
-      const auto part_of = [&](int column) { return std::upper_bound(parts.begin(), parts.end(), column) - 1; };
-      range = {*part_of(range.first), part_of(range.past - 1)[1]};
-    }
-    loaded_.push_back(range);
+    loaded_.push_back(columns_of(all));
   }
   merge(loaded_);
   return loaded_;

@@ -267,9 +267,8 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   const double slip_loss = nonlinear_ ? nonlinear_->slip_loss() : 0.0;
   if (!motion_) return e;
   measure_dissipation(v, w);
-  e.dissipated = powers_.sum.dissipation + slip_loss;
-  e.dissipated += energy_left_;
-  e.work = powers_.sum.work;
+  e.dissipated = integrals().dissipation + slip_loss;
+  e.work = integrals().work;
   return e;
 }
 

@@ -58,6 +58,47 @@ class ElementStructure final : public MovingStructure {
                NodalMotion& out) override;
   void keep(base::Archive& archive) override;
 
+  // Several ranks, each with other trains on a bridge of its own (coupling/train_sharing.hpp). Ranges of columns as
+  // merge() returns them.
+
+  /// Whether this is possible: a window on separate parts.
+  bool may_share() const { return window_.has_value() && statics_->parts() != nullptr && fused() && !support_motion_; }
+  ActiveWindow& window() { return *window_; }
+  double longest_span() const { return longest_span_; }  // m
+  /// The columns of the parts within a reach; empty beside the bridge.
+  Range columns_of(const Reach& reach) const;
+  /// Sets ranges to rest.
+  void set_to_rest(const std::vector<Range>& columns, double* v, double* w);
+  /// Calls use(double*, count) for v, w and w' of the nodes of these ranges.
+  template <class Use>
+  void exchange(const std::vector<Range>& columns, double* v, double* w, Use use) {
+    const auto block = static_cast<std::size_t>(statics_->block());
+    for (const Range& r : columns)
+      for (double* x : {v, w, motion_->start_acceleration()})
+        use(x + block * static_cast<std::size_t>(r.first), block * static_cast<std::size_t>(r.past - r.first));
+  }
+  /// The dissipated power that was measured last: the ranks' trapezoids add up to that of one rank if their powers do,
+  /// and if all have been integrated up to the same time.
+  BeamMotion::Dissipation& measured() { return measured_; }
+  /// Sets what is integrated from now on to zero: this rank's share begins.
+  void begin_share() {
+    measured_ = {};
+    powers_.sum = {};
+    statics_->solves = 0;
+    window_->forget_energy_left();
+    energy_left_ = 0.0;
+  }
+  /// The integrals of the powers so far, J: dissipation with the energy left, and work.
+  Powers integrals() const { return {powers_.sum.dissipation + energy_left_, powers_.sum.work}; }
+  template <class Use>
+  void exchange_time(Use use) {
+    double numbers[3] = {unmeasured_, to_measure_ ? 1.0 : 0.0, stepped_ ? 1.0 : 0.0};
+    use(numbers, 3);
+    unmeasured_ = numbers[0];
+    to_measure_ = numbers[1] != 0.0;
+    stepped_ = numbers[2] != 0.0;
+  }
+
  private:
   enum class Kind { statics, state, step, fused };  // kind of the present stage
   struct Stage {

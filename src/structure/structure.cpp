@@ -164,6 +164,7 @@ LoadedStructure::Passes LoadedStructure::begin_passes(const std::vector<int>& el
   for (std::size_t i = 0; i < elements.size(); ++i) field_.slot[i] = static_cast<int>(i * m);
   for (std::size_t k = 0; k < m; ++k) field_.offset[k] = static_cast<int>(k);
   field_.ground = static_cast<int>(size);
+  field_.of_list = true;
   field_.v = v_pass_.data();
   field_.w = w_pass_.data();
   field_.load = loads_.data();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "linear_dynamics.hpp"
 #include "multibody_dynamics.hpp"
 
 namespace traverse::train {
@@ -18,7 +19,9 @@ MovingVehicle::MovingVehicle(Unit unit)
       state(mechanism.make_state()),
       dynamics(std::make_unique<MultibodyDynamics>()),
       wheels(std::move(unit.wheels)),
-      contacts(std::move(unit.contacts)) {
+      contacts(std::move(unit.contacts)),
+      drives(std::move(unit.drives)),
+      speed(std::move(unit.speed)) {
   Q.setZero(mechanism.coordinates());
   double mass = 0.0;
   for (const multibody::Body& b : mechanism.model().bodies) mass += b.mass;
@@ -216,13 +219,17 @@ void Fleet::assign_coordinates(double t) {
     MovingVehicle& vehicle = vehicles[k];
     vehicle.offset = freedom_;
     freedom_ += vehicle.mechanism.freedom();
+    const LinearDynamics* linear = vehicle.dynamics->linear();
+    const double travelled = vehicle.travel.value(t);
     for (int i : vehicle.mechanism.partition().independent) {
       const bool rolls = i % 3 == 2 && !frozen_;
-      steady_rate_.push_back(vehicle.wheels.empty() ? 0.0
-                             : i % 3 == 0           ? speeds_[k]
-                             : rolls                ? vehicle.state.qd[i]
-                                                    : 0.0);
-      origin_.push_back(vehicle.state.q[i] - steady_rate_.back() * t);
+      const auto own = static_cast<Eigen::Index>(steady_rate_.size()) - vehicle.offset;
+      steady_rate_.push_back(linear != nullptr        ? linear->matrices().c[own]
+                             : vehicle.wheels.empty() ? 0.0
+                             : i % 3 == 0             ? speeds_[k]
+                             : rolls                  ? vehicle.state.qd[i]
+                                                      : 0.0);
+      origin_.push_back(vehicle.state.q[i] - steady_rate_.back() * travelled);
     }
   }
   position_.resize(origin_.size());
@@ -232,12 +239,15 @@ void Fleet::assign_coordinates(double t) {
 
 bool Fleet::set(double t, const double* p, const double* pd) {
   bool unchanged = is_set_ && t == time_;
-  const auto [first, past] = own_coordinates();
-  for (int i = first; i < past; ++i) {
-    const double position = origin_[i] + steady_rate_[i] * t + p[i], velocity = steady_rate_[i] + pd[i];
-    unchanged = unchanged && position == position_[i] && velocity == velocity_[i];
-    position_[i] = position;
-    velocity_[i] = velocity;
+  for (const MovingVehicle& vehicle : own()) {
+    const double travelled = vehicle.travel.value(t), rate = vehicle.travel.rate(t);
+    for (int i = vehicle.offset, past = i + vehicle.freedom(); i < past; ++i) {
+      const double position = origin_[i] + steady_rate_[i] * travelled + p[i];
+      const double velocity = steady_rate_[i] * rate + pd[i];
+      unchanged = unchanged && position == position_[i] && velocity == velocity_[i];
+      position_[i] = position;
+      velocity_[i] = velocity;
+    }
   }
   if (unchanged) return true;
   time_ = t;
@@ -273,9 +283,10 @@ void Fleet::shift(const double* change, double rate) {
 void Fleet::coordinates_of_state(double t, double* p, double* pd) const {
   for (const MovingVehicle& vehicle : vehicles) {
     int at = vehicle.offset;
+    const double travelled = vehicle.travel.value(t), rate = vehicle.travel.rate(t);
     for (int i : vehicle.mechanism.partition().independent) {
-      p[at] = vehicle.state.q[i] - origin_[at] - steady_rate_[at] * t;
-      pd[at] = vehicle.state.qd[i] - steady_rate_[at];
+      p[at] = vehicle.state.q[i] - origin_[at] - steady_rate_[at] * travelled;
+      pd[at] = vehicle.state.qd[i] - steady_rate_[at] * rate;
       ++at;
     }
   }

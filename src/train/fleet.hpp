@@ -33,14 +33,17 @@ struct MovingVehicle {
   AnyDynamics dynamics;
   std::vector<Wheel> wheels;
   std::vector<contact::BodyContact> contacts;
-  double weight = 0.0;        // N
-  double scale = 0.0;         // N: scale of forces; the weight, or without gravity the mass times 1 m/s2
-  int offset = 0;             // index of its first independent coordinate in p
-  int first_wheel = 0;        // in Fleet::wheels: one for each wheel, then the further ones of its wheels
-  int first_pair = 0;         // in Fleet::pairs
-  std::vector<int> touching;  // its wheels and pairs, by the indices of Fleet::contact
-  Eigen::VectorXd Q;          // generalized forces of the wheels, n
-  bool converged = false;     // its iteration of the stage has converged; Fleet::set and touch skip it
+  std::vector<int> drives;              // drivers of its mechanism that prescribe the train's speed
+  base::SpeedLaw speed;                 // this speed
+  base::TimeFunction travel{0.0, 1.0};  // s of the steady motion: the time, or the distance of a changing speed
+  double weight = 0.0;                  // N
+  double scale = 0.0;                   // N: scale of forces; the weight, or without gravity the mass times 1 m/s2
+  int offset = 0;                       // index of its first independent coordinate in p
+  int first_wheel = 0;                  // in Fleet::wheels: one for each wheel, then the further ones of its wheels
+  int first_pair = 0;                   // in Fleet::pairs
+  std::vector<int> touching;            // its wheels and pairs, by the indices of Fleet::contact
+  Eigen::VectorXd Q;                    // generalized forces of the wheels, n
+  bool converged = false;               // its iteration of the stage has converged; Fleet::set and touch skip it
 
   void keep(base::Bytes& bytes) {
     bytes(mechanism, state, Q);
@@ -291,7 +294,7 @@ class Fleet {
   /// Energy stored in the contacts, J.
   double contact_potential() const;
   /// Powers of this rank's vehicles, W.
-  multibody::MechanismPowers powers() const;
+  base::Powers powers() const;
   /// Energies of all vehicles, J.
   multibody::MechanismEnergy energy() const;
 
@@ -328,6 +331,7 @@ class Fleet {
   std::size_t index(const WheelContact& c) const { return static_cast<std::size_t>(&c - wheels.data()); }
   void add_shape(WheelContact& c) const;
   void add_pairs(int vehicle);
+  void measure_by_distance(MovingVehicle& vehicle);
   bool touch(PairContact& pair) const;
 
   const beam::Mesh* mesh_ = nullptr;
@@ -345,7 +349,7 @@ class Fleet {
   bool uses_local_compliance_ = false;
   UnmodelledContact unmodelled_contact_;
   std::vector<int> elements_;
-  std::vector<double> origin_, steady_rate_;  // coordinates = origin + steady rate*t + p
+  std::vector<double> origin_, steady_rate_;  // coordinates = origin + steady rate*s(t) + p, s: MovingVehicle::travel
   std::vector<double> position_, velocity_;   // independent coordinates of all vehicles, as set last
   double time_ = 0.0;                         // time of position_ and velocity_, s
   bool is_set_ = false;

@@ -100,9 +100,28 @@ std::vector<double> Fleet::kinks_of_actions() const {
 bool Fleet::begin_step(double middle) {
   if (!has_kinks_) return false;
   bool jumped = false;
-  for (MovingVehicle& vehicle : vehicles) jumped = vehicle.mechanism.select_sides(middle) || jumped;
+  for (MovingVehicle& vehicle : vehicles) {
+    jumped = vehicle.mechanism.select_sides(middle) || jumped;
+    vehicle.travel.select_side(middle);
+  }
   if (jumped) is_set_ = false;
   return jumped;
+}
+
+// From now on s of the vehicle is the distance that its drives prescribe, with steady rates per metre, so that p and
+// p'' remain small at any speed. The state is that at t = 0, where the distance is 0.
+void Fleet::measure_by_distance(MovingVehicle& vehicle) {
+  vehicle.travel = vehicle.speed.from(0.0);
+  vehicle.travel.select_side(0.0);
+  const std::vector<int>& independent = vehicle.mechanism.partition().independent;
+  double* rate = steady_rate_.data() + vehicle.offset;
+  for (std::size_t i = 0; i < independent.size(); ++i) rate[i] = independent[i] % 3 == 0 ? 1.0 : 0.0;
+  for (const WheelContact& c : wheels) {
+    if (c.is_further || &vehicles[c.vehicle] != &vehicle || wheel(c).law.friction == 0.0) continue;
+    const auto turning = std::find(independent.begin(), independent.end(), 3 * c.body + 2);
+    if (turning == independent.end() || rotation_constrained(c)) continue;
+    rate[turning - independent.begin()] = -1.0 / (wheel(c).radius - c.kinematics.penetration);
+  }
 }
 
 std::vector<std::string> Fleet::linearise() {
@@ -112,6 +131,7 @@ std::vector<std::string> Fleet::linearise() {
     const std::string obstacle = LinearDynamics::obstacle(vehicle);
     if (obstacle.empty()) {
       ++linearised;
+      if (!vehicle.speed.constant()) measure_by_distance(vehicle);
       vehicle.dynamics = AnyDynamics(std::make_unique<LinearDynamics>(vehicle, steady_rate_.data() + vehicle.offset));
     } else if (std::string message = fmt::format("vehicle '{}' is not linearised: {}", vehicle.name(), obstacle);
                std::find(messages.begin(), messages.end(), message) == messages.end()) {
@@ -137,13 +157,9 @@ double Fleet::linearisation_residual() const {
   return largest;
 }
 
-multibody::MechanismPowers Fleet::powers() const {
-  multibody::MechanismPowers sum;
-  for (const MovingVehicle& vehicle : own()) {
-    const multibody::MechanismPowers more = vehicle.dynamics->powers(vehicle);
-    sum.dissipation += more.dissipation;
-    sum.work += more.work;
-  }
+base::Powers Fleet::powers() const {
+  base::Powers sum;
+  for (const MovingVehicle& vehicle : own()) sum += vehicle.dynamics->powers(vehicle);
   return sum;
 }
 

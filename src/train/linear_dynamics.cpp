@@ -24,6 +24,17 @@ void for_actions(const MovingVehicle& vehicle, double t, Use use) {
     }
 }
 
+/// The rates of all bodies (n) per metre of travel by the drives, with the independent coordinates at rest: those of a
+/// translation, minus the part of its independent coordinates.
+Eigen::VectorXd rates_of_drives(const MovingVehicle& vehicle, const Eigen::MatrixXd& B) {
+  Eigen::VectorXd rates = Eigen::VectorXd::Zero(B.rows());
+  for (Eigen::Index x = 0; x < rates.size(); x += 3) rates[x] = 1.0;
+  const std::vector<int>& independent = vehicle.mechanism.partition().independent;
+  for (std::size_t i = 0; i < independent.size(); ++i)
+    if (independent[i] % 3 == 0) rates -= B.col(static_cast<Eigen::Index>(i));
+  return rates;
+}
+
 }  // namespace
 
 std::string LinearDynamics::obstacle(const MovingVehicle& vehicle) {
@@ -31,8 +42,13 @@ std::string LinearDynamics::obstacle(const MovingVehicle& vehicle) {
   if (vehicle.wheels.empty()) return "it has no wheels";
   if (vehicle.mechanism.has_friction()) return "a joint slides with friction";
   if (!vehicle.contacts.empty()) return "bodies of it touch each other";
-  for (const multibody::Driver& driver : model.drivers)
+  for (std::size_t i = 0; i < model.drivers.size(); ++i) {
+    const multibody::Driver& driver = model.drivers[i];
+    if (std::find(vehicle.drives.begin(), vehicle.drives.end(), static_cast<int>(i)) != vehicle.drives.end()) continue;
     if (!driver.value.straight()) return fmt::format("its driver '{}' changes its speed", driver.name);
+    if (!vehicle.speed.constant() && (driver.coordinate == 0 || driver.value.rate(0.0) != 0.0))
+      return fmt::format("its driver '{}' does not follow the changing speed of the train", driver.name);
+  }
   for (const multibody::Spring& spring : model.springs) {
     if (spring.law) return fmt::format("its spring '{}' follows a law that is not linear", spring.name);
     if (spring.winding) return fmt::format("its spring '{}' is wound up or off", spring.name);
@@ -67,11 +83,15 @@ LinearDynamics::LinearDynamics(MovingVehicle& vehicle, const double* cruise) {
   q0_ = state.q;
   mechanism.compute_B(state);
   B_ = state.B;
-  u_ = B_ * c_ + state.b;
+  set_travel(vehicle, 0.0);
+  const Eigen::VectorXd b = vehicle.speed.constant() ? state.b : rates_of_drives(vehicle, B_);
+  u_ = B_ * c_ + b;
   drives_ = !mechanism.model().drivers.empty();
   columns_ = state.columns;
 
-  mechanism.recover(state, vehicle.Q, x_.data());  // with p at rest: the reactions for K
+  state.d -= acceleration_ * b;
+  mechanism.recover(state, vehicle.Q, x_.data());  // without acceleration: the reactions for K
+  state.d += acceleration_ * b;
   M_ = B_.transpose() * mechanism.mass_diagonal().asDiagonal() * B_;
   Eigen::MatrixXd product;
   mechanism.multiply_tangent(state, -1.0, 0.0, 1.0, product);
@@ -80,24 +100,33 @@ LinearDynamics::LinearDynamics(MovingVehicle& vehicle, const double* cruise) {
   C_ = B_.transpose() * product;
   // r0 for the steady motion, from which the state's velocities may differ.
   r0_ = -B_.transpose() * state.g;
-  for (int i = 0; i < f; ++i) xd_[i] = state.qd[mechanism.partition().independent[static_cast<std::size_t>(i)]] - c_[i];
+  for (int i = 0; i < f; ++i)
+    xd_[i] = state.qd[mechanism.partition().independent[static_cast<std::size_t>(i)]] - rate_ * c_[i];
   r0_ -= C_ * xd_;
   driven_ = B_.transpose() * mechanism.mass_diagonal().cwiseProduct(u_);
+  driven_mass_ = u_.dot(mechanism.mass_diagonal().cwiseProduct(u_));
   mass_.compute(M_);
   const multibody::MechanismEnergy start = mechanism.energy(state);
   initial_energy_ = start.strain + start.potential;
 }
 
+void LinearDynamics::set_travel(const MovingVehicle& vehicle, double t) {
+  time_ = t;
+  s_ = vehicle.travel.value(t);
+  rate_ = vehicle.travel.rate(t);
+  acceleration_ = vehicle.travel.acceleration(t);
+}
+
 bool LinearDynamics::set(MovingVehicle& vehicle, double t, const double* p, const double* pd) {
   const auto f = p0_.size();
-  time_ = t;
-  x_ = Eigen::Map<const Eigen::VectorXd>(p, f) - p0_ - t * c_;
-  xd_ = Eigen::Map<const Eigen::VectorXd>(pd, f) - c_;
+  set_travel(vehicle, t);
+  x_ = Eigen::Map<const Eigen::VectorXd>(p, f) - p0_ - s_ * c_;
+  xd_ = Eigen::Map<const Eigen::VectorXd>(pd, f) - rate_ * c_;
   multibody::MechanismState& state = vehicle.state;
   state.time = t;
-  state.q = q0_ + t * u_;
+  state.q = q0_ + s_ * u_;
   state.q.noalias() += B_ * x_;
-  state.qd = u_;
+  state.qd = rate_ * u_;
   state.qd.noalias() += B_ * xd_;
   return true;
 }
@@ -110,9 +139,9 @@ void LinearDynamics::shift(MovingVehicle& vehicle, const double* change, double 
   vehicle.state.qd.noalias() += rate * (B_ * dx);
 }
 
-// B^T Q - C x' - K x - r0. Only the rows of wheels in Q are non-zero.
+// Only the rows of wheels in Q are non-zero.
 void LinearDynamics::find_force(const MovingVehicle& vehicle) {
-  force_ = -r0_;
+  force_ = -r0_ - acceleration_ * driven_;
   force_.noalias() -= C_ * xd_;
   force_.noalias() -= K_ * x_;
   for (const Wheel& wheel : vehicle.wheels) {
@@ -136,11 +165,12 @@ void LinearDynamics::recover(MovingVehicle&, const double* pdd) {
   xdd_ = Eigen::Map<const Eigen::VectorXd>(pdd, x_.size());
 }
 
-// The drive has the power u^T (N q'' - g - Q); internal springs do not contribute to it.
-multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) const {
+// The drive has the power s' u^T (N q'' - g - Q); internal springs do not contribute to it.
+base::Powers LinearDynamics::powers(const MovingVehicle& vehicle) const {
   double lost = 0.0;
   for (Eigen::Index i = 0; i < xd_.size(); ++i) lost += xd_[i] * C_.col(i).dot(xd_);
-  multibody::MechanismPowers powers{lost, drives_ ? driven_.dot(xdd_) - u_.dot(vehicle.Q) : 0.0};
+  const double force = driven_.dot(xdd_) + driven_mass_ * acceleration_ - u_.dot(vehicle.Q);
+  base::Powers powers{lost, drives_ ? rate_ * force : 0.0};
   for_actions(vehicle, time_, [&](Eigen::Index q, double action, double) {
     powers.work += action * ((drives_ ? 0.0 : u_[q]) + B_.row(q).dot(xd_));
   });
@@ -149,13 +179,14 @@ multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) 
 
 multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) const {
   const std::vector<int>& independent = vehicle.mechanism.partition().independent;
+  const double s = vehicle.travel.value(vehicle.state.time), rate = vehicle.travel.rate(vehicle.state.time);
   Eigen::VectorXd x(p0_.size()), xd(p0_.size());  // computed from the state, which another rank may have sent
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const int coordinate = independent[static_cast<std::size_t>(i)];
-    x[i] = vehicle.state.q[coordinate] - p0_[i] - vehicle.state.time * c_[i];
-    xd[i] = vehicle.state.qd[coordinate] - c_[i];
+    x[i] = vehicle.state.q[coordinate] - p0_[i] - s * c_[i];
+    xd[i] = vehicle.state.qd[coordinate] - rate * c_[i];
   }
-  const Eigen::VectorXd q = B_ * x, qd = u_ + B_ * xd;
+  const Eigen::VectorXd q = B_ * x, qd = rate * u_ + B_ * xd;
   const Eigen::VectorXd& mass = vehicle.mechanism.mass_diagonal();
   multibody::MechanismEnergy e;
   e.kinetic = 0.5 * qd.dot(mass.cwiseProduct(qd));
@@ -168,8 +199,9 @@ multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) 
 
 // Evaluates the mechanism at the same coordinates.
 bool LinearDynamics::observe(MovingVehicle& vehicle, const double* pdd) {
-  position_ = p0_ + time_ * c_ + x_;
-  velocity_ = c_ + xd_;
+  position_ = p0_ + s_ * c_ + x_;
+  velocity_ = rate_ * c_ + xd_;
+  pdd_ = Eigen::Map<const Eigen::VectorXd>(pdd, x_.size()) + acceleration_ * c_;
   multibody::MechanismState& state = vehicle.state;
   if (!vehicle.mechanism.set_positions(state, time_, position_.data())) {
     linearisation_residual_ = std::numeric_limits<double>::infinity();
@@ -177,7 +209,7 @@ bool LinearDynamics::observe(MovingVehicle& vehicle, const double* pdd) {
   }
   vehicle.mechanism.set_velocities(state, time_, velocity_.data());
   vehicle.mechanism.compute_forces(state);
-  vehicle.mechanism.recover(state, vehicle.Q, pdd);
+  vehicle.mechanism.recover(state, vehicle.Q, pdd_.data());
   r_ = vehicle.mechanism.mass_diagonal().cwiseProduct(state.qdd) - state.g - vehicle.Q;
   state.dependent_block.project(r_, R_);
   if (R_.size() > 0)
@@ -207,9 +239,10 @@ void LinearDynamics::renew(MovingVehicle&, const StageShifts& shifts, bool, Cont
 double linearisation_residual_at(MovingVehicle& vehicle, const double* x) {
   const LinearMatrices of = vehicle.dynamics->linear()->matrices();
   const Eigen::VectorXd p = of.p0 + Eigen::Map<const Eigen::VectorXd>(x, of.p0.size());
+  const Eigen::VectorXd pd = vehicle.travel.rate(0.0) * of.c;
   Eigen::VectorXd pdd(vehicle.freedom());
   AnyDynamics moved = vehicle.dynamics;  // a copy without earlier observations
-  moved->set(vehicle, 0.0, p.data(), of.c.data());
+  moved->set(vehicle, 0.0, p.data(), pd.data());
   moved->accelerations(vehicle, pdd.data());
   moved->observe(vehicle, pdd.data());
   return moved->linear()->linearisation_residual();

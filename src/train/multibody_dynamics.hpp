@@ -54,9 +54,7 @@ class MultibodyDynamics : public VehicleDynamics {
   void shift(MovingVehicle& vehicle, const double* change, double rate) override;
   void accelerations(MovingVehicle& vehicle, double* pdd) override;
   void recover(MovingVehicle& vehicle, const double* pdd) override;
-  multibody::MechanismPowers powers(const MovingVehicle& vehicle) const override {
-    return vehicle.mechanism.powers(vehicle.state);
-  }
+  base::Powers powers(const MovingVehicle& vehicle) const override { return vehicle.mechanism.powers(vehicle.state); }
   multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const override {
     return vehicle.mechanism.energy(vehicle.state);
   }

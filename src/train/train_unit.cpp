@@ -98,11 +98,14 @@ void add_vehicle(const Vehicle& type, const Placement& to, double speed, Unit& u
 }
 
 /// The driving constraint of a train with prescribed speed: x of a vehicle's first body.
-void add_drive(const Placement& to, const base::SpeedLaw& speed, MechanismModel& model) {
+void add_drive(const Placement& to, const base::SpeedLaw& speed, Unit& unit) {
+  MechanismModel& model = unit.mechanism;
   multibody::Driver drive{"drive", 0, 0, {}};
   to.name(drive.name);
   to.body(drive.body);
   drive.value = speed.from(model.bodies[static_cast<std::size_t>(drive.body)].position.x());
+  unit.drives.push_back(static_cast<int>(model.drivers.size()));
+  unit.speed = speed;
   model.drivers.push_back(drive);
 }
 
@@ -206,7 +209,7 @@ AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, d
     const base::SpeedLaw speed = law_of(train, number);
     add_vehicle(type, to, speed.speed(0.0), unit);
     const bool rolls = !type.wheels.empty() && !drives_x(type.mechanism) && !follows(k);
-    if (rolls && (frozen || drive_of(train, number) == Drive::constant)) add_drive(to, speed, unit.mechanism);
+    if (rolls && (frozen || drive_of(train, number) == Drive::constant)) add_drive(to, speed, unit);
     all.members.push_back(member);
   }
   for (std::size_t i = 0; i < train.couplers.size(); ++i) {

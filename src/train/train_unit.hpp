@@ -14,6 +14,8 @@ struct Unit {
   multibody::MechanismModel mechanism;
   std::vector<Wheel> wheels;
   std::vector<contact::BodyContact> contacts;
+  std::vector<int> drives;  // the mechanism's drivers that prescribe the train's speed
+  base::SpeedLaw speed;     // this speed
 };
 
 /// One vehicle of the train as part of its unit, which may contain several coupled vehicles: the first indices of its

@@ -102,7 +102,7 @@ class VehicleDynamics {
   /// Computes the quantities for the powers from p'' of a stage, under Q.
   virtual void recover(MovingVehicle& vehicle, const double* pdd) = 0;
   /// The powers of the vehicle. Call after accelerations or recover.
-  virtual multibody::MechanismPowers powers(const MovingVehicle& vehicle) const = 0;
+  virtual base::Powers powers(const MovingVehicle& vehicle) const = 0;
   /// The energies in the state that was observed last, J.
   virtual multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const = 0;
   /// Computes the observed state of all bodies, springs and joints at the state last set, with a given p'', under Q.

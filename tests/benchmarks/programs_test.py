@@ -99,7 +99,7 @@ class Scripts(InAFolder):
     def test_ranks(self):
         self.run_smallest("ranks")
         rows = self.table("ranks.csv", ["part", "1 rank, s", "2 ranks, s", "faster by"])
-        self.assertEqual(len(rows), 6)
+        self.assertEqual(len(rows), 7)
         self.assert_positive(rows, "1 rank, s", "2 ranks, s", "faster by")
         self.assert_picture("ranks.png")
 

@@ -36,6 +36,9 @@ KINDS = [
     ("impacts", "bouncing_ball", [], 400),
     ("friction", "freight_wagon", ["-ts_dt", "2e-3", "-ts_max_time", "0.4"], 80),
     ("mechanism", "slider_crank", [], 100),
+    *((f"{vehicles} vehicles after they have stopped", "train_brakes_to_rest",
+       ["-beam_elements_per_span", "4", "-ts_dt", "1e-2", "-ts_max_time", "15.5", "-model_vehicles", vehicles], 1500)
+      for vehicles in ("full", "linear")),
     ("foundation with a gap", "prop_with_gap", ["-ts_max_time", "0.1"], 100),
     ("layered track", "ballasted_viaduct", ["-ts_dt", "2e-3", "-ts_max_time", "0.06"], 12),
     ("hanging sleepers", "transition_zone",

@@ -19,7 +19,7 @@ TEST(SceneTrains, SeveralAreNumberedThrough) {
   EXPECT_EQ(s.train.vehicles, (std::vector<int>{0, 0, 1}));
   EXPECT_EQ(s.vehicles[1].name, "car") << "the same vehicle, mirrored";
   EXPECT_EQ(s.train.speed, 30.0);
-  EXPECT_FALSE(s.train.steady());
+  EXPECT_TRUE(s.train.driven());
   const std::vector<double> down = wheels_at_start(s, 2);
   EXPECT_NEAR(*std::min_element(down.begin(), down.end()), 80.0, 1e-12) << "the front wheel at the right end";
   EXPECT_TRUE(any_contains(s.notes, "runs: up at 30 m/s to the right; down at 25 m/s to the left"));
@@ -29,9 +29,9 @@ TEST(SceneTrains, SeveralAreNumberedThrough) {
 TEST(SceneTrains, OneAloneStaysAsItIs) {
   const Scene s = scene_of(beam_yaml + vehicle_yaml + "train: {vehicles: car, speed: 30}\n");
   EXPECT_TRUE(s.train.courses.empty());
-  EXPECT_TRUE(s.train.steady());
+  EXPECT_TRUE(s.train.driven());
   const Scene named = scene_of(beam_yaml + vehicle_yaml + "trains: up\nup: {vehicles: car, speed: 30}\n");
-  EXPECT_TRUE(named.train.steady());
+  EXPECT_TRUE(named.train.driven());
 }
 
 TEST(SceneTrains, LoadsRunEitherWay) {

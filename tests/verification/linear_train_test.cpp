@@ -9,6 +9,7 @@
 #include "support/curve.hpp"
 #include "support/message.hpp"
 #include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace traverse::test {
 namespace {
@@ -38,6 +39,16 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"modes", {{"model_modes", "16"}}}, Case{"hinge", {{"beam_hinges", "40"}}}),
     [](const auto& which) { return which.param.name; });
 
+/// The differences of both ways.
+void expect_same(Results& passes, Results& newton, double bound) {
+  for (const char* curve : curves) {
+    const double difference = relative_difference(passes(curve), newton(curve));
+    testing::Test::RecordProperty(curve + 1, text(difference));
+    EXPECT_LE(difference, bound) << curve;
+  }
+  EXPECT_GT(relative_difference(passes(curves[3]), newton(curves[3])), 0.0) << "both are the same run";
+}
+
 TEST_P(Passes, SameAsNewtonOfAllContacts) {
   const Case& c = GetParam();
   const Values scene = Values{{"train_vehicles", "coach*2"},
@@ -51,12 +62,24 @@ TEST_P(Passes, SameAsNewtonOfAllContacts) {
   for (const char* wheel : {"1", "2", "3", "4"})
     damped.emplace_back("vehicle_coach_wheel_" + std::string(wheel) + "_damping", "1e-9");
   Results passes = run_scene("three_span_train", scene), newton = run_scene("three_span_train", damped);
-  for (const char* curve : curves) {
-    const double difference = relative_difference(passes(curve), newton(curve));
-    RecordProperty(curve + 1, text(difference));
-    EXPECT_LE(difference, c.bound) << curve;
-  }
-  EXPECT_GT(relative_difference(passes(curves[3]), newton(curves[3])), 0.0) << "both are the same run";
+  expect_same(passes, newton, c.bound);
+}
+
+// A train that brakes, with the work of its drives.
+TEST(LinearTrain, AtAChangingSpeed) {
+  const TemporaryFolder folder;
+  const std::string law = folder.write("law.csv", "0,50\n0.4,50\n1,47\n1.6,47\n");
+  const auto scene = [&](const char* damping) {
+    return "beam: {spans: [32, 40, 32], EI: 3.795e11, EA: 3.1e11, mass: 3e4, elements_per_span: 8}\n"
+           "support: {types: [pinned, roller, roller, roller]}\nts: {dt: 1e-3, max_time: 1.6}\n"
+           "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml, wheel_1: {damping: " +
+           std::string(damping) + "}}}\ntrain: {vehicles: coach*2, speed_file: " + law + "}\n";
+  };
+  const Values linear = {{"model_vehicles", "linear"}};
+  Results passes = run_yaml(scene("0"), linear), newton = run_yaml(scene("1e-9"), linear);
+  expect_same(passes, newton, 1e-8);
+  EXPECT_LT(relative_difference(passes("/energy/work"), newton("/energy/work")), 1e-9);
+  EXPECT_LT(energy_error(passes), 1e-9);
 }
 
 // Between samples peaks are looked for in the contacts' forces that the step has ended with, without the vehicles.

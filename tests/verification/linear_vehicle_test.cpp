@@ -6,6 +6,7 @@
 
 #include "support/curve.hpp"
 #include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace traverse::test {
 namespace {
@@ -18,17 +19,22 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return largest;
 }
 
-/// A train over a bridge both ways: what is left out, relative to the peaks, and the energy balance of the linear one.
+/// What linear vehicles neglect, relative to the peaks, and the energy balance of their run.
+void expect_close(const std::string& name, Results& run, Results& full, const Values& bounds) {
+  for (const auto& [curve, bound] : bounds) {
+    const double difference = relative_difference(run(curve), full(curve));
+    testing::Test::RecordProperty(name + curve, text(difference));
+    EXPECT_LT(difference, std::stod(bound)) << name << curve;
+  }
+  EXPECT_LT(energy_error(run), 1.1 * energy_error(full) + 1e-9) << name;
+  EXPECT_GT(run.attribute("/summary", "linear_defect"), 0.0) << name;
+}
+
+/// A train over a bridge both ways.
 void expect_close(const std::string& scene, const Values& options, const Values& bounds) {
   Results full = run_scene(scene, options + mechanisms);
   Results run = run_scene(scene, options + linear);
-  for (const auto& [name, bound] : bounds) {
-    const double difference = relative_difference(run(name), full(name));
-    testing::Test::RecordProperty(scene + name, text(difference));
-    EXPECT_LT(difference, std::stod(bound)) << name;
-  }
-  EXPECT_LT(energy_error(run), 1.1 * energy_error(full) + 1e-9);
-  EXPECT_GT(run.attribute("/summary", "linear_defect"), 0.0);
+  expect_close(scene, run, full, bounds);
 }
 
 TEST(LinearVehicle, CoachesOverThreeSpans) {
@@ -125,6 +131,132 @@ TEST(LinearVehicle, AsTheAccuracyAllows) {
   EXPECT_TRUE(std::isnan(high.attribute("/summary", "linear_defect")));
   const double difference = relative_difference(high("/vehicles/0/car/position"), full("/vehicles/0/car/position"));
   EXPECT_EQ(difference, 0.0);
+}
+
+/// A car on two axles in vertical guides, on rigid ground.
+std::string guided_car(const char* law) {
+  return std::string(R"(
+vehicle:
+  car:
+    bodies: [frame, front_axle, rear_axle]
+    joints: [front_guide, rear_guide]
+    springs: [front_spring, rear_spring]
+    wheels: [front_wheel, rear_wheel]
+    frame: {mass: 9000.0, inertia: 8.0e4, position: [0.0, 1.5]}
+    front_axle: {mass: 1500.0, inertia: 100.0, position: [2.0, 0.5]}
+    rear_axle: {mass: 1500.0, inertia: 100.0, position: [-2.0, 0.5]}
+    front_guide: {type: prismatic, bodies: [frame, front_axle], point: [2.0, 1.0], axis: [0.0, 1.0]}
+    rear_guide: {type: prismatic, bodies: [frame, rear_axle], point: [-2.0, 1.0], axis: [0.0, 1.0]}
+    front_spring: {bodies: [frame, front_axle], from: [2.0, 1.5], to: [2.0, 0.5], stiffness: 2.0e6, damping: 1.0e5}
+    rear_spring: {bodies: [frame, rear_axle], from: [-2.0, 1.5], to: [-2.0, 0.5], stiffness: 2.0e6, damping: 1.0e5}
+    front_wheel: {body: front_axle, radius: 0.5, law: )") +
+         law + "}\n    rear_wheel: {body: rear_axle, radius: 0.5, law: " + law + R"(}
+train: {vehicles: car}
+ts: {dt: 1.0e-2, max_time: 4.0}
+output: {interval: 0.01}
+)";
+}
+
+// The drive holds the frame at its centre, and the guides hold back the axles d below it: their inertia forces m a have
+// the moment 2 m a d, which the wheels' forces balance at their distance 2 l. The springs of the axles and of the
+// contacts then allow the pitch m a d/l^2 (1/k + 1/k_c).
+TEST(LinearVehicle, PitchOfABrakedCar) {
+  const TemporaryFolder folder;
+  const double m = 1500.0, d = 1.0, l = 2.0, k = 2.0e6, k_c = 5.0e7;
+  for (const double end : {22.0, 38.0}) {
+    const std::string law = folder.write("law.csv", "0,30\n4," + text(end) + "\n");
+    Results run = run_yaml(guided_car("two_sided, stiffness: 5.0e7"),
+                           linear + Values{{"train_speed_file", law}, {"gravity", "0"}});
+    const double a = (end - 30.0) / 4.0, pitch = -m * a * d / (l * l) * (1.0 / k + 1.0 / k_c);
+    const double found = run.column("/vehicles/0/frame/position", 2).back();
+    RecordProperty("pitch_to_" + text(end), text(std::abs(found / pitch - 1.0)));
+    EXPECT_NEAR(found / pitch, 1.0, 1e-7);
+    EXPECT_NEAR(run("/vehicles/0/front_wheel/normal_force").back() / (m * a * d / l), 1.0, 1e-7);
+    const std::vector<double> x = run.column("/vehicles/0/frame/position", 0);
+    EXPECT_NEAR(x.back() - x.front(), 2.0 * (30.0 + end), 1e-11);
+    EXPECT_NEAR(run.column("/vehicles/0/rear_axle/velocity", 0).back(), end, 1e-9);
+    EXPECT_LT(energy_error(run), 1e-11);
+  }
+}
+
+// At half the accelerations the neglected terms are a quarter.
+TEST(LinearVehicle, LeavesOutSquaresOfAccelerations) {
+  const TemporaryFolder folder;
+  std::array<double, 2> left_out{}, defect{};
+  int i = 0;
+  for (const char* rows : {"0,0\n1,4\n2,4\n3,0\n", "0,0\n1,2\n2,2\n3,0\n"}) {
+    const Values law = {{"train_speed_file", folder.write("law.csv", rows)}};
+    Results full = run_yaml(guided_car("linear, stiffness: 5.0e7"), law + mechanisms);
+    Results run = run_yaml(guided_car("linear, stiffness: 5.0e7"), law + linear);
+    left_out[i] = largest_difference(run("/vehicles/0/front_spring/force"), full("/vehicles/0/front_spring/force"));
+    defect[i++] = run.attribute("/summary", "linear_defect");
+    EXPECT_LT(relative_difference(run("/energy/work"), full("/energy/work")), 1e-5);
+    EXPECT_NEAR(run.column("/vehicles/0/frame/velocity", 0).back(), 0.0, 1e-9) << "it has come to rest";
+  }
+  testing::Test::RecordProperty("ratio", text(left_out[0] / left_out[1]));
+  EXPECT_NEAR(left_out[0] / left_out[1], 4.0, 0.6);
+  EXPECT_NEAR(defect[0] / defect[1], 4.0, 0.6);
+}
+
+// Wheels that roll by friction while their vehicle starts, runs and stops.
+TEST(LinearVehicle, RollsAtAChangingSpeed) {
+  const TemporaryFolder folder;
+  std::string car = guided_car("hertz, stiffness: 1.0e10, friction: 0.3");
+  for (const char* end : {"front", "rear"}) {  // the axles turn, on bars instead of guides
+    const std::string axle = std::string(end) + "_axle", x = end[0] == 'f' ? "2.0" : "-2.0";
+    const std::size_t at = car.find("{type: prismatic, bodies: [frame, " + axle);
+    car.replace(at, car.find('\n', at) - at,
+                "{type: distance, bodies: [frame, " + axle + "], from: [0.0, 0.5], to: [" + x + ", 0.5]}");
+  }
+  const Values law = {{"train_speed_file", folder.write("law.csv", "0,0\n1,3\n2,3\n3,0\n")}, {"ts_dt", "2e-3"}};
+  Results full = run_yaml(car, law + mechanisms), run = run_yaml(car, law + linear);
+  for (const char* name : {"/vehicles/0/front_wheel/friction_force", "/vehicles/0/rear_wheel/normal_force"})
+    EXPECT_LT(relative_difference(run(name), full(name)), 1e-4) << name;
+  const std::vector<double> turn = run.column("/vehicles/0/front_axle/position", 2);
+  EXPECT_NEAR(turn.back() - turn.front(), -6.0 / 0.5, 0.02);
+  EXPECT_NEAR(turn.back(), full.column("/vehicles/0/front_axle/position", 2).back(), 1e-5);
+}
+
+// Trains that brake to rest on a bridge, start from rest, and run to the left.
+TEST(LinearVehicle, TrainsAtChangingSpeeds) {
+  const TemporaryFolder folder;
+  const std::string scene =
+      "beam: {spans: [32, 40, 32], EI: 3.795e11, EA: 3.1e11, mass: 3e4, damping_ratios: 0.02, elements_per_span: 8}\n"
+      "support: {types: [pinned, roller, roller, roller]}\ntrain: {vehicles: coach*2}\n"
+      "ts: {dt: 5e-4, max_time: 2.2}\noutput: {interval: 5e-3}\n"
+      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml}}\n";
+  for (const auto& [name, rows] : {std::pair("stop", "0,2\n0.3,2\n1.8,0\n"), std::pair("start", "0,0\n2,2\n"),
+                                   std::pair("left", "0,-60\n0.5,-60\n1.5,-58.5\n")}) {
+    const Values law = {{"train_speed_file", folder.write("law.csv", rows)}};
+    Results full = run_yaml(scene, law + mechanisms), run = run_yaml(scene, law + linear);
+    expect_close(name, run, full,
+                 {{"/probes/deflection", "5e-5"},
+                  {"/supports/reaction", "5e-5"},
+                  {"/vehicles/0/wheel_1/normal_force", "5e-5"},
+                  {"/vehicles/1/car/position", "1e-6"},
+                  {"/energy/work", "1e-5"}});
+  }
+}
+
+// Three trains with laws of their own in the lanes of one block.
+TEST(LinearVehicle, TrainsThatMeetAtChangingSpeeds) {
+  const TemporaryFolder folder;
+  const std::string scene =
+      "beam: {spans: [25, 25], EI: 2e11, mass: 1e4, damping_ratios: 0.01, elements_per_span: 8, "
+      "continuity: simply_supported}\nmodel: {axial: false}\ntrains: [up, down, through]\n"
+      "up: {vehicles: coach*2}\ndown: {vehicles: coach}\nthrough: {vehicles: coach, speed: 35}\n"
+      "ts: {dt: 1e-3, max_time: 2}\noutput: {interval: 0.01}\n"
+      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml}}\n";
+  const Values laws = {{"up_speed_file", folder.write("up.csv", "0,40\n0.5,40\n1.5,38.5\n")},
+                       {"down_speed_file", folder.write("down.csv", "0,0\n1.8,-2\n")}};
+  Results full = run_yaml(scene, laws + mechanisms);
+  Results run = run_yaml(scene, laws);  // on separate spans vehicles are linear by default
+  expect_close("three", run, full,
+               {{"/probes/deflection", "1e-5"},
+                {"/vehicles/0/wheel_2/normal_force", "5e-5"},
+                {"/vehicles/2/wheel_1/normal_force", "5e-5"},
+                {"/vehicles/3/wheel_1/normal_force", "5e-5"},
+                {"/energy/work", "1e-5"}});
 }
 
 }  // namespace

@@ -253,20 +253,22 @@ ts_dt: 1.0e-3
 ts_max_time: 6.0
 output: {interval: 0.01}
 )";
-  Results run = run_yaml(scene, {{"train_speed_file", stop}});
-  const std::vector<double> time = run.time(), force = run("/couplers/bar/fx");
-  const std::vector<double> speed = run.column("/vehicles/1/body/velocity", 0);
-  // Piece by piece of the speed's table, within which the force is constant: its value in the middle of each.
-  const std::array<double, 6> ends = {0.0, 1.0, 3.0, 4.0, 5.0, 6.0};
-  double impulse = 0.0;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-    impulse += (ends[i + 1] - ends[i]) * force[static_cast<std::size_t>(std::lround(50.0 * (ends[i] + ends[i + 1])))];
-  const double momentum = 2.0e4 * (speed.back() - speed.front());
-  testing::Test::RecordProperty("impulse_error", text(std::abs(impulse / momentum - 1.0)));
-  EXPECT_NEAR(impulse / momentum, 1.0, 1e-9);
-  EXPECT_NEAR(speed.front(), 30.0, 1e-12);
-  EXPECT_NEAR(speed.back(), 0.0, 1e-10);
-  EXPECT_NEAR(run("/energy/work").back(), -0.5 * 4.0e4 * 900.0, 1e-9 * 1.8e7);
+  for (const char* vehicles : {"full", "linear"}) {
+    Results run = run_yaml(scene, {{"train_speed_file", stop}, {"model_vehicles", vehicles}});
+    const std::vector<double> time = run.time(), force = run("/couplers/bar/fx");
+    const std::vector<double> speed = run.column("/vehicles/1/body/velocity", 0);
+    // Piece by piece of the speed's table, within which the force is constant: its value in the middle of each.
+    const std::array<double, 6> ends = {0.0, 1.0, 3.0, 4.0, 5.0, 6.0};
+    double impulse = 0.0;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+      impulse += (ends[i + 1] - ends[i]) * force[static_cast<std::size_t>(std::lround(50.0 * (ends[i] + ends[i + 1])))];
+    const double momentum = 2.0e4 * (speed.back() - speed.front());
+    testing::Test::RecordProperty("impulse_error", text(std::abs(impulse / momentum - 1.0)));
+    EXPECT_NEAR(impulse / momentum, 1.0, 1e-9);
+    EXPECT_NEAR(speed.front(), 30.0, 1e-12);
+    EXPECT_NEAR(speed.back(), 0.0, 1e-10);
+    EXPECT_NEAR(run("/energy/work").back(), -0.5 * 4.0e4 * 900.0, 1e-9 * 1.8e7);
+  }
 }
 
 }  // namespace

@@ -95,8 +95,8 @@ struct Train {
   std::vector<Coupler> couplers;  // with gaps in the order of all vehicles
   std::vector<Course> courses;    // ascending in `first`
 
-  /// Whether all vehicles run to the right at one constant, prescribed speed.
-  bool steady() const { return courses.empty() && drive == Drive::constant && speed > 0.0; }
+  /// Whether vehicles run and the speed of all of them is prescribed.
+  bool driven() const { return drive == Drive::constant && speed > 0.0; }
 };
 
 /// Moving forces and line loads. `lengths` and `moments` have one entry for each force or are empty: zeros.
