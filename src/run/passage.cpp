@@ -259,7 +259,7 @@ void serve_trains(MPI_Comm comm, const scene::Scene& scene) {
     passage.serve();
   } catch (const std::exception& failure) {
     if (sharing != nullptr && sharing->next().what() == coupling::TrainSharing::end) return;  // the first rank says why
-    std::fputs(failure.what(), stderr);
+    fmt::print(stderr, "traverse: {}\n", failure.what());
     MPI_Abort(comm, as_error(failure).status());
   }
 }

@@ -106,7 +106,6 @@ StageWork stage_work(const scene::Scene& scene) {
   // Every rank computes all linear vehicles.
   work.vehicles =
       scene.model.vehicles == scene::VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
-  if (shares_trains(scene)) work.single_rank_reason = "";
   work.cut = !(scene.model.window_tolerance > 0.0 || (scene.model.window_tolerance < 0.0 && spans_apart));
   if (scene.model.modes > 0)
     work.single_rank_reason = "the modes' steps have no more in them than a message";
