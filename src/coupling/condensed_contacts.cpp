@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace traverse::coupling {
 namespace {
@@ -45,11 +46,18 @@ Eigen::RowVector2d row_tangent(const train::ContactRow& row, double shift) {
 
 void CondensedContacts::list(train::Fleet& fleet) {
   rows_.clear();
-  first_.clear();
-  compliances_.resize(fleet.vehicles.size());
-  for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
+  const std::size_t vehicles = fleet.vehicles.size();
+  for (std::vector<int>* of_vehicles : {&first_, &count_}) of_vehicles->resize(vehicles);
+  compliances_.resize(vehicles);
+  if (order_.empty()) {  // at the start, when all ranks know all places
+    order_.resize(vehicles);
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    const auto x = [&](std::size_t k) { return fleet.vehicles[k].state.q[0]; };
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) { return x(a) > x(b); });
+  }
+  for (const std::size_t k : order_) {
     const train::MovingVehicle& vehicle = fleet.vehicles[k];
-    first_.push_back(size());
+    first_[k] = size();
     compliances_[k].list.begin();
     for (const int i : vehicle.touching) {
       if (!fleet.may_touch(i)) continue;
@@ -59,8 +67,8 @@ void CondensedContacts::list(train::Fleet& fleet) {
       if (c.law.friction > 0.0) rows_.push_back({&c, vehicle.scale, static_cast<int>(k), false, c.slot()});
     }
     if (!compliances_[k].list.end()) compliances_[k].known = false;
+    count_[k] = size() - first_[k];
   }
-  first_.push_back(size());
   for (Eigen::VectorXd* v : {&reference_, &delta_, &change_, &deviation_, &right_, &step_, &beam_}) v->resize(size());
   D_.resize(size(), 2);
 }
@@ -107,19 +115,30 @@ void CondensedContacts::respond(const structure::ElementCompliance& compliance) 
 void CondensedContacts::couple(const structure::ElementCompliance* compliance, int per_node) {
   responses_.clear();
   if (compliance != nullptr) per_node == 2 ? respond<4>(*compliance) : respond<6>(*compliance);
-  const bool no_tangents = std::all_of(compliances_.begin(), compliances_.end(),
-                                       [](const train::ContactCompliance& y) { return y.P.size() == 0; });
-  find_band(!no_tangents);
+  find_band();
   fill_A();
   factored_ = false;
 }
 
+// The bandwidth of A where vehicles have P: a response couples all rows of its vehicle.
+int CondensedContacts::band_of_blocks() const {
+  int band = 0;
+  for (const int rows_of_vehicle : count_) band = std::max(band, rows_of_vehicle);
+  for (const Response& r : responses_) {
+    const int k = rows_[r.a].vehicle;
+    band = std::max({band, std::abs(first_[k] - r.b), std::abs(first_[k] + count_[k] - r.b)});
+  }
+  return std::clamp(band, 0, std::max(0, size() - 1));
+}
+
 // Sets the bandwidth from the couplings that are not negligible, and removes the responses outside it; or from the
 // couplings that are not weak if that is much less.
-void CondensedContacts::find_band(bool whole) {
-  band_ = std::max(0, size() - 1);
+void CondensedContacts::find_band() {
   has_weak_ = false;
-  if (whole) return;
+  if (std::any_of(compliances_.begin(), compliances_.end(), [](const auto& y) { return y.P.size() > 0; })) {
+    band_ = band_of_blocks();
+    return;
+  }
   right_.setZero();
   for (std::size_t k = 0; k < compliances_.size(); ++k)
     right_.segment(first_[k], rows(static_cast<int>(k))) = compliances_[k].H.diagonal();

@@ -26,10 +26,10 @@ Eigen::RowVector2d row_tangent(const train::ContactRow& row, double shift);
 
 class CondensedContacts {
  public:
-  /// Lists the contacts of the fleet, vehicle by vehicle.
+  /// Lists the contacts of the fleet, vehicle by vehicle, in the order of the vehicles' places at the first call.
   void list(train::Fleet& fleet);
   int first(int vehicle) const { return first_[vehicle]; }
-  int rows(int vehicle) const { return first_[vehicle + 1] - first_[vehicle]; }
+  int rows(int vehicle) const { return count_[vehicle]; }
   const train::ContactRow& row(int i) const { return rows_[i]; }
   train::ContactRows rows_of(int vehicle) const {
     return train::ContactRows(rows_).subspan(static_cast<std::size_t>(first(vehicle)),
@@ -61,7 +61,8 @@ class CondensedContacts {
   };
   template <int m>
   void respond(const structure::ElementCompliance& compliance);
-  void find_band(bool whole);
+  int band_of_blocks() const;
+  void find_band();
   void fill_A();
   double& A(int i, int j) { return A_(band_ + i - j, j); }
   int top(int j) const { return std::max(0, j - band_); }
@@ -76,7 +77,8 @@ class CondensedContacts {
   double update_contacts(double shift);
 
   std::vector<train::ContactRow> rows_;
-  std::vector<int> first_;                 // first row of each vehicle, and the number of all rows
+  std::vector<int> first_, count_;         // for each vehicle: its first row, and their number
+  std::vector<std::size_t> order_;         // the vehicles, from the greatest x on at the first call
   std::vector<int> on_slot_, slot_begin_;  // rows in the order of the slots of their elements
   std::vector<train::ContactCompliance> compliances_;
   std::vector<Response> responses_;

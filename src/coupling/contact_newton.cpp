@@ -288,7 +288,7 @@ double ContactNewton::update(train::Fleet& fleet, double* x) {
   for (int k = 0; k < static_cast<int>(work_.size()); ++k) {
     VehicleWork& w = work_[k];
     w.change = contacts_.compliance(k).residual;
-    for (int i = contacts_.first(k); i < contacts_.first(k + 1); ++i)
+    for (int i = contacts_.first(k); i < contacts_.first(k) + contacts_.rows(k); ++i)
       w.change = std::max(w.change, std::abs(contacts_.change(i)) / fleet.vehicles[k].scale);
     change = std::max(change, w.change);
   }

@@ -63,6 +63,7 @@ struct SystemInput {
   bool self_weight = false;       // gravity acts on the beam too
   int impact_steps = 20;          // least number of steps in an impact; 0: no limit
   bool local_compliance = false;  // whether a bridge's elements deflect between their nodes under wheels
+  bool only_on_bridge = false;    // trains in steady motion beside the bridge, or behind it, are not computed
 };
 
 /// Stored energies and the integrals of the powers, J.
@@ -110,6 +111,8 @@ class System {
   const structure::Structure* structure() const { return structure_.get(); }  // null: none
   const beam::Beam* beam() const { return structure_ ? &structure_->beam() : nullptr; }
   const train::Fleet& fleet() const { return fleet_; }
+  /// Whether a vehicle of the fleet is computed in the present step; otherwise its wheels are not on the bridge.
+  bool is_present(int vehicle) const { return !trains_ || trains_->is_present(vehicle); }
   int local_size() const;                        // entries of y on this rank
   int structure_unknowns() const { return n_; }  // on this rank: v at y, w behind it
   int freedom() const { return fleet_.freedom(); }
@@ -146,7 +149,7 @@ class System {
   // Second-order form without a PETSc stage: the steps of the program's own integrators.
 
   /// MovingStructure::limit_to_active_window, before begin_motion.
-  void limit_to_active_window(double tolerance, const std::vector<double>& probes) {
+  void limit_to_active_window(const structure::WindowTolerance& tolerance, const std::vector<double>& probes) {
     if (structure_) structure_->limit_to_active_window(tolerance, probes);
   }
   /// Collective. The method of all following steps, for steps of 1 s.
@@ -305,6 +308,8 @@ class System {
   bool solve_by_passes(double t, const double* y);
   bool is_length(double h) const;
   void make_linear_train();
+  std::vector<base::Interval> presence_on_bridge() const;
+  void place_entering(double t, double end);
   bool select_sides();
   void finish_passes();
   bool stage_of_motion(double t, std::size_t stage, const double* v, const double* w);
@@ -339,7 +344,9 @@ class System {
   bool receive_trains(bool solved);
   SharedSums sums_of_others() const;
   void take_portion(double* y);
-  void serve_step(double t, double h, double* y);
+  void step_ahead(const TrainSharing::Command& step, double* y);
+  void step_back(double* y);
+  void send_trains();
   void send_motion(const std::vector<structure::Range>& columns, double* y);
   double force_sum_ = 0.0, moment_sum_ = 0.0;  // magnitudes of all loads, N and N m
 
@@ -377,6 +384,7 @@ class System {
   std::vector<structure::Reach> reaches_;
   std::unique_ptr<Motion> motion_;                // null before begin_motion
   std::unique_ptr<engine::LinearTrains> trains_;  // null unless all vehicles are linear with plain contacts
+  std::vector<double> wheels_at_start_;           // m, x of each wheel at t = 0, if trains are not always computed
   bool by_passes_ = false;                        // the step is computed with trains_
   std::unique_ptr<TrainSharing> sharing_;         // null: this rank moves all trains
   SharedSums returned_;                           // what other ranks have given back

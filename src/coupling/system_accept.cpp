@@ -17,12 +17,14 @@ constexpr double same_place = 1e-9;  // m or rad
 }  // namespace
 
 void System::begin_trial() {
-  for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).touched = false;
+  for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).touched = fleet_.contact(i).lifted = false;
 }
 
 void System::record_touched() {
-  for (int i = 0; i < fleet_.contacts(); ++i)
-    if (fleet_.contact(i).force.normal > 0.0) fleet_.contact(i).touched = true;
+  for (int i = 0; i < fleet_.contacts(); ++i) {
+    train::Contact& c = fleet_.contact(i);
+    (c.force.normal > 0.0 ? c.touched : c.lifted) = true;
+  }
 }
 
 void System::set_vehicles(double t, const double* y) {

@@ -2,6 +2,7 @@
 // contacts.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "coupling/system.hpp"
@@ -10,6 +11,7 @@
 namespace traverse::coupling {
 namespace {
 
+constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double same_position = 1e-9;  // m or rad: the last stage is at the end of the step
 constexpr double same_length = 1e-10;   // relative difference of lengths of steps whose ends are rounded
 
@@ -35,10 +37,43 @@ void System::make_linear_train() {
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm_);
   if (bounds[0] != -bounds[1] || !engine::LinearTrain::obstacle(fleet_).empty()) return;
   std::vector<std::size_t> first{0};
+  const bool apart = sharing_ || (input_.only_on_bridge && line_ != nullptr);
   for (const train::Course& course : input_.train.courses)
-    if (sharing_ && course.first > 0) first.push_back(static_cast<std::size_t>(fleet_.members[course.first].unit));
+    if (apart && course.first > 0) first.push_back(static_cast<std::size_t>(fleet_.members[course.first].unit));
   trains_ = std::make_unique<engine::LinearTrains>(fleet_, first, line_ != nullptr ? &line_->mesh : nullptr, per_node(),
                                                    surface_height());
+  if (!input_.only_on_bridge || line_ == nullptr || trains_->count() != first.size()) return;
+  trains_->presence() = presence_on_bridge();
+  for (const train::WheelContact& c : fleet_.wheels) wheels_at_start_.push_back(fleet_.coordinates(c).x());
+}
+
+// Places the wheels of trains that are computed from t on, before `end`: they have not been moved since the start.
+void System::place_entering(double t, double end) {
+  if (wheels_at_start_.empty() || !trains_->enters(t, end)) return;
+  for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
+    const train::WheelContact& c = fleet_.wheels[i];
+    if (!trains_->is_present(c.vehicle) && trains_->presence()[trains_->train_of(c.vehicle)].overlaps({t, end}))
+      fleet_.x(c) = wheels_at_start_[i] + law_of_wheel(static_cast<int>(i)).distance(t);
+  }
+}
+
+// From when to when each train's wheels may touch the line, at t = 0. Trains on a rough track, and those whose speed
+// changes, move beside the bridge too.
+std::vector<base::Interval> System::presence_on_bridge() const {
+  std::vector<base::Interval> presence(trains_->count(), {infinite, -infinite});
+  for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
+    const train::WheelContact& c = fleet_.wheels[i];
+    base::Interval& of_train = presence[trains_->train_of(c.vehicle)];
+    const base::SpeedLaw law = law_of_wheel(static_cast<int>(i));
+    const double x = fleet_.coordinates(c).x(), reach = fleet_.reach(c);
+    const std::array times = {law.time_of(line_->mesh.start() - reach - x), law.time_of(line_->mesh.end() + reach - x)};
+    const auto [enters, leaves] = std::minmax(times[0], times[1]);
+    const bool steady =
+        fleet_.profile(c).level() && is_driven(static_cast<int>(i)) && law.constant() && law.direction() != 0.0;
+    of_train.from = steady ? std::min(of_train.from, enters) : -infinite;
+    of_train.to = steady ? std::max(of_train.to, leaves) : infinite;
+  }
+  return presence;
 }
 
 // The reaches of wheels and forces during a step.
@@ -97,6 +132,10 @@ void System::set_step(double h) {
 bool System::step_motion(double t, double h, double* y, const std::function<bool()>& good_enough) {
   Motion& m = *motion_;
   if (sharing_) begin_shared_step(t, h, y);
+  if (trains_) {
+    place_entering(t, t + h);
+    trains_->set_present(t, t + h);
+  }
   if (!is_length(h)) set_step(h);
   m.powers.before = m.powers.sum;
   if (store_steps_) m.before.assign(y + 2 * n_, y + local_size());

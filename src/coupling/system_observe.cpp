@@ -41,6 +41,9 @@ void System::observe(double t, const double* y, const double* a, Observation& ou
         from_passes ? structure::ElementLoads{trains_->elements(), structure_->pass_loads()} : contact_loads();
     structure_->observe(y, y + n_, a, contacts, all, out.beam);
     structure_->add_support_motion(out.beam);
+    if (is_shared())
+      for (const std::vector<structure::Range>& of_other : sharing_->observed)
+        out.beam.moving->insert(out.beam.moving->end(), of_other.begin(), of_other.end());
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
     out.bridge_loads.insert(out.bridge_loads.end(), out.beam.foundation_loads.begin(), out.beam.foundation_loads.end());
   }

@@ -24,9 +24,10 @@ bool System::may_share() {
 
 structure::ElementStructure& System::elements() { return static_cast<structure::ElementStructure&>(*structure_); }
 
-// The columns that each train reaches from t to `end`, with a span on either side: the structure joins loads that are
-// closer.
+// The columns that each train that is computed reaches from t to `end`, with a span on either side: the structure joins
+// loads that are closer.
 std::vector<TrainReach> System::reaches_of_trains(double t, double end) {
+  place_entering(t, end);
   std::vector<structure::Reach> reaches(
       trains_->count(), {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
   for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
@@ -37,12 +38,12 @@ std::vector<TrainReach> System::reaches_of_trains(double t, double end) {
     reach.from = std::min({reach.from, x - fleet_.reach(c), next - fleet_.reach(c)});
     reach.to = std::max({reach.to, x + fleet_.reach(c), next + fleet_.reach(c)});
   }
-  std::vector<TrainReach> trains(reaches.size());
+  std::vector<double> vehicles(reaches.size(), 0.0);
+  for (std::size_t k = 0; k < fleet_.vehicles.size(); ++k) vehicles[trains_->train_of(static_cast<int>(k))] += 1.0;
+  std::vector<TrainReach> trains;
   const double span = elements().longest_span();
-  for (std::size_t k = 0; k < trains.size(); ++k)
-    trains[k].columns = elements().columns_of({reaches[k].from - span, reaches[k].to + span});
-  for (std::size_t k = 0; k < fleet_.vehicles.size(); ++k)
-    trains[trains_->train_of(static_cast<int>(k))].vehicles += 1.0;
+  for (const std::size_t k : trains_->present(t, end))
+    trains.push_back({k, elements().columns_of({reaches[k].from - span, reaches[k].to + span}), vehicles[k]});
   return trains;
 }
 
@@ -87,7 +88,7 @@ void System::divide_trains(double t, double h, double* y) {
     bridge.window().remove(given);
   }
   bridge.window().beside(s.comm());
-  trains_->set_own(s.portions.front().trains);
+  trains_->assign(s.portions.front().trains);
   s.divided_now = true;
 }
 
@@ -97,7 +98,7 @@ void System::recall(double* y, bool rejected) {
   s.request(rejected ? TrainSharing::reject : TrainSharing::recall);
   receive_motion(y, true);
   elements().window().beside(MPI_COMM_NULL);
-  trains_->set_all_own();
+  trains_->assign_all();
   s.divided_now = false;
 }
 
@@ -157,15 +158,19 @@ SharedSums System::sums_of_others() const {
 
 void System::serve(double* y) {
   TrainSharing& s = *sharing_;
+  TrainSharing::Command last;  // step
   for (;;) {
     const TrainSharing::Command command = s.next();
+    if (s.ahead && !(*s.ahead == command)) step_back(y);
     switch (command.what()) {
       case TrainSharing::divided:
         if (!is_length(command.h)) set_step(command.h);
         take_portion(y);
         break;
       case TrainSharing::step:
-        serve_step(command.t, command.h, y);
+        if (!s.ahead) step_ahead(command, y);
+        send_trains();
+        last = command;
         break;
       case TrainSharing::accept:
         structure_->accept(y, y + n_, reaches_);
@@ -182,6 +187,7 @@ void System::serve(double* y) {
         break;
       case TrainSharing::probes:
         send_motion(elements().window().probed(), y);
+        step_ahead({TrainSharing::step, last.t + last.h, last.h}, y);  // while the leader evaluates
         break;
       case TrainSharing::energies:
         energy_ = elements().energy(y, y + n_);
@@ -208,7 +214,7 @@ void System::take_portion(double* y) {
     trains_->train(k).taken();
     trains_->train(k).copy_contacts_to(fleet_);
   }
-  trains_->set_own(std::move(own));
+  trains_->assign(std::move(own));
   bridge.window().exchange(get);
   bridge.exchange_time(get);
   bridge.begin_share();
@@ -220,18 +226,51 @@ void System::take_portion(double* y) {
   bridge.window().add(taken);
 }
 
-void System::serve_step(double t, double h, double* y) {
+// Takes a step, so that step_back() can take it back.
+void System::step_ahead(const TrainSharing::Command& step, double* y) {
   TrainSharing& s = *sharing_;
-  begin_step(t, t + h);
-  if (!is_length(h)) set_step(h);
+  s.ahead = step;
+  s.trains_before.clear();
+  for (const std::size_t k : trains_->assigned()) {
+    trains_->train(k).given();
+    trains_->train(k).exchange([&](const double* numbers, std::size_t count) {
+      s.trains_before.insert(s.trains_before.end(), numbers, numbers + count);
+    });
+  }
+  begin_step(step.t, step.t + step.h);
+  place_entering(step.t, step.t + step.h);
+  trains_->set_present(step.t, step.t + step.h);
+  if (!is_length(step.h)) set_step(step.h);
   motion_->powers.before = motion_->powers.sum;
   store_steps_ = true;
-  const bool solved = solve_by_passes(t, y);
-  if (solved) finish_step(y);
+  s.solved = solve_by_passes(step.t, y);
+  if (s.solved) finish_step(y);
+}
+
+void System::step_back(double* y) {
+  TrainSharing& s = *sharing_;
+  s.ahead.reset();
+  motion_->powers.sum = motion_->powers.before;
+  elements().step_back(y, y + n_);
+  const double* from = s.trains_before.data();
+  for (const std::size_t k : trains_->assigned()) {
+    trains_->train(k).exchange([&](double* numbers, std::size_t count) {
+      std::copy_n(from, count, numbers);
+      from += count;
+    });
+    trains_->train(k).taken();
+    trains_->train(k).copy_contacts_to(fleet_);
+  }
+}
+
+// Sends the trains at the end of the step.
+void System::send_trains() {
+  TrainSharing& s = *sharing_;
+  s.ahead.reset();
   s.clear();
-  s.put(solved ? 1.0 : 0.0);
-  for (const std::size_t k : trains_->own()) {
-    if (!solved) break;
+  s.put(s.solved ? 1.0 : 0.0);
+  for (const std::size_t k : trains_->assigned()) {
+    if (!s.solved) break;
     trains_->train(k).given();
     trains_->train(k).exchange([&](const double* numbers, std::size_t count) { s.put(numbers, count); });
   }

@@ -13,8 +13,8 @@ namespace {
 
 using structure::Range;
 
-constexpr double columns_per_vehicle =
-    200.0;  // columns that move freely take as long as a vehicle in a stage, measured
+// Columns that move freely take as long as a vehicle in a stage, or as the evaluation of a vehicle, measured.
+constexpr double columns_per_vehicle = 200.0, columns_per_evaluation = 70.0;
 constexpr int tag = 0;
 
 int length(const Range& range) { return range.past - range.first; }
@@ -41,7 +41,7 @@ std::vector<Group> groups_of(const std::vector<TrainReach>& trains) {
     if (groups.empty() || groups.back().columns.empty() || !overlap(groups.back().columns.back(), columns))
       groups.emplace_back();
     Group& group = groups.back();
-    group.trains.push_back(k);
+    group.trains.push_back(trains[k].train);
     if (length(columns) > 0) group.columns.push_back(columns);
     structure::merge(group.columns);
     group.work += columns_per_vehicle * trains[k].vehicles + length(columns);
@@ -54,6 +54,7 @@ std::vector<Group> groups_of(const std::vector<TrainReach>& trains) {
 std::vector<Portion> divide(const std::vector<TrainReach>& trains, const std::vector<Range>& moving, int ranks) {
   std::vector<Portion> portions(static_cast<std::size_t>(ranks));
   std::vector<double> work(portions.size(), 0.0);
+  for (const TrainReach& train : trains) work.front() += columns_per_evaluation * train.vehicles;
   const auto give = [&](double more) {  // to the rank with the least work
     const auto rank = static_cast<std::size_t>(std::min_element(work.begin(), work.end()) - work.begin());
     work[rank] += more;

@@ -5,8 +5,9 @@
 //   leader (rank 0)                                   others: System::serve
 //     step: request, own trains                         own trains
 //           receives the trains of the others           send their trains
-//     accept: request, own spans, events, evaluation    own spans
-//     observe: receives what is observed                send it
+//     accept: request, own spans, events                own spans
+//     observe: receives what is observed                send it, and take the next step, which is taken back
+//     evaluation                                          if the leader asks for something else
 //     end of an epoch, restart, archive: recall         send their spans, and have none
 //       then trains and spans are divided again
 //
@@ -18,6 +19,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "structure/ranges.hpp"
@@ -26,6 +28,7 @@ namespace traverse::coupling {
 
 /// What a train occupies within an epoch: whole parts of the bridge.
 struct TrainReach {
+  std::size_t train = 0;
   structure::Range columns;
   double vehicles = 0.0;  // number
 };
@@ -36,8 +39,9 @@ struct Portion {
   std::vector<structure::Range> columns;
 };
 
-/// Divides trains and moving columns among ranks with about equal work. Trains with common columns have one rank; all
-/// columns of a train are those of its rank. `moving` as structure::merge() returns it.
+/// Divides trains and moving columns among ranks with about equal work, of which the first rank has the evaluation of
+/// all trains too. Trains with common columns have one rank; all columns of a train are those of its rank. `moving` as
+/// structure::merge() returns it.
 std::vector<Portion> divide(const std::vector<TrainReach>& trains, const std::vector<structure::Range>& moving,
                             int ranks);
 
@@ -60,6 +64,7 @@ class TrainSharing {
   struct Command {
     double number = end, t = 0.0, h = 0.0;  // of the request; s
     Request what() const { return static_cast<Request>(number); }
+    bool operator==(const Command&) const = default;
   };
 
   /// Collective. The ranks of comm share the trains; the first one leads.
@@ -93,6 +98,10 @@ class TrainSharing {
   std::vector<SharedSums> sums;                         // of other ranks
   bool divided_now = false;                             // others move trains
   double epoch_end = 0.0;                               // s
+  // On the others:
+  std::optional<Command> ahead;       // the step that has been taken before the leader asked for it
+  bool solved = false;                // the last step
+  std::vector<double> trains_before;  // the own trains at its start
 
  private:
   MPI_Comm comm_;

@@ -48,6 +48,7 @@ void LinearTrain::set_method(const base::Method& method, double h) {
 }
 
 void LinearTrain::begin_step() {
+  std::fill_n(task_.least, static_cast<std::size_t>(task_.wheels) * arrays_.lanes, TrainArrays::infinite);
   std::fill_n(task_.largest, static_cast<std::size_t>(task_.wheels) * arrays_.lanes, 0.0);
   arrays_.set_guesses(method_, length_before_);
 }
@@ -303,6 +304,7 @@ void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
     c.force = {};
     c.force.normal = task_.normal[at];
     c.touched = c.touched || task_.largest[at] > 0.0;
+    c.lifted = c.lifted || !(task_.least[at] > 0.0);
   }
 }
 

@@ -45,6 +45,7 @@ LinearTrain::LinearTrain(const train::Fleet& fleet, const Blocks& blocks, std::s
                 task_.station,
                 task_.along_rate,
                 task_.penetration,
+                task_.least,
                 task_.largest,
                 task_.penetration_rate,
                 task_.local_compliance,

@@ -2,6 +2,7 @@
 #include "engine/linear_trains.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -16,19 +17,50 @@ LinearTrains::LinearTrains(const train::Fleet& fleet, const std::vector<std::siz
     trains_.push_back(std::make_unique<LinearTrain>(fleet, first[k], past, surfaces, mesh, per_node, surface_height));
     train_of_.resize(past, k);
   }
-  set_all_own();
+  presence_.resize(trains_.size());
+  present_ = present(0.0, 0.0);
+  assign_all();
 }
 
-void LinearTrains::set_all_own() {
-  std::vector<std::size_t> all(trains_.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  set_own(std::move(all));
+std::vector<std::size_t> LinearTrains::present(double t, double end) const {
+  std::vector<std::size_t> trains;
+  for (std::size_t k = 0; k < trains_.size(); ++k)
+    if (presence_[k].overlaps({t, end})) trains.push_back(k);
+  return trains;
 }
 
-void LinearTrains::set_own(std::vector<std::size_t> trains) {
-  own_ = std::move(trains);
-  is_own_.assign(trains_.size(), 0);
-  for (const std::size_t k : own_) is_own_[k] = 1;
+void LinearTrains::assign(std::vector<std::size_t> trains) {
+  assigned_ = std::move(trains);
+  select();
+}
+
+void LinearTrains::assign_all() {
+  assigned_.resize(trains_.size());
+  std::iota(assigned_.begin(), assigned_.end(), std::size_t{0});
+  select();
+}
+
+bool LinearTrains::enters(double t, double end) const {
+  for (std::size_t k = 0; k < trains_.size(); ++k)
+    if (state_[k] == State::absent && presence_[k].overlaps({t, end})) return true;
+  return false;
+}
+
+void LinearTrains::set_present(double t, double end) {
+  const auto as_before = [&](std::size_t k) { return presence_[k].overlaps({t, end}) == (state_[k] != State::absent); };
+  bool same = true;
+  for (std::size_t k = 0; same && k < trains_.size(); ++k) same = as_before(k);
+  if (same) return;
+  present_ = present(t, end);
+  select();
+}
+
+void LinearTrains::select() {
+  own_.clear();
+  std::set_intersection(assigned_.begin(), assigned_.end(), present_.begin(), present_.end(), std::back_inserter(own_));
+  state_.assign(trains_.size(), State::absent);
+  for (const std::size_t k : present_) state_[k] = State::of_other_rank;
+  for (const std::size_t k : own_) state_[k] = State::own;
 }
 
 void LinearTrains::set_method(const base::Method& method, double h) {
@@ -109,16 +141,16 @@ void LinearTrains::finish_step() {
 }
 
 void LinearTrains::state(double* p, double* pd, double* pdd) const {
-  for (const auto& train : trains_) train->state(p, pd, pdd);
+  for (const std::size_t k : present_) trains_[k]->state(p, pd, pdd);
 }
 
 void LinearTrains::copy_contacts_to(train::Fleet& fleet) const {
-  for (const auto& train : trains_) train->copy_contacts_to(fleet);
+  for (const std::size_t k : present_) trains_[k]->copy_contacts_to(fleet);
 }
 
 bool LinearTrains::residual_may_grow() {
   bool grows = false;
-  for (const auto& train : trains_) grows = train->residual_may_grow() || grows;
+  for (const std::size_t k : present_) grows = trains_[k]->residual_may_grow() || grows;
   return grows;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/interval.hpp"
 #include "engine/linear_train.hpp"
 
 namespace traverse::engine {
@@ -18,17 +19,27 @@ class LinearTrains {
 
   std::size_t count() const { return trains_.size(); }
   LinearTrain& train(std::size_t k) { return *trains_[k]; }
-  /// The trains that this rank moves, at first all of them; and whether it moves a vehicle of the fleet.
-  const std::vector<std::size_t>& own() const { return own_; }
-  void set_own(std::vector<std::size_t> trains);
-  void set_all_own();
+  /// From when to when each train is computed (s); at first always. Before it runs in its steady motion, afterwards it
+  /// is of no interest.
+  std::vector<base::Interval>& presence() { return presence_; }
+  /// The trains that are computed in steps from t to `end` (s), on any rank.
+  std::vector<std::size_t> present(double t, double end) const;
+  /// The trains that this rank moves while they are computed, ascending; at first all.
+  void assign(std::vector<std::size_t> trains);
+  void assign_all();
+  const std::vector<std::size_t>& assigned() const { return assigned_; }
+  /// Whether a train that is absent now is computed in steps from t to `end`.
+  bool enters(double t, double end) const;
+  /// Before a step from t to `end`.
+  void set_present(double t, double end);
   std::size_t train_of(int vehicle) const { return train_of_[static_cast<std::size_t>(vehicle)]; }
-  bool moves(int vehicle) const { return is_own_[train_of(vehicle)] != 0; }
+  bool moves(int vehicle) const { return state_[train_of(vehicle)] == State::own; }
+  bool is_present(int vehicle) const { return state_[train_of(vehicle)] != State::absent; }
 
   void set_method(const base::Method& method, double h);
   void restart(const train::Fleet& fleet, const double* p, const double* pd, const double* pdd);
 
-  // Of this rank's trains, as the functions of LinearTrain:
+  // Of this rank's trains that are computed, as the functions of LinearTrain:
   void begin_step();
   void predict(const train::Fleet& fleet, std::size_t stage, double t);
   bool place(train::Fleet& fleet);
@@ -44,7 +55,7 @@ class LinearTrains {
   void accelerations(double* pdd) const;
   void finish_step();
 
-  // Of all trains:
+  // Of all trains that are computed, on any rank:
   void state(double* p, double* pd, double* pdd) const;
   void copy_contacts_to(train::Fleet& fleet) const;
   bool ends_with_stage() const { return trains_.front()->ends_with_stage(); }
@@ -52,12 +63,15 @@ class LinearTrains {
   void keep(base::Bytes& bytes);
 
  private:
+  enum class State : char { absent, of_other_rank, own };
   LinearTrain& own_train(std::size_t i) const { return *trains_[own_[i]]; }
+  void select();
 
   std::vector<std::unique_ptr<LinearTrain>> trains_;
-  std::vector<std::size_t> train_of_;   // for each vehicle
-  std::vector<std::size_t> own_;        // ascending
-  std::vector<char> is_own_;            // for each train
+  std::vector<std::size_t> train_of_;  // for each vehicle
+  std::vector<base::Interval> presence_;
+  std::vector<std::size_t> assigned_, present_, own_;  // ascending; own: assigned and present
+  std::vector<State> state_;                           // of each train
   std::vector<int> elements_, listed_;  // under wheels of several own trains, now and in the last contact field
 };
 

@@ -321,6 +321,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
                       &task.penetration_rate,
                       &task.up_rate,
                       &task.along_rate,
+                      &task.least,
                       &task.largest})
     *of = add(wheels);
   for (double*& history : task.history) history = add(wheels);

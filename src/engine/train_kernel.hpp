@@ -349,8 +349,9 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
     rows(task.drive_power)[stage + 1] = drive_power;
   }
   for (int i = 0; i < task.wheels; ++i) {
-    const Row force = rows(task.normal)[i], largest = rows(task.largest)[i];
+    const Row force = rows(task.normal)[i], least = rows(task.least)[i], largest = rows(task.largest)[i];
     rows(task.history[stage])[i] = force;
+    rows(task.least)[i] = force < least ? force : least;
     rows(task.largest)[i] = force > largest ? force : largest;
   }
   if (!kinematics) return;

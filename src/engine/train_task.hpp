@@ -108,7 +108,7 @@ struct TrainTask {
   double* ahead_before = nullptr;                        // m: value of `ahead` at the second last stage
   double *penetration = nullptr, *penetration_rate = nullptr;  // m, m/s
   double *up_rate = nullptr, *along_rate = nullptr;            // rates of the centre, m/s
-  double* largest = nullptr;                                   // N: largest normal force in the stages of the step
+  double *least = nullptr, *largest = nullptr;                 // N: extreme normal forces in the stages of the step
   double* history[most_stages + 2] =
       {};                 // N: normal forces of the stages, at the start of the step and of the previous one
   int* active = nullptr;  // index of the touched patch

@@ -81,6 +81,7 @@ constexpr Relation relations[] = {
   {Related::study, "find_keep", excludes, "find_quantity", ""},
 
   {Related::course, "speed_file", excludes, "speed", ""},
+  {Related::course, "times", excludes, "positions speed_file", ""},
   {Related::course, "speed_over", needs, "speed_file", "needs a table of speeds: ~speed_file"},
 
   {Related::load, "hslm_a hslm_b en15528 file", excludes, "forces hslm_a hslm_b en15528 file", ""},

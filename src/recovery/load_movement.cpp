@@ -34,11 +34,23 @@ void LoadMovement::advance(double t, const std::vector<ElementLoad>& loads) {
   passages_.clear();
   if (interval_ > 0.0) {
     record_moved(loads);
+    std::stable_sort(moved_.begin(), moved_.end(), [](const Moved& one, const Moved& other) {
+      return std::min(one.x_from, one.x_to) < std::min(other.x_from, other.x_to);
+    });
+    longest_way_ = 0.0;
+    for (const Moved& m : moved_) longest_way_ = std::max(longest_way_, std::abs(m.x_to - m.x_from));
     record_passages();
   }
   loads_ = loads;
   time_ = t;
   first_ = false;
+}
+
+std::span<const LoadMovement::Moved> LoadMovement::moved(double from, double to) const {
+  const auto begins_before = [](const Moved& m, double x) { return std::min(m.x_from, m.x_to) < x; };
+  const double margin = recovery_.greatest_tolerance();
+  const auto first = std::lower_bound(moved_.begin(), moved_.end(), from - margin - longest_way_, begins_before);
+  return {first, std::lower_bound(first, moved_.end(), to + margin, begins_before)};
 }
 
 /// Loads have the same order from instant to instant: the search continues behind the load that was found last. A load
@@ -93,7 +105,7 @@ bool ViscousLag::add_passing_loads(std::size_t station, History& by_loads) {
   const double x = recovery_.stations()[station];
   jumps_.clear();
   bool any = false;
-  for (const LoadMovement::Moved& moved : movement_.moved()) {
+  for (const LoadMovement::Moved& moved : movement_.moved(left, right)) {
     const double way = moved.x_to - moved.x_from;
     const bool was_left = recovery_.is_left_of(station, moved.x_from);
     const bool is_left = recovery_.is_left_of(station, moved.x_to);
@@ -146,8 +158,8 @@ void ViscousLag::advance_lag(std::size_t station, const Forces& c) {
   }
 }
 
-void ViscousLag::apply(std::vector<Response>& responses) {
-  for (std::size_t i = 0; i < responses.size(); ++i) {
+void ViscousLag::apply(std::vector<Response>& responses, const std::vector<std::size_t>& which) {
+  for (const std::size_t i : which) {
     Response& r = responses[i];
     Inner& inner = inner_[i];
     const Forces nodal = {r.nodal_moment, r.nodal_shear, r.nodal_axial_force};

@@ -35,7 +35,8 @@ class LoadMovement {
 
   /// s since the previous instant; 0: there is none.
   double interval() const { return interval_; }
-  const std::vector<Moved>& moved() const { return moved_; }
+  /// Those that may have been between two places of the line, m, in the order of the lesser of their positions.
+  std::span<const Moved> moved(double from, double to) const;
   /// By station, then by time.
   std::span<const StationPassage> passages() const { return passages_; }
   void keep(base::Bytes& bytes) { bytes(time_, loads_, first_); }
@@ -48,7 +49,8 @@ class LoadMovement {
   double time_ = 0.0, interval_ = 0.0;
   bool first_ = true;
   std::vector<ElementLoad> loads_;  // of the latest instant
-  std::vector<Moved> moved_;
+  std::vector<Moved> moved_;        // in the order of the lesser of both positions
+  double longest_way_ = 0.0;        // m, of these loads
   std::vector<char> found_;         // for each of loads_: whether it is on the beam at the present instant too
   std::vector<std::size_t> along_;  // the stations in ascending order of x
   std::vector<StationPassage> passages_;
@@ -68,7 +70,9 @@ class ViscousLag {
   /// Replaces c by m in moment, shear and axial force of all stations, and sets moment_rate and the unrelaxed forces,
   /// at the latest instant of the movement. Between instants the loads move uniformly and all other parts of c change
   /// linearly; at the first call the beam is at rest, m = c.
-  void apply(std::vector<Response>& responses);
+  void apply(std::vector<Response>& responses) { apply(responses, recovery_.all()); }
+  /// The same for the stations `which` only; at all others the beam remains at rest.
+  void apply(std::vector<Response>& responses, const std::vector<std::size_t>& which);
   void keep(base::Bytes& bytes) { bytes(inner_, first_); }
 
  private:

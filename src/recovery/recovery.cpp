@@ -18,8 +18,8 @@ constexpr double standing_speed = 1e-6;  // m/s: a slower load stands; rounding 
 
 Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<double> stations, double self_weight)
     : beam_(beam), line_(line), stations_(std::move(stations)), gravity_(self_weight) {
-  std::size_t size = 0;
   for (double x : stations_) {
+    all_.push_back(all_.size());
     if (!std::isfinite(x) || x < line.mesh.start() || x > line.mesh.end()) {
       char text[160];
       std::snprintf(text, sizeof text,
@@ -33,9 +33,7 @@ Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<d
       sections_.back().record_sleepers(beam);
       sections_.back().support_line = beam.support_lines().at(x).height(beam.model().settlement);
     }
-    size += 18 + 4 * sections_.back().sleepers.size();
   }
-  gathered_.resize(size);
   for (std::size_t i = 0; i < sections_.size(); ++i) by_element_.push_back({sections_[i].at.element, i});
   std::sort(by_element_.begin(), by_element_.end(), [](const Place& a, const Place& b) {
     return a.element != b.element ? a.element < b.element : a.section < b.section;
@@ -44,6 +42,8 @@ Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<d
 
 Recovery::Recovery(Recovery&&) noexcept = default;
 Recovery::~Recovery() = default;
+
+int Recovery::element_index(std::size_t station) const { return sections_[station].at.element; }
 
 std::pair<double, double> Recovery::element_of(std::size_t station) const {
   const beam::Element& e = sections_[station].element;
@@ -105,13 +105,14 @@ double Recovery::add_deflection_form(std::size_t station, double factor, double*
   return s.weight.deflection;
 }
 
-void Recovery::gather(const double* v, const double* w, const double* a) {
-  std::size_t at = 0;
+void Recovery::gather(const double* v, const double* w, const double* a, const std::vector<std::size_t>& which) {
+  gathered_.clear();
   const auto append = [&](const double* vector, int unknown) {
     const int local = unknown < 0 ? -1 : beam_.local(unknown);
-    gathered_[at++] = local < 0 ? 0.0 : vector[local];
+    gathered_.push_back(local < 0 ? 0.0 : vector[local]);
   };
-  for (const RecoverySection& s : sections_) {
+  for (const std::size_t station : which) {
+    const RecoverySection& s = sections_[station];
     for (const double* vector : {v, w, a}) {
       for (int unknown : s.unknowns) append(vector, unknown);
     }
@@ -231,11 +232,11 @@ void Recovery::add_sleepers(const RecoverySection& s, const Values* values, cons
 }
 
 void Recovery::evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
-                        std::vector<Response>& out) {
-  gather(v, w, a);
+                        const std::vector<std::size_t>& which, std::vector<Response>& out) {
+  gather(v, w, a, which);
   out.resize(sections_.size());
   const double* at = gathered_.data();
-  for (std::size_t i = 0; i < sections_.size(); ++i) {
+  for (const std::size_t i : which) {
     const RecoverySection& s = sections_[i];
     std::array<Values, 3> values;
     for (Values& y : values) {
@@ -251,8 +252,7 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
     for (const Place& place : sections_of(load.element)) sections_[place.section].add_load(load, out[place.section]);
     if (std::abs(load.speed) > standing_speed) add_beside(load, out);
   }
-  for (std::size_t i = 0; i < sections_.size(); ++i)
-    out[i].relative_deflection = out[i].deflection - sections_[i].support_line;
+  for (const std::size_t i : which) out[i].relative_deflection = out[i].deflection - sections_[i].support_line;
 }
 
 ElementLoad Recovery::in_own_element(ElementLoad load) const {

@@ -83,7 +83,17 @@ class Recovery {
   /// and inertia. Velocity and acceleration do not include it. The relative deflection is relative to the line through
   /// the settled supports of the beam's model.
   void evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
-                std::vector<Response>& out);
+                std::vector<Response>& out) {
+    evaluate(v, w, a, loads, all_, out);
+  }
+  /// The same for the stations `which` only, the same on every rank, which contain all those on elements with loads;
+  /// the other entries of `out` remain.
+  void evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
+                const std::vector<std::size_t>& which, std::vector<Response>& out);
+  /// All stations, 0, 1, ...
+  const std::vector<std::size_t>& all() const { return all_; }
+  /// The left node of a station's element.
+  int node_of(std::size_t station) const { return line_.mesh.element(element_index(station)).left; }
 
   const std::vector<double>& stations() const { return stations_; }
   StationForms forms(std::size_t station) const;
@@ -118,7 +128,8 @@ class Recovery {
   /// Nodal values of a station's element: u1, v1, theta1, u2, v2, theta2.
   using Values = std::array<double, 6>;
 
-  void gather(const double* v, const double* w, const double* a);
+  void gather(const double* v, const double* w, const double* a, const std::vector<std::size_t>& which);
+  int element_index(std::size_t station) const;
   Response evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
   /// The load as one of the element at its place: a wheel may already be beyond the element that it was assigned to.
   ElementLoad in_own_element(ElementLoad load) const;
@@ -128,6 +139,7 @@ class Recovery {
   const beam::Beam& beam_;
   const beam::Line& line_;
   std::vector<double> stations_;
+  std::vector<std::size_t> all_;
   std::vector<RecoverySection> sections_;
   struct Place {
     int element;
@@ -137,7 +149,7 @@ class Recovery {
   std::vector<Place> by_element_;  // ascending, so that many loads of a bed find their few sections fast
   double gravity_;
   std::vector<double>
-      gathered_;  // for every station: v, w, a, and v, w of the unknowns above each sleeper on its element
+      gathered_;  // for every evaluated station: v, w, a, and v, w of the unknowns above each sleeper on its element
 };
 
 /// Calls f(ElementLoad) with point loads that have the effect of `load`, exact for responses that are polynomials of xi

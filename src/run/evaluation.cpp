@@ -9,6 +9,8 @@
 #include <iterator>
 #include <limits>
 
+#include "run/line_results.hpp"
+
 namespace traverse::run {
 namespace {
 
@@ -63,6 +65,8 @@ Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, cons
     }
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
+  wheel_forces_.resize(wheel_count_);
+  if (recovery_) moving_probes_ = {*recovery_, beam->bridge()};
   const double lag = beam != nullptr && scene.model.modes == 0 ? beam->rayleigh().b : 0.0;
   if (recovery_) movement_.emplace(*recovery_);
   if (lag > 0.0) lag_.emplace(*recovery_, *movement_, lag);
@@ -100,19 +104,21 @@ void Evaluation::sample(const integrate::Instant& instant) {
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
     if (!beam.drag.empty()) drag(beam.drag.data());
-    recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.bridge_loads, now_.probes);
+    moving_probes_.update(now_.motion.beam.moving);
+    recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.bridge_loads, moving_probes_.now(), now_.probes);
     if (instant.purpose != integrate::Purpose::exit) {  // the same instant follows for peaks
       movement_->advance(instant.time, now_.motion.bridge_loads);
-      if (lag_) lag_->apply(now_.probes);
+      if (lag_) lag_->apply(now_.probes, moving_probes_.now());
     }
-    for (recovery::Response& probe : now_.probes)
+    for (const std::size_t i : moving_probes_.now()) {
+      recovery::Response& probe = now_.probes[i];
       if (!lag_) probe.moment_rate = std::numeric_limits<double>::quiet_NaN();
-    if (scene_.by_given_modes())
-      for (recovery::Response& probe : now_.probes)  // section forces are unknown
+      if (scene_.by_given_modes())  // section forces are unknown
         probe = {probe.deflection, probe.velocity, probe.acceleration, probe.relative_deflection};
+    }
     subtract_support_motion();
-    for (std::size_t i = 0; i < drag_response_.size(); ++i)
-      now_.probes[i].acceleration -= drag_response_[i].acceleration;
+    for (const std::size_t i : moving_probes_.now())
+      if (!drag_response_.empty()) now_.probes[i].acceleration -= drag_response_[i].acceleration;
   }
   exits_.add(instant.time, system_.fleet(), now_.probes);
   if (instant.purpose == integrate::Purpose::exit) return;
@@ -129,7 +135,7 @@ void Evaluation::subtract_support_motion() {
   const structure::SupportMotion* moved = system_.structure()->support_motion();
   if (moved == nullptr) return;
   for (std::size_t i = 0; i < ground_.size(); ++i) ground_[i] = moved->upward()[i].displacement;
-  for (std::size_t p = 0; p < support_lines_.size(); ++p)
+  for (const std::size_t p : moving_probes_.now())
     now_.probes[p].relative_deflection -= support_lines_[p].height(ground_);
 }
 
@@ -162,22 +168,27 @@ void Evaluation::drag(const double* drag) {
 }
 
 void Evaluation::record_peaks() {
-  wheel_forces_.clear();
+  moving_wheels_.clear();
   const train::Fleet& fleet = system_.fleet();
+  std::size_t wheel = 0;
   for (const train::Member& member : fleet.members) {
+    const std::size_t past = wheel + member.type->wheels.size();
     const int first = fleet.vehicles[member.unit].first_wheel + member.first_wheel;
-    for (std::size_t i = 0; i < member.type->wheels.size(); ++i)
-      wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
+    for (int i = 0; wheel < past && system_.is_present(member.unit); ++i, ++wheel) {
+      wheel_forces_[wheel] = fleet.load(fleet.wheels[first + i]).normal;
+      moving_wheels_.push_back(wheel);
+    }
+    wheel = past;
   }
-  peaks_.add(time_, now_.probes, wheel_forces_,
+  peaks_.add(time_, {now_.probes, moving_probes_.now()}, {wheel_forces_, moving_wheels_},
              movement_ ? movement_->passages() : std::span<const recovery::StationPassage>());
   if (deck_) deck_->add(time_, now_.probes);
 }
 
 void Evaluation::record_largest_deflection() {
   double deflection = 0.0;
-  for (const recovery::Response& probe : now_.probes)
-    deflection = std::max(deflection, std::abs(probe.relative_deflection));
+  for (const std::size_t i : moving_probes_.now())
+    deflection = std::max(deflection, std::abs(now_.probes[i].relative_deflection));
   if (deflection > largest_deflection_value_) {
     largest_deflection_value_ = deflection;
     largest_deflection_.time = time_;
@@ -238,19 +249,21 @@ void Evaluation::add_wheels(double t) {
     if (!c.is_further) {
       const double force = fleet.load(c).normal;
       if (due) filtered_wheels_->add(force);
-      wheels_.add(wheel++, t, fleet.coordinates(c).x(), force);
+      if (system_.is_present(c.vehicle)) wheels_.add(wheel, t, fleet.coordinates(c).x(), force);
+      ++wheel;
     }
 }
 
 void Evaluation::record_wheels() {
   const train::Fleet& fleet = system_.fleet();
-  summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.least().value;
-  summary_.greatest_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.greatest().value;
-  const Extreme& least = wheels_.least();
+  const WheelExtremes::Extremes of_all = wheels_.of_all();
+  summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : of_all.least.value;
+  summary_.greatest_wheel_force = wheel_count_ == 0 ? 0.0 : of_all.greatest.value;
+  const Extreme& least = of_all.least;
   if (std::isinf(least.value)) return;
   summary_.least_wheel_force_time = least.time;
   summary_.least_wheel = wheel_name(fleet, least.place);
-  const Extreme& largest = wheels_.unloading();
+  const Extreme& largest = of_all.unloading;
   if (largest.value >= 0.0 && scene_.start == scene::Start::equilibrium)
     summary_.unloading = {largest.value, largest.time, wheel_name(fleet, largest.place)};
 }
@@ -270,7 +283,7 @@ void Evaluation::record_separations(Result& result) {
 }
 
 void Evaluation::keep(base::Archive& archive) {
-  archive.same(peaks_, wheels_, paths_, energy_at_start_, at_first_sample_, time_, now_.probes,
+  archive.same(peaks_, wheels_, paths_, energy_at_start_, at_first_sample_, time_, now_.probes, moving_probes_,
                largest_deflection_value_);
   if (movement_) archive.same(*movement_);
   if (lag_) archive.same(*lag_);
@@ -353,6 +366,11 @@ void Evaluation::record_once(Result& result) {
     add(exits_.datasets());
     result.tables.emplace_back("/exit/body", exits_.bodies(system_.fleet()));
   }
+  if (scene_.train.courses.size() > 1) {
+    add(peaks_of_trains(scene_, system_.fleet(), wheels_));
+    result.tables.emplace_back("/trains/name", names_of_trains(scene_));
+  }
+  if (!scene_.output.series && beam_ != nullptr) add(peaks_of_spans(scene_, peaks_));
   if (deck_ && scene_.output.low_passed_series) add({deck_->stored()});
   if (!has_largest_deflection()) return;
   result.shape = shape_of(*beam_, scene_, largest_deflection_);

@@ -19,6 +19,7 @@
 #include "run/exit_states.hpp"
 #include "run/limit_check.hpp"
 #include "run/model_record.hpp"
+#include "run/moving_probes.hpp"
 #include "run/outputs.hpp"
 #include "run/plan.hpp"
 #include "run/response_extremes.hpp"
@@ -116,7 +117,9 @@ class Evaluation {
   AxleLoadRecords axle_passages_;
   ExitStates exits_;
   train::WheelPaths paths_;  // if wheels may change their distances
+  MovingProbes moving_probes_;
   std::vector<double> wheel_forces_;
+  std::vector<std::size_t> moving_wheels_;  // those of vehicles that are computed
   std::size_t wheel_count_ = 0;
   Observed now_;
   double time_ = 0.0;  // s, of the latest instant

@@ -49,6 +49,12 @@ void add_energy(const Source&, Outputs& outputs) {
 
 Outputs outputs_of(const Source& source) {
   Outputs outputs;
+  if (!source.scene.output.series) {
+    add_energy(source, outputs);
+    for (const results::Layout::Constant& x : stations(source.scene.output.probes, {}))
+      outputs.add_constant(x.name, x.values, "m");
+    return outputs;
+  }
   if (source.beam != nullptr)
     for (const OutputGroup add : output_groups_of_a_bridge) add(source, outputs);
   for (const OutputGroup add : output_groups) add(source, outputs);

@@ -128,6 +128,7 @@ std::vector<double> crossing_times(const scene::Scene& scene, const Plan& plan) 
 coupling::SystemInput system_input(const scene::Scene& scene, bool static_only) {
   coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,         scene.profile,
                                  scene.gravity,  scene.self_weight, scene.impact_steps, scene.model.local_compliance};
+  input.only_on_bridge = !scene.output.series && scene.start == scene::Start::equilibrium;
   if (!static_only) {
     const auto own = integrate::own_method(scene.model.method);
     const double solves = own ? static_cast<double>(own->stages.size()) : default_solves;
@@ -215,7 +216,9 @@ void Passage::limit_to_active_window(std::vector<std::string>& notes) {
                            : separate                           ? structure::ActiveWindow::quiet
                                                                 : 0.0;
   if (tolerance == 0.0) return;
-  system_.limit_to_active_window(tolerance, scene_.output.probes);
+  constexpr double quiet = structure::ActiveWindow::quiet;  // series show motion that peaks do not contain
+  const double at_probes = scene_.output.series ? std::min(quiet, tolerance) : tolerance;
+  system_.limit_to_active_window({tolerance, at_probes}, scene_.output.probes);
   notes.push_back(base::detail(
       fmt::format("parts of the bridge that move less than {:g} of the largest motion are not computed in a step{}",
                   tolerance, scene_.model.window_tolerance >= 0.0 ? "" : "; -model_window 0 computes all")));

@@ -87,23 +87,28 @@ auto ResponseExtremes::recorder_of_forces(std::size_t probe) {
   };
 }
 
-void ResponseExtremes::add(double t, std::span<const recovery::Response> probes, std::span<const double> wheel_forces,
+void ResponseExtremes::add(double t, Values<recovery::Response> probes, Values<double> wheel_forces,
                            std::span<const recovery::StationPassage> passages) {
-  const auto at_probe = [&passages](std::size_t probe) {  // removes them from the list
-    std::size_t count = 0;
-    while (count < passages.size() && passages[count].station == probe) ++count;
-    const auto first = passages.first(count);
-    passages = passages.subspan(count);
+  const auto at_probe = [&passages](std::size_t probe) {  // removes them, and those before them, from the list
+    const auto past = [&](std::size_t limit) {
+      return static_cast<std::size_t>(
+          std::find_if(passages.begin(), passages.end(), [&](const auto& p) { return p.station >= limit; }) -
+          passages.begin());
+    };
+    passages = passages.subspan(past(probe));
+    const auto first = passages.first(past(probe + 1));
+    passages = passages.subspan(first.size());
     return first;
   };
-  for (std::size_t i = 0; i < probes.size(); ++i) {
-    const std::array values = {probes[i].relative_deflection, probes[i].acceleration, probes[i].axial_displacement};
+  for (const std::size_t i : probes.which) {
+    const recovery::Response& probe = probes.of_all[i];
+    const std::array values = {probe.relative_deflection, probe.acceleration, probe.axial_displacement};
     const std::size_t known = values.size() - (axial_ ? 0 : 1);
     for (std::size_t m = 0; m < known; ++m) motions_[i][m].add(t, values[m], no_kinks, recorder_of(motions[m], i));
-    forces_[i].add(t, probes[i], at_probe(i), lag_, recorder_of_forces(i));
+    forces_[i].add(t, probe, at_probe(i), lag_, recorder_of_forces(i));
   }
-  for (std::size_t i = 0; i < wheel_forces.size(); ++i) {
-    wheels_[i].add(t, wheel_forces[i], no_kinks, [&](double value, double at, bool outward) {
+  for (const std::size_t i : wheel_forces.which) {
+    wheels_[i].add(t, wheel_forces.of_all[i], no_kinks, [&](double value, double at, bool outward) {
       if (outward) record_peak(wheel_force, i, value, at);
     });
   }

@@ -243,8 +243,14 @@ class ResponseExtremes {
   /// displacements.
   ResponseExtremes(std::size_t probes, std::size_t wheels, double lag = 0.0, bool axial = false);
 
+  /// The values of places, of which only `which` (ascending) have changed since the previous instant.
+  template <class Value>
+  struct Values {
+    std::span<const Value> of_all;
+    std::span<const std::size_t> which;
+  };
   /// passages: of probes since the previous instant, as of LoadMovement.
-  void add(double t, std::span<const recovery::Response> probes, std::span<const double> wheel_forces,
+  void add(double t, Values<recovery::Response> probes, Values<double> wheel_forces,
            std::span<const recovery::StationPassage> passages = {});
   void finish();
   /// Adds the extremes of low-passed accelerations, rows of all probes at intervals of `interval` s from 0 on.

@@ -103,12 +103,28 @@ results::FilteredUnloading FilteredWheels::finish(const train::Fleet& fleet) {
 }
 
 WheelExtremes::WheelExtremes(std::size_t wheels, std::vector<double> kinks)
-    : latest_(wheels), at_start_(wheels, 0.0), kinks_(std::move(kinks)) {}
+    : latest_(wheels), at_start_(wheels, 0.0), extremes_(wheels), kinks_(std::move(kinks)) {}
 
 void WheelExtremes::record(double force, double time, std::size_t wheel) {
-  if (force < least_.value) least_ = {force, time, wheel};
-  greatest_.raise(force, time, wheel);
-  if (at_start_[wheel] > 0.0) unloading_.raise(std::max(0.0, 1.0 - force / at_start_[wheel]), time, wheel);
+  Extremes& of_wheel = extremes_[wheel];
+  if (force < of_wheel.least.value) of_wheel.least = {force, time, wheel};
+  of_wheel.greatest.raise(force, time, wheel);
+  if (at_start_[wheel] > 0.0) of_wheel.unloading.raise(std::max(0.0, 1.0 - force / at_start_[wheel]), time, wheel);
+}
+
+WheelExtremes::Extremes WheelExtremes::of(std::size_t first, std::size_t past) const {
+  const auto earlier = [](const Extreme& one, const Extreme& other) {
+    return one.value == other.value && one.time < other.time;
+  };
+  Extremes all;
+  for (std::size_t wheel = first; wheel < past; ++wheel) {
+    const Extremes& one = extremes_[wheel];
+    if (one.least.value < all.least.value || earlier(one.least, all.least)) all.least = one.least;
+    if (one.greatest.value > all.greatest.value || earlier(one.greatest, all.greatest)) all.greatest = one.greatest;
+    if (one.unloading.value > all.unloading.value || earlier(one.unloading, all.unloading))
+      all.unloading = one.unloading;
+  }
+  return all;
 }
 
 void WheelExtremes::add(std::size_t wheel, double t, double x, double force) {

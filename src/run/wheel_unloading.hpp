@@ -59,12 +59,16 @@ class WheelExtremes {
   /// After the last instant.
   void finish();
 
-  /// The least force, N; place: the wheel in the order of the fleet; infinite before the first instant.
-  const Extreme& least() const { return least_; }
-  const Extreme& greatest() const { return greatest_; }
-  /// The largest unloading relative to the force at the start; below 0 before the first instant.
-  const Extreme& unloading() const { return unloading_; }
-  void keep(base::Bytes& bytes) { bytes(latest_, at_start_, least_, greatest_, unloading_); }
+  /// The least and the greatest force, N, and the largest unloading relative to the force at the start; place: the
+  /// wheel in the order of the fleet. Infinite, and an unloading below 0, before the first instant.
+  struct Extremes {
+    Extreme least{std::numeric_limits<double>::infinity()}, greatest{-std::numeric_limits<double>::infinity()};
+    Extreme unloading{-1.0};
+  };
+  /// Those of the wheels [first, past).
+  Extremes of(std::size_t first, std::size_t past) const;
+  Extremes of_all() const { return of(0, extremes_.size()); }
+  void keep(base::Bytes& bytes) { bytes(latest_, at_start_, extremes_); }
 
  private:
   /// The latest instants of a wheel.
@@ -80,9 +84,8 @@ class WheelExtremes {
 
   std::vector<Latest> latest_;
   std::vector<double> at_start_;  // N, of every wheel
+  std::vector<Extremes> extremes_;
   std::vector<double> kinks_;
-  Extreme least_{std::numeric_limits<double>::infinity()}, greatest_{-std::numeric_limits<double>::infinity()};
-  Extreme unloading_{-1.0};
 };
 
 }  // namespace traverse::run

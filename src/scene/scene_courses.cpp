@@ -106,8 +106,9 @@ base::SpeedLaw read_speed_file(const Options& o, const Block& block, double fron
 bool needs_courses(const Options& o, const std::vector<Block>& blocks) {
   const auto own = [&](const Block& block) {
     const std::string profile = block.option("profile");
+    const std::string times = block.option("times");
     return o.has(block.option("speed_file")) || direction_of(o, block) < 0.0 || (o.knows(profile) && o.has(profile)) ||
-           has_line_loads_or_variation(o, block);
+           (o.knows(times) && o.has(times)) || has_line_loads_or_variation(o, block);
   };
   return blocks.size() > 1 || std::any_of(blocks.begin(), blocks.end(), own);
 }

@@ -69,14 +69,14 @@ void read_probes(const Options& o, Scene& scene) {
   if (!scene.beam) return;
   const std::vector<double>& spans = scene.beam->spans;
   std::vector<double>& probes = scene.output.probes;
+  const std::size_t most = scene.output.series ? most_default_probes : spans.size();
   double length = 0.0;
   for (const double span : spans) {
-    if (!named && !even && probes.size() < most_default_probes) probes.push_back(length + 0.5 * span);
+    if (!named && !even && probes.size() < most) probes.push_back(length + 0.5 * span);
     length += span;
   }
-  if (!named && !even && spans.size() > most_default_probes)
-    scene.notes.push_back(
-        fmt::format("probes: the middle of the first {} of {} spans", most_default_probes, spans.size()));
+  if (!named && !even && spans.size() > most)
+    scene.notes.push_back(fmt::format("probes: the middle of the first {} of {} spans", most, spans.size()));
   if (named) probes = o.numbers("output_probes");
   for (double& x : probes) x = place_on_beam(o, "output_probes", x, length);
   if (!even) return add_probes_for_limits(scene);
@@ -196,6 +196,7 @@ void read_output(const Options& o, Scene& scene) {
   scene.output.file = o.has("output_file") ? o.text("output_file") : "results/" + scene.name + ".h5";
   if (scene.output.file == "none") scene.output.file.clear();
   scene.output.interval = o.optional_number("output_interval");
+  scene.output.series = o.flag("output_series");
   scene.quiet = o.flag("output_quiet");
   scene.verbose = o.flag("verbose");
   scene.describe = o.flag("describe");

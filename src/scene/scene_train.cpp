@@ -32,6 +32,7 @@ struct TrainBlock {
   const Block& block;
   std::vector<int> order;
   double direction = 1.0;
+  std::string name;  // the block's; of a timetable with the number of the run
 };
 
 /// The distance of two origins, which are in the middle of vehicles of known length.
@@ -120,6 +121,28 @@ class VehicleTypes {
   std::map<std::pair<std::string, bool>, int> known_;
 };
 
+/// By how much the trains of a timetable are ahead of one that enters the bridge at t = 0, m: those that are on the
+/// bridge during the run. positions: of this train's vehicles.
+std::vector<double> leads_of(const Options& o, const TrainBlock& train, const std::vector<double>& positions,
+                             const Scene& scene) {
+  const std::string option = train.block.option("times");
+  const double speed = std::abs(o.number(train.block.option("speed")));
+  if (speed == 0.0) o.refuse(option, "a train of a timetable runs; allowed: a speed that is not 0");
+  const auto wheel = [&](std::size_t i, double direction) {
+    return positions[i] + front_of(scene.vehicles[static_cast<std::size_t>(train.order[i])], direction);
+  };
+  const double length =
+      std::abs(wheel(0, train.direction) - wheel(positions.size() - 1, -train.direction));  // between outer wheels
+  const double on_bridge = ((scene.beam ? scene.beam->length() : 0.0) + length) / speed;    // s
+  std::vector<double> leads;
+  for (const double time : o.numbers(option)) {
+    const double enters = time - o.number("trains_from");
+    if (enters + on_bridge < 0.0 || (scene.end_time && enters > *scene.end_time)) continue;
+    leads.push_back(-enters * speed);
+  }
+  return leads;
+}
+
 void read_couplers(const Options& o, const TrainBlock& train, bool alone, Scene& scene) {
   const std::string list = train.block.option("couplers");
   if (!o.has(list)) return;
@@ -129,7 +152,7 @@ void read_couplers(const Options& o, const TrainBlock& train, bool alone, Scene&
     coupler.gaps = read_gaps(o, train, scene, coupler, name);
     for (int& gap : coupler.gaps) gap += first;
     if (train.direction < 0.0) coupler = train::mirrored(std::move(coupler));
-    if (!alone) coupler.name = train.block.option(name);
+    if (!alone) coupler.name = train.name + "_" + name;
     scene.train.couplers.push_back(std::move(coupler));
   }
 }
@@ -165,7 +188,7 @@ double read_speed(const Options& o, const TrainBlock& train, const Scene& scene)
 
 train::Course course_of_train(const Options& o, const TrainBlock& train, Scene& scene) {
   train::Course course;
-  course.name = train.block.name;
+  course.name = train.name;
   course.first = scene.train.vehicles.size() - train.order.size();
   course.drive = read_drive(o, train, scene);
   const double front = front_wheel(train, scene);
@@ -177,6 +200,21 @@ train::Course course_of_train(const Options& o, const TrainBlock& train, Scene& 
   return course;
 }
 
+/// Adds the vehicles of a train that is ahead of these positions by `lead` (m), with their couplers.
+void add_vehicles(const Options& o, const TrainBlock& train, const std::vector<double>& positions, double lead,
+                  bool alone, Scene& scene) {
+  for (const double x : positions) scene.train.positions.push_back(x + train.direction * lead);
+  scene.train.vehicles.insert(scene.train.vehicles.end(), train.order.begin(), train.order.end());
+  read_couplers(o, train, alone, scene);
+}
+
+void add_course(const Options& o, const TrainBlock& train, Scene& scene) {
+  scene.train.courses.push_back(course_of_train(o, train, scene));
+  const train::Course& course = scene.train.courses.back();
+  if (course.drive == Drive::free) scene.train.drive = Drive::free;
+  scene.train.speed = std::max(scene.train.speed, course.speed.fastest());
+}
+
 }  // namespace
 
 void read_trains(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
@@ -184,23 +222,30 @@ void read_trains(const Options& o, const NamedVehicles& vehicles, Scene& scene) 
   VehicleTypes types(o, scene);
   const bool courses = needs_courses(o, vehicles.trains);
   for (const Block& block : vehicles.trains) {
-    TrainBlock train{block, {}, direction_of(o, block)};
+    TrainBlock train{block, {}, direction_of(o, block), block.name};
     for (const std::string& name : block.vehicles) train.order.push_back(types.index_of(name, train.direction));
     const std::vector<double> positions = read_positions(o, train, scene);
-    scene.train.positions.insert(scene.train.positions.end(), positions.begin(), positions.end());
-    scene.train.vehicles.insert(scene.train.vehicles.end(), train.order.begin(), train.order.end());
-    read_couplers(o, train, vehicles.trains.size() == 1, scene);
+    if (o.has(block.option("times"))) {
+      std::size_t run = 0;
+      for (const double lead : leads_of(o, train, positions, scene)) {
+        train.name = fmt::format("{}_{}", block.name, ++run);
+        add_vehicles(o, train, positions, lead, false, scene);
+        add_course(o, train, scene);
+      }
+      continue;
+    }
+    add_vehicles(o, train, positions, 0.0, vehicles.trains.size() == 1, scene);
     if (!courses) {
       scene.train.drive = read_drive(o, train, scene);
       const bool swept = scene.sweep && !scene.sweep->speeds.empty() && !stands(o, block);
       scene.train.speed = swept ? scene.sweep->speeds.front() : read_speed(o, train, scene);
       return;
     }
-    scene.train.courses.push_back(course_of_train(o, train, scene));
-    const train::Course& course = scene.train.courses.back();
-    if (course.drive == Drive::free) scene.train.drive = Drive::free;
-    scene.train.speed = std::max(scene.train.speed, course.speed.fastest());
+    add_course(o, train, scene);
   }
+  if (scene.train.vehicles.empty())
+    o.refuse(vehicles.trains.front().option("times"),
+             "no train of the timetable is on the bridge during the run (trains_from, ts_max_time)");
 }
 
 }  // namespace traverse::scene

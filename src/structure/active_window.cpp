@@ -14,8 +14,8 @@ constexpr int steps_between_checks = 16;  // number of time steps between update
 constexpr int split_factor = 4;           // least length of a range at rest between two loads, over the reach of a load
 }  // namespace
 
-ActiveWindow::ActiveWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> probes,
-                           const double* rest)
+ActiveWindow::ActiveWindow(const beam::Beam& beam, const BeamOperator& op, const WindowTolerance& tolerance,
+                           std::vector<int> probes, const double* rest)
     : beam_(beam),
       parts_(op.parts() != nullptr),
       shared_(op.shared()),
@@ -43,7 +43,7 @@ void ActiveWindow::record_largest(const double* v, const double* w, int first, i
 bool ActiveWindow::is_quiet(int first, int past, const double* v, const double* w) const {
   const int from = first + beam_.first_column(), to = past + beam_.first_column();
   const auto probes = std::lower_bound(probe_columns_.begin(), probe_columns_.end(), from);
-  const double limit = probes != probe_columns_.end() && *probes < to ? std::min(quiet, tolerance_) : tolerance_;
+  const double limit = probes != probe_columns_.end() && *probes < to ? tolerance_.at_probes : tolerance_.elsewhere;
   const int block = beam_.block();
   for (int i = block * first; i < block * past; ++i) {
     const Largest& largest = largest_[static_cast<std::size_t>(i % block)];

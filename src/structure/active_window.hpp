@@ -15,11 +15,10 @@ namespace traverse::structure {
 
 class ActiveWindow {
  public:
-  /// tolerance: relative to the largest displacement and velocity so far of each unknown of a column; smaller motions
-  /// are set to rest. probes: the columns of probes, which are set to rest only below `quiet`. rest: displacements at
+  /// Motions below the tolerance are set to rest. probes: columns with a tolerance of their own. rest: displacements at
   /// rest of this rank's unknowns, null for 0; the pointer is stored.
-  ActiveWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> probes,
-               const double* rest);
+  ActiveWindow(const beam::Beam& beam, const BeamOperator& op, const WindowTolerance& tolerance,
+               std::vector<int> probes, const double* rest);
 
   static constexpr double quiet = 1e-9;
 
@@ -36,7 +35,7 @@ class ActiveWindow {
   /// Energy lost so far by setting nodes to rest, J, this rank's share.
   double energy_left() const { return energy_left_; }
   void forget_energy_left() { energy_left_ = 0.0; }
-  double tolerance() const { return tolerance_; }
+  double tolerance() const { return tolerance_.elsewhere; }
   /// The moving ranges of columns, as merge() returns them.
   const std::vector<Range>& moving() const { return moving_; }
 
@@ -79,7 +78,7 @@ class ActiveWindow {
 
   const beam::Beam& beam_;
   bool parts_, shared_;
-  double tolerance_;
+  WindowTolerance tolerance_;
   std::vector<int> probe_columns_;  // ascending
   const double* at_rest_;
   std::vector<Range> moving_;  // columns

@@ -14,7 +14,7 @@ constexpr double measured_steps = 2.0;  // time between computations of the diss
 void ElementStructure::begin_motion() {
   const bool has_dead_load = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
   motion_.emplace(beam_, *statics_, has_dead_load ? dead_load_.data() : nullptr);
-  if (window_tolerance_ == 0.0 || !motion_->fused()) return;
+  if (window_tolerance_.elsewhere == 0.0 || !motion_->fused()) return;
   if (deformed_without_traffic()) static_displacements_ = displacements_without_traffic();
   std::vector<int> probe_columns;
   for (double x : window_probes_)
@@ -120,13 +120,13 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
   if (nonlinear_) update_loaded_range(loaded);
   powers_.before = powers_.sum;
   if (store) {
-    before_.v.clear();
-    before_.w.clear();
+    before_.numbers.clear();
+    before_.powers = powers_.at[0];
+    before_.stepped = stepped_;
     const auto block = static_cast<std::ptrdiff_t>(statics_->block());
-    for (const Range& r : motion_->ranges()) {
-      before_.v.insert(before_.v.end(), v + block * r.first, v + block * r.past);
-      before_.w.insert(before_.w.end(), w + block * r.first, w + block * r.past);
-    }
+    for (const double* x : {v, w, const_cast<const double*>(motion_->start_acceleration())})
+      for (const Range& r : motion_->ranges())
+        before_.numbers.insert(before_.numbers.end(), x + block * r.first, x + block * r.past);
   }
   powers_.at[0].work = power_of_forces(w);
 }
@@ -177,17 +177,23 @@ void ElementStructure::accept(double* v, double* w, const std::vector<Reach>& lo
 }
 
 void ElementStructure::reject_step(double* v, double* w) {
+  step_back(v, w);
+  stepped_ = false;
+}
+
+void ElementStructure::step_back(double* v, double* w) {
   powers_.sum = powers_.before;
-  stepped_ = incomplete_ = false;
+  powers_.at[0] = before_.powers;
+  stepped_ = before_.stepped;
+  incomplete_ = false;
   const auto block = static_cast<std::ptrdiff_t>(statics_->block());
-  auto from_v = before_.v.begin(), from_w = before_.w.begin();
-  for (const Range& r : motion_->ranges()) {
-    const std::ptrdiff_t size = block * (r.past - r.first);
-    std::copy_n(from_v, size, v + block * r.first);
-    std::copy_n(from_w, size, w + block * r.first);
-    from_v += size;
-    from_w += size;
-  }
+  const double* from = before_.numbers.data();
+  for (double* x : {v, w, motion_->start_acceleration()})
+    for (const Range& r : motion_->ranges()) {
+      const std::ptrdiff_t size = block * (r.past - r.first);
+      std::copy_n(from, size, x + block * r.first);
+      from += size;
+    }
 }
 
 void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) {

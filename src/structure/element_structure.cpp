@@ -282,6 +282,7 @@ void ElementStructure::observe(const double* v, const double* w, const double* a
     external_load(out.P.data());
     add_contacts(contacts, out.P.data());
   }
+  if (window_) out.moving = window_->moving();
   out.foundation_loads.clear();
   if (!nonlinear_) return;
   nonlinear_->evaluate(v, w);

@@ -77,6 +77,8 @@ class ElementStructure final : public MovingStructure {
       for (double* x : {v, w, motion_->start_acceleration()})
         use(x + block * static_cast<std::size_t>(r.first), block * static_cast<std::size_t>(r.past - r.first));
   }
+  /// Takes the last step back, before accept(), so that another one may follow without a restart.
+  void step_back(double* v, double* w);
   /// The dissipated power that was measured last: the ranks' trapezoids add up to that of one rank if their powers do,
   /// and if all have been integrated up to the same time.
   BeamMotion::Dissipation& measured() { return measured_; }
@@ -159,9 +161,11 @@ class ElementStructure final : public MovingStructure {
   BeamMotion::Dissipation measured_;
   bool measuring_ = false, to_measure_ = true;
   struct {
-    std::vector<double> v, w;  // values of the active ranges of the motion
-  } before_;                   // state at the start of a step that may be rejected
-  std::vector<Range> free_;    // nodes of parts without loads in the step
+    std::vector<double> numbers;  // v, w and w' of the active ranges of the motion
+    Powers powers;
+    bool stepped = false;
+  } before_;                 // state at the start of a step that may be rejected
+  std::vector<Range> free_;  // nodes of parts without loads in the step
   std::vector<Range> loaded_, active_, all_;
   std::vector<Reach> reaches_;
   bool stepped_ = false;     // since the last restart

@@ -17,6 +17,12 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
+/// Motion that is set to rest, relative to the largest displacement and velocity so far of each unknown of a column; 0:
+/// none is.
+struct WindowTolerance {
+  double elsewhere = 0.0, at_probes = 0.0;
+};
+
 /// Sorts the ranges, merges those that overlap or touch, and removes empty ones. Allocates no memory.
 inline void merge(std::vector<Range>& ranges) {
   std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.first < b.first; });

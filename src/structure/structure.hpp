@@ -13,6 +13,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "structure/beam_operator.hpp"
 #include "structure/compliance.hpp"
 #include "structure/nonlinear_foundation.hpp"
+#include "structure/ranges.hpp"
 #include "structure/support_motion.hpp"
 
 namespace traverse::structure {
@@ -65,6 +67,8 @@ struct NodalMotion {
   std::vector<double> P;             // loads, also on held unknowns, if requested
   std::vector<double> drag;          // acceleration whose inertia forces equal modal damping forces; empty: none
   std::vector<double> coordinates;   // by modes: q of each mode, m kg^(1/2), on every rank
+  std::optional<std::vector<Range>>
+      moving;  // ranges of columns outside of which the bridge is at rest; none: all moves
   NonlinearForces foundation;
   std::vector<recovery::ElementLoad> foundation_loads;  // loads from the nonlinear foundation
 };
@@ -217,9 +221,8 @@ class LoadedStructure : public Structure {
 class MovingStructure : public LoadedStructure {
  public:
   using LoadedStructure::LoadedStructure;
-  /// Excludes motion below `tolerance` of the largest motion from the steps (active_window.hpp); before set_method. At
-  /// the stations of probes only much smaller motion is excluded.
-  void limit_to_active_window(double tolerance, const std::vector<double>& probes) {
+  /// Excludes motion below the tolerance from the steps (active_window.hpp); before set_method. probes: stations, m.
+  void limit_to_active_window(const WindowTolerance& tolerance, const std::vector<double>& probes) {
     window_tolerance_ = tolerance;
     window_probes_ = probes;
   }
@@ -248,7 +251,7 @@ class MovingStructure : public LoadedStructure {
   virtual void keep(base::Archive& archive) = 0;
 
  protected:
-  double window_tolerance_ = 0.0;      // 0: time steps include all nodes
+  WindowTolerance window_tolerance_;
   std::vector<double> window_probes_;  // m
   bool measures_errors_ = false;
 };

@@ -62,13 +62,15 @@ struct Contact {
   contact::Force force;
   double approach_speed = 0.0;          // approach speed of the present or next impact, m/s
   bool touched = false;                 // with a force in some stage of the last step
+  bool lifted = false;                  // without a force in some stage of the last step
   bool released = false;                // opened by its damper while compressed; the elastic energy is lost
   std::array<int, 2> slots = {-1, -1};  // indices of the patches' elements in Fleet::elements(); -1: ground
   double factor = 1.0;                  // of its force
   int active = 0;                       // the patch with the deepest penetration
   int slot() const { return slots[active]; }
   void keep(base::Bytes& bytes) {
-    bytes(law.local_compliance, touch, kinematics, force, approach_speed, touched, released, slots, factor, active);
+    bytes(law.local_compliance, touch, kinematics, force, approach_speed, touched, lifted, released, slots, factor,
+          active);
   }
 };
 

@@ -81,7 +81,8 @@ std::optional<Change> Separations::change(const Fleet& fleet, double t,
       const double sign = state.touching ? -1.0 : 1.0;
       const Cubic alpha = penetration(state.kinematics, now, h);
       const std::optional<double> s = alpha.extreme(sign);
-      if (s && sign * alpha.at(*s) > 0.0) {
+      const bool possible = gain || fleet.contact(i).lifted;  // else the rate has jumped at a kink of the track
+      if (s && possible && sign * alpha.at(*s) > 0.0) {
         found = Change{i, time_ + *s * h, gain, true, gain && fleet.contact(i).touched};
       } else if (gain && time_to_touch(i) < h) {  // a rebound within the step cannot be excluded
         found = Change{i, time_ + time_to_touch(i), gain, true, fleet.contact(i).touched};

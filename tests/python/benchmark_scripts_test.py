@@ -224,6 +224,12 @@ class Scripts(InAFolder):
         self.assert_errors(rows, "peaks wrong by", 1e-2)
         self.assert_picture("long_bridge.png")
 
+    def test_line(self):
+        self.run_smallest("line")
+        rows = self.table("line.csv", ["ranks", "seconds", "greatest MB of a rank", "trains", "s of a train and step"])
+        self.assertEqual([row["ranks"] for row in rows], ["2", "1"])
+        self.assert_positive(rows, "seconds", "greatest MB of a rank", "trains", "s of a train and step")
+
     def test_same_on_ranks(self):
         self.run_smallest("same_on_ranks")
         rows = self.table("same_on_ranks.csv", ["scene", "ranks", "deflections differ by", "all series differ by"])

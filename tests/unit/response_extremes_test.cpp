@@ -10,6 +10,8 @@
 namespace traverse::run {
 namespace {
 
+constexpr std::size_t only[] = {0};  // place
+
 /// Passages of the only probe, at ascending times.
 struct Passages {
   std::vector<double> times;
@@ -34,7 +36,8 @@ ResponseExtremes peaks_of_curve(ExtremumTracker f, double dt, const std::vector<
   for (const double t : times) {
     recovery::Response response;
     response.relative_deflection = response.acceleration = response.moment = f(t);
-    peaks.add(t, {&response, 1}, {{f(t)}}, passed.until(t));
+    const double force = f(t);
+    peaks.add(t, {{&response, 1}, only}, {{&force, 1}, only}, passed.until(t));
   }
   peaks.finish();
   return peaks;
@@ -47,8 +50,8 @@ TEST(ResponseExtremes, InstantsThatNearMakeNoParabola) {
   const auto force = [&](double t) { return 1e5 * (2.0 - (t - crest) * (t - crest)); };
   for (double t = 0.0; t < 2.0; t += step) {
     const double now[] = {force(t)}, rounded[] = {force(t) * (1.0 - 1e-10)};
-    peaks.add(t, {}, now);
-    peaks.add(t + 1e-12, {}, rounded);
+    peaks.add(t, {}, {now, only});
+    peaks.add(t + 1e-12, {}, {rounded, only});
   }
   peaks.finish();
   EXPECT_NEAR(peaks.largest(wheel_force).value, force(crest), 1e-8 * force(crest));
@@ -61,7 +64,7 @@ TEST(ResponseExtremes, AJumpMakesNoParabola) {
   const double jump = 0.505, before = 100.0, after = 110.0;
   for (const double t : {0.3, 0.4, 0.5, jump, 0.6, 0.7, 0.8}) {
     const double now[] = {t < jump ? before : after - 10.0 * (t - jump)};
-    peaks.add(t, {}, now);
+    peaks.add(t, {}, {now, only});
   }
   peaks.finish();
   EXPECT_NEAR(peaks.largest(wheel_force).value, after, 0.3 * (after - before));
@@ -125,7 +128,7 @@ TEST(ResponseExtremes, BehindAKinkThatRelaxes) {
         recovery::Response response;
         response.moment = s < 0.0 ? roof - b : roof + b - 2.0 * b * std::exp(-s / b);
         response.moment_rate = (roof - response.moment) / b;
-        peaks.add(t, {&response, 1}, {});
+        peaks.add(t, {{&response, 1}, only}, {});
       }
       peaks.finish();
       EXPECT_NEAR(peaks.largest(moment).value, 1.0 - b * std::log(2.0), 1e-12) << b << " " << dt;
@@ -159,7 +162,7 @@ TEST(ResponseExtremes, BesideAJump) {
       Passages passed{std::vector<double>(1, jump)};
       for (const double t : times) {
         const recovery::Response response = jumping(t, jump, b);
-        peaks.add(t, {&response, 1}, {}, passed.until(t));
+        peaks.add(t, {{&response, 1}, only}, {}, passed.until(t));
       }
       peaks.finish();
       const double way = b > 0.0 ? b * std::log(3.0 / b) : 0.0;

@@ -22,7 +22,7 @@ double vehicles_of(const Portion& portion, const std::vector<TrainReach>& trains
 /// Trains of eight vehicles on 100 columns each, 1,000 columns apart.
 std::vector<TrainReach> line_of(int count) {
   std::vector<TrainReach> trains;
-  for (int k = 0; k < count; ++k) trains.push_back({{1000 * k, 1000 * k + 100}, 8.0});
+  for (int k = 0; k < count; ++k) trains.push_back({static_cast<std::size_t>(k), {1000 * k, 1000 * k + 100}, 8.0});
   return trains;
 }
 

@@ -20,13 +20,13 @@ TEST(WheelExtremes, LieBetweenSteps) {
     }
     extremes.finish();
     const double allowed = 50.0 * std::pow(10.0 * dt, 6) / 200.0;
-    EXPECT_NEAR(extremes.least().value, 50.0, allowed) << dt;
-    EXPECT_EQ(extremes.least().place, 1u);
-    EXPECT_NEAR(10.0 * extremes.least().time + 0.1, std::acos(-1.0) / 2.0, std::pow(10.0 * dt, 2));
-    EXPECT_NEAR(extremes.greatest().value, 150.0, allowed) << dt;
+    EXPECT_NEAR(extremes.of_all().least.value, 50.0, allowed) << dt;
+    EXPECT_EQ(extremes.of_all().least.place, 1u);
+    EXPECT_NEAR(10.0 * extremes.of_all().least.time + 0.1, std::acos(-1.0) / 2.0, std::pow(10.0 * dt, 2));
+    EXPECT_NEAR(extremes.of_all().greatest.value, 150.0, allowed) << dt;
     const double at_start = 100.0 - 50.0 * std::sin(0.1);
-    EXPECT_NEAR(extremes.unloading().value, 1.0 - 50.0 / at_start, allowed / at_start) << dt;
-    EXPECT_EQ(extremes.unloading().place, 1u);
+    EXPECT_NEAR(extremes.of_all().unloading.value, 1.0 - 50.0 / at_start, allowed / at_start) << dt;
+    EXPECT_EQ(extremes.of_all().unloading.place, 1u);
   }
 }
 
@@ -35,14 +35,14 @@ TEST(WheelExtremes, AtCornersAndInFlight) {
   WheelExtremes corner(1, {3.0}), flight(1, {}), impact(1, {});
   const double force[] = {10.0, 8.0, 2.0, 7.0, 9.0};
   for (int i = 0; i < 5; ++i) corner.add(0, i, 1.0 + i, force[i]);
-  EXPECT_EQ(corner.least().value, 2.0);
+  EXPECT_EQ(corner.of_all().least.value, 2.0);
   const double lost[] = {10.0, 5.0, 0.0, 0.0, 0.0, 6.0, 9.0};
   for (int i = 0; i < 7; ++i) flight.add(0, i, 0.0, lost[i]);
-  EXPECT_EQ(flight.least().value, 0.0);
-  EXPECT_EQ(flight.least().time, 2.0);
+  EXPECT_EQ(flight.of_all().least.value, 0.0);
+  EXPECT_EQ(flight.of_all().least.time, 2.0);
   const double time[] = {0.0, 1.0, 1.000001, 2.0}, jump[] = {5.0, 5.0, 90.0, 80.0};
   for (int i = 0; i < 4; ++i) impact.add(0, time[i], 0.0, jump[i]);
-  EXPECT_EQ(impact.greatest().value, 90.0);
+  EXPECT_EQ(impact.of_all().greatest.value, 90.0);
 }
 
 // A mass on a linear wheel that starts 1.5 times as deep as its weight presses it: N = m g (1 + cos(w t)/2).

@@ -73,6 +73,7 @@ struct Output {
   std::optional<double> interval;   // s; none: selected with the step
   std::vector<double> probes;       // stations, m; default: midspan of the first 200 spans
   std::optional<double> low_pass;   // Hz, cut-off of deck accelerations; 0: no filter; none: by EN 1990
+  bool series = true;               // false: peaks only, and trains beside the bridge are not computed
   bool low_pass_requested = false;  // false: deck accelerations are filtered only for limits
   bool low_passed_series = false;   // filtered accelerations are stored over time
   double wheel_low_pass = 20.0;     // Hz, cut-off of wheel forces

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -112,10 +113,9 @@ struct MovingLoad {
 /// The course of vehicle or force `i`; null without courses.
 template <class Moving>
 const Course* course_of(const Moving& moving, std::size_t i) {
-  const Course* found = nullptr;
-  for (const Course& course : moving.courses)
-    if (course.first <= i) found = &course;
-  return found;
+  const auto next = std::upper_bound(moving.courses.begin(), moving.courses.end(), i,
+                                     [](std::size_t at, const Course& course) { return at < course.first; });
+  return next == moving.courses.begin() ? nullptr : &*std::prev(next);
 }
 
 /// The speed law of vehicle or force `i` of a train or load.
