@@ -11,6 +11,7 @@
 #include <string>
 
 #include "coupling/system.hpp"
+#include "support/paths.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -90,7 +91,7 @@ class Ride {
         {"beam_mass", "3.0e4"},
         {"beam_continuity", "simply_supported"},
         {"support_types", "roller"},
-        {"vehicle_coach_file", TRAVERSE_SOURCE_DIR "/options/vehicles/s300.yml"},
+        {"vehicle_coach_file", traverse::source_folder() + "/options/vehicles/s300.yml"},
         {"train_vehicles", "coach*" + std::to_string(number)},
         {"train_positions", std::to_string(16.0 + 25.0 * (number - 1))},
         {"train_spacing", "25.0"},

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "integrate/stepper.hpp"
+#include "support/paths.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -29,7 +30,7 @@ struct Setup {
         {"beam_EI", "3.795e11"},
         {"beam_mass", "3.0e4"},
         {"support_types", "roller"},
-        {"vehicle_coach_file", TRAVERSE_SOURCE_DIR "/options/vehicles/s300.yml"},
+        {"vehicle_coach_file", traverse::source_folder() + "/options/vehicles/s300.yml"},
         {"train_vehicles", "coach*" + std::to_string(coaches)},
         {"train_positions", std::to_string(16.0 + 25.0 * (coaches - 1))},
         {"train_spacing", "25.0"},

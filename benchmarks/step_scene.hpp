@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "coupling/system.hpp"
+#include "support/paths.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -54,7 +55,7 @@ struct StepScene {
           "track: {rail: {EI: 1.32476e7, mass: 121.28}, spacing: 0.6666666666666666, pad: {k: 6.5e7, c: 7.5e4}, "
           "sleeper: {mass: 251.0}, ballast: {mass: 531.4, k: 1.3775e8, c: 5.88e4}}\n";
     if (coaches > 0)
-      text += "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/s300.yml}}\ntrain: {vehicles: coach*" +
+      text += "vehicle: {coach: {file: " + source_folder() + "/options/vehicles/s300.yml}}\ntrain: {vehicles: coach*" +
               std::to_string(coaches) + ", speed: 83.333}\n";
     const scene::Scene scene = scene::read_scene(options::Options::from_yaml(text));
     beam = std::make_unique<beam::Beam>(PETSC_COMM_WORLD, *scene.beam);

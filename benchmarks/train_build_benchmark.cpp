@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupling/system.hpp"
+#include "support/paths.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -25,7 +26,7 @@ void train_build(benchmark::State& state, const std::string& vehicle, bool start
         {"beam_EI", "3.795e11"},
         {"beam_mass", "3.0e4"},
         {"support_types", "roller"},
-        {"vehicle_coach_file", TRAVERSE_SOURCE_DIR "/options/vehicles/" + vehicle + ".yml"},
+        {"vehicle_coach_file", traverse::source_folder() + "/options/vehicles/" + vehicle + ".yml"},
         {"train_vehicles", "coach*" + std::to_string(coaches)},
         {"train_speed", "83.333"},
         {"ts_max_time", "1.0"},

@@ -10,7 +10,7 @@ namespace traverse::test {
 namespace {
 
 TEST(FitOnRanks, FitToAFrequencyAndASeries) {
-  const std::string yaml = "options_file: " TRAVERSE_SOURCE_DIR
+  const std::string yaml = "options_file: " + source_folder() +
                            "/options/studies/fit_to_a_passage.yml\n"
                            "fit: {to: {first: {frequency: 1, value: 1.85, sd: 0.01}}, starts: 2}\n"
                            "model_modes: 2\nfit_to_midspan_to: 3.0\n";

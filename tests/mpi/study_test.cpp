@@ -45,9 +45,9 @@ TEST(Ranks, RefinedStudy) {
 TEST(Ranks, StudyOfTracks) {
   std::vector<std::string> with_wheels = names;
   with_wheels.emplace_back("least_wheel_force");
-  expect_same_study("options_file: " TRAVERSE_SOURCE_DIR
-                    "/options/scenes/three_span_train.yml\n"
-                    "train_vehicles: coach\nscene_tail: 0\ntrack_profile: german_low\n",
+  expect_same_study("options_file: " + source_folder() +
+                        "/options/scenes/three_span_train.yml\n"
+                        "train_vehicles: coach\nscene_tail: 0\ntrack_profile: german_low\n",
                     {{"ts_dt", "7e-4"},
                      {"model_modes", "6"},
                      {"model_vehicles", "linear"},
@@ -58,9 +58,9 @@ TEST(Ranks, StudyOfTracks) {
 
 // More trains than a rank keeps.
 TEST(Ranks, StudyOfTrains) {
-  expect_same_study("options_file: " TRAVERSE_SOURCE_DIR
-                    "/options/scenes/three_span_train.yml\n"
-                    "train_vehicles: coach\nscene_tail: 0\nbeam_elements_per_span: 8\n",
+  expect_same_study("options_file: " + source_folder() +
+                        "/options/scenes/three_span_train.yml\n"
+                        "train_vehicles: coach\nscene_tail: 0\nbeam_elements_per_span: 8\n",
                     {{"ts_dt", "2e-3"},
                      {"model_modes", "6"},
                      {"model_vehicles", "linear"},

@@ -46,7 +46,7 @@ TEST(Ranks, SweepIsJudged) {
     expect_same_bits(std::string(bridge) + "beam_continuity: simply_supported\n",
                      {{"model_modes", model},
                       {"ts_dt", "2e-3"},
-                      {"limits", TRAVERSE_SOURCE_DIR "/tests/data/limits_of_forces.yml"},
+                      {"limits", source_folder() + "/tests/data/limits_of_forces.yml"},
                       {"sweep_speed", "40,60,10"},
                       {"sweep_hslm_a", "1,9"}},
                      judged);
@@ -59,15 +59,15 @@ TEST(Ranks, SweepByElements) {
 TEST(Ranks, SweepOfVehicles) {
   std::vector<std::string> with_wheels = names;
   with_wheels.emplace_back("least_wheel_force");
-  expect_same_bits("options_file: " TRAVERSE_SOURCE_DIR
-                   "/options/scenes/three_span_train.yml\n"
-                   "train_vehicles: coach\nscene_tail: 0\n",
+  expect_same_bits("options_file: " + source_folder() +
+                       "/options/scenes/three_span_train.yml\n"
+                       "train_vehicles: coach\nscene_tail: 0\n",
                    {{"ts_dt", "5e-3"}, {"ts_type", "bdf"}, {"sweep_speed", "60,80,5"}}, with_wheels);
 }
 
 // Every rank takes all steps of a single run of linear vehicles over modes.
 TEST(Ranks, StepsTakenApart) {
-  const std::string yaml = "options_file: " TRAVERSE_SOURCE_DIR
+  const std::string yaml = "options_file: " + source_folder() +
                            "/options/scenes/three_span_train.yml\n"
                            "train_vehicles: coach*2\nscene_tail: 0\n";
   const Values options = {{"ts_dt", "2e-3"}, {"model_modes", "8"}, {"model_vehicles", "linear"}};

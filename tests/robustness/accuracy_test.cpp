@@ -13,7 +13,7 @@
 namespace traverse::test {
 namespace {
 
-constexpr const char* limits_of_en1990 = TRAVERSE_SOURCE_DIR "/options/limits/en1990.yml";
+const std::string limits_of_en1990 = source_folder() + "/options/limits/en1990.yml";
 
 const std::string damped_span =
     "beam: {spans: 30.0, EI: 1.2e10, mass: 9000.0, damping_ratios: 0.03}\n"
@@ -45,9 +45,8 @@ TEST(AccuracyOption, NamesWhatItCannotPromise) {
 // The track before the bridge moves the bridge a little; peaks that small cannot be as accurate as the wheel force.
 TEST(AccuracyOption, OfABridgeThatNoWheelHasReached) {
   const Workplace workplace("");
-  const Outcome outcome =
-      workplace.run({"-options_file", TRAVERSE_SOURCE_DIR "/options/scenes/four_coaches_ballasted_bridge.yml",
-                     "-ts_max_time", "0.1"});
+  const Outcome outcome = workplace.run(
+      {"-options_file", source_folder() + "/options/scenes/four_coaches_ballasted_bridge.yml", "-ts_max_time", "0.1"});
   expect_success(outcome);
   EXPECT_TRUE(says(outcome, "estimated errors of the peaks: wheel force")) << outcome.out;
   for (const char* quantity : {"deflection", "acceleration", "moment"})
@@ -98,9 +97,8 @@ TEST(AccuracyOption, OfLowPassedAccelerations) {
 TEST(AccuracyOption, OfLowPassedAccelerationsInSweeps) {
   const Workplace workplace(damped_span);
   const auto run = [&](std::vector<std::string> words) {
-    for (const char* word :
-         {"-limits", limits_of_en1990, "-sweep_speed", "30,50,10", "-scene_tail", "0.2", "-accuracy", "1e-2"})
-      words.emplace_back(word);
+    words.insert(words.end(),
+                 {"-limits", limits_of_en1990, "-sweep_speed", "30,50,10", "-scene_tail", "0.2", "-accuracy", "1e-2"});
     return workplace.run(words);
   };
   const std::string refused = "error not estimated: low-passed acceleration", given = "model_modes = 6 is given";

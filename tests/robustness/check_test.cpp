@@ -17,7 +17,7 @@ namespace {
 std::vector<std::string> scenes() {
   std::vector<std::string> files;
   for (const char* folder : {"scenes", "studies"})
-    for (const auto& entry : std::filesystem::directory_iterator(std::string(TRAVERSE_SOURCE_DIR "/options/") + folder))
+    for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/options/" + folder))
       if (entry.path().extension() == ".yml") files.push_back(entry.path().string());
   std::sort(files.begin(), files.end());
   return files;

@@ -72,7 +72,7 @@ TEST(Step, LongForTheSleepers) {
     EXPECT_LT(difference(run, fine, force), 5e-2) << wheel;
   }
   const Workplace workplace("");
-  std::vector<std::string> words = {"-options_file", TRAVERSE_SOURCE_DIR "/options/scenes/r8_ballasted_bridge.yml"};
+  std::vector<std::string> words = {"-options_file", source_folder() + "/options/scenes/r8_ballasted_bridge.yml"};
   words.insert(words.end(),
                {"-train_speed", "83.33333333", "-ts_dt", "5e-3", "-output_interval", "5e-3", "-output_file", "none"});
   const Outcome outcome = workplace.run(words);

@@ -70,7 +70,7 @@ TEST(ResultsFile, OfAnEarlierRunIsReplaced) {
 /// The scene's command behind a shell line that ends in exec "$0" "$@".
 std::vector<std::string> behind(const std::string& line, std::vector<std::string> command) {
   const std::vector<std::string> shell = {"/bin/sh", "-c", line};
-  command.insert(std::find(command.begin(), command.end(), TRAVERSE_BINARY), shell.begin(), shell.end());
+  command.insert(std::find(command.begin(), command.end(), program_path()), shell.begin(), shell.end());
   return command;
 }
 

@@ -266,7 +266,7 @@ TEST(ResultsPlace, OfAFileThatTheRunReads) {
   expect_success(workplace.run({"-output_file", "r.h5", "-ts_max_time", "0.1"}));
   const std::string before = text_of(workplace.path("r.h5"));
   const Outcome outcome =
-      Child({TRAVERSE_BINARY, "r.h5", "-output_file", "./r.h5", "-ts_max_time", "0.1"}, workplace.folder()).wait();
+      Child({program_path(), "r.h5", "-output_file", "./r.h5", "-ts_max_time", "0.1"}, workplace.folder()).wait();
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("output_file = ./r.h5: the run reads this file"), std::string::npos) << outcome.err;
   EXPECT_EQ(text_of(workplace.path("r.h5")), before);

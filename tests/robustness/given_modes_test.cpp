@@ -76,7 +76,7 @@ TEST(GivenModes, RunAgainFromResults) {
   const Outcome first = workplace.run();
   expect_success(first);
   std::filesystem::remove(workplace.path("modes.csv"));
-  expect_success(Child({TRAVERSE_BINARY, "results/scene.h5"}, workplace.folder()).wait());
+  expect_success(Child({program_path(), "results/scene.h5"}, workplace.folder()).wait());
 }
 
 TEST(GivenModes, OnTwoRanks) {

@@ -32,7 +32,7 @@ TEST(Norm, BadInputIsRefused) {
 }
 
 TEST(Norm, WithoutABridgeThereAreNoStaticEffects) {
-  const Workplace workplace("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/pendulum.yml\n");
+  const Workplace workplace("options_file: " + source_folder() + "/options/scenes/pendulum.yml\n");
   expect_refusal(workplace, workplace.run({"-norm_load_models", "lm71"}), {"norm_load_models", "beam_spans"});
   expect_refusal(workplace, workplace.run({"-model_damping_bound", "steel"}), {"model_damping_bound", "beam_spans"});
 }

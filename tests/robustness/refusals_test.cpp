@@ -88,7 +88,7 @@ class Refusals {
 };
 
 TEST(RefusalMessages, AreTheStoredOnes) {
-  std::ifstream file(TRAVERSE_SOURCE_DIR "/tests/robustness/refusals.txt");
+  std::ifstream file(source_folder() + "/tests/robustness/refusals.txt");
   std::stringstream stored;
   stored << file.rdbuf();
   const std::string now = Refusals().with_messages(stored);

@@ -165,8 +165,7 @@ TEST(Restart, TakesNoStepBeyondItsLimit) {
 
 TEST(Restart, OfAScenesOwnResultsHasNoLimitOfSteps) {
   const Stopped run;
-  const Outcome outcome =
-      Child({TRAVERSE_BINARY, "r.h5", "-restart", "r.h5.checkpoint"}, run.workplace.folder()).wait();
+  const Outcome outcome = Child({program_path(), "r.h5", "-restart", "r.h5.checkpoint"}, run.workplace.folder()).wait();
   expect_success(outcome);
   EXPECT_NEAR(run.reached("r.h5"), 0.1, 1e-12);
 }

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<std::string> files_in(const std::string& folder) {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(TRAVERSE_SOURCE_DIR "/options/" + folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/options/" + folder)) {
     if (entry.path().extension() == ".yml") files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());

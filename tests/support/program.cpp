@@ -130,7 +130,7 @@ Outcome Child::wait(double seconds) {
 std::vector<std::string> Workplace::command(const std::vector<std::string>& words, int ranks) const {
   std::vector<std::string> command;
   if (ranks > 1) command = {"mpirun", "--oversubscribe", "-n", std::to_string(ranks)};
-  command.insert(command.end(), {TRAVERSE_BINARY, "-options_file", "scene.yml"});
+  command.insert(command.end(), {program_path(), "-options_file", "scene.yml"});
   command.insert(command.end(), words.begin(), words.end());
   return command;
 }

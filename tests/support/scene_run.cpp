@@ -76,7 +76,7 @@ void add(std::vector<std::string>& words, const Values& options) {
 Results run_scene(const std::string& name, const Values& options, MPI_Comm comm) {
   const bool path = name.size() > 4 && name.substr(name.size() - 4) == ".yml";
   std::vector<std::string> words = {"traverse", "-options_file",
-                                    path ? name : std::string(TRAVERSE_SOURCE_DIR "/options/scenes/") + name + ".yml"};
+                                    path ? name : source_folder() + "/options/scenes/" + name + ".yml"};
   add(words, options);
   return run_words(words, comm);
 }

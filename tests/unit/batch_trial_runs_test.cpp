@@ -20,7 +20,8 @@ namespace {
 const std::string coaches =
     "beam: {spans: [30.0, 24.0], EI: 1.5e11, mass: 2.0e4, damping_ratios: 0.02}\n"
     "support: {types: [pinned, roller, roller]}\n"
-    "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+    "vehicle: {coach: {file: " +
+    source_folder() +
     "/options/vehicles/velaro.yml}}\n"
     "train: {vehicles: coach*2, speed: 64.0}\n";
 

@@ -89,7 +89,7 @@ TEST(ContactLaws, AreReadByTheirNames) {
 }
 
 TEST(ContactLaws, AreInTheGuide) {
-  std::ifstream file(TRAVERSE_SOURCE_DIR "/doc/guide/contacts.md");
+  std::ifstream file(source_folder() + "/doc/guide/contacts.md");
   const std::string text(std::istreambuf_iterator<char>(file), {});
   for (const LawRow& row : law_rows)
     EXPECT_TRUE(row.name.empty() || text.find("`law: " + std::string(row.name) + "`") != std::string::npos) << row.name;

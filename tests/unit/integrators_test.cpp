@@ -33,7 +33,7 @@ TEST(Integrators, AreInTheHelp) {
 }
 
 TEST(Integrators, AreInTheDocument) {
-  std::ifstream file(TRAVERSE_SOURCE_DIR "/doc/accuracy.md");
+  std::ifstream file(source_folder() + "/doc/accuracy.md");
   std::stringstream text;
   text << file.rdbuf();
   const std::string all = text.str();

@@ -85,7 +85,7 @@ void expect_part(const Units& all, const std::string& group, const Units& expect
 
 // doc/results_file.md names every quantity.
 void expect_documented(const Units& all) {
-  std::ifstream file(TRAVERSE_SOURCE_DIR "/doc/results_file.md");
+  std::ifstream file(source_folder() + "/doc/results_file.md");
   std::stringstream text;
   text << file.rdbuf();
   for (const auto& [name, unit] : all) {

@@ -303,7 +303,7 @@ TEST(Spectrum, IsFoundByItsName) {
 }
 
 TEST(Spectrum, IsInTheGuide) {
-  std::ifstream file(TRAVERSE_SOURCE_DIR "/doc/guide/roughness.md");
+  std::ifstream file(source_folder() + "/doc/guide/roughness.md");
   const std::string text(std::istreambuf_iterator<char>(file), {});
   for (const SpectrumRow& row : spectra) EXPECT_NE(text.find(std::string(row.name)), std::string::npos) << row.name;
 }

@@ -365,7 +365,7 @@ TEST_P(SceneFile, IsReadAndOpensWithThreeLines) {
 
 std::vector<std::string> files_in_options() {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(TRAVERSE_SOURCE_DIR "/options")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_folder() + "/options")) {
     if (entry.path().extension() == ".yml") files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());

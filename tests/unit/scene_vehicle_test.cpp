@@ -140,7 +140,7 @@ TEST(SceneVehicle, WheelsOutOfRound) {
 
 TEST(Coach, VelaroMasses) {
   options::Entries entries;
-  for (const auto& e : options::read_options_file(TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml")) {
+  for (const auto& e : options::read_options_file(source_folder() + "/options/scenes/three_span_train.yml")) {
     entries.set(e);
   }
   const Scene s = read_scene(Options(entries));

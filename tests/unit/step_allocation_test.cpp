@@ -21,7 +21,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const std::string folder = TRAVERSE_SOURCE_DIR "/options/";
+const std::string folder = source_folder() + "/options/";
 
 Words quarter_car_on_a_span() {
   return {"-options_file",

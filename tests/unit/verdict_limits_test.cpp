@@ -34,7 +34,7 @@ TEST(VerdictLimits, AreRead) {
 }
 
 TEST(VerdictLimits, OfTheNormAreRead) {
-  for (const VerdictLimit& limit : read_verdict_limits(TRAVERSE_SOURCE_DIR "/options/limits/en1990.yml"))
+  for (const VerdictLimit& limit : read_verdict_limits(source_folder() + "/options/limits/en1990.yml"))
     EXPECT_TRUE(holds(limit.clause, "EN 1990 A2.4.4"));
 }
 

@@ -108,7 +108,8 @@ const std::string hertz_wheel_undamped =
 const std::string coaches_damped =
     "beam: {spans: [30.0, 36.0], EI: 3.0e11, mass: 2.5e4, damping_ratios: 0.02}\n"
     "support: {types: [pinned, roller, roller]}\n"
-    "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+    "vehicle: {coach: {file: " +
+    source_folder() +
     "/options/vehicles/velaro.yml}}\n"
     "train: {vehicles: coach*2, speed: 70.0}\nscene: {tail: 0.5}\n";
 
@@ -207,7 +208,7 @@ TEST(Accuracy, StepOfStiffnessFarFromTheStart) {
 
 /// A scene file without the step that it gives.
 std::string without_step(const std::string& name) {
-  std::ifstream file(std::string(TRAVERSE_SOURCE_DIR) + "/options/scenes/" + name + ".yml");
+  std::ifstream file(source_folder() + "/options/scenes/" + name + ".yml");
   std::string text, line;
   while (std::getline(file, line))
     if (line.find("  dt:") == line.npos && line.find("  interval:") == line.npos && line != "output:")

@@ -30,7 +30,7 @@ Coordinates stepped(const std::function<Coordinates(double, const Coordinates&)>
 
 base::TimeFunction table(const std::string& name) {
   std::vector<double> times, values;
-  for (const std::vector<double>& row : read_table(std::string(TRAVERSE_SOURCE_DIR) + "/options/scenes/" + name)) {
+  for (const std::vector<double>& row : read_table(source_folder() + "/options/scenes/" + name)) {
     times.push_back(row[0]);
     values.push_back(row[1]);
   }
@@ -182,8 +182,7 @@ TEST(Applications, Launcher) {
 TEST(Applications, OverheadCrane) {
   Results run = run_scene("overhead_crane", {{"beam_EI", "1e14"}, {"ts_dt", "2e-3"}, {"beam_elements_per_span", "4"}});
   const base::TimeFunction hoist = table("overhead_crane_hoist.csv");
-  const std::vector<std::vector<double>> law =
-      read_table(std::string(TRAVERSE_SOURCE_DIR) + "/options/scenes/overhead_crane_speed.csv");
+  const std::vector<std::vector<double>> law = read_table(source_folder() + "/options/scenes/overhead_crane_speed.csv");
   const auto trolley = [&](double t) {  // position and speed
     double x = 0.0, v = 0.0;
     for (std::size_t i = 0; i + 1 < law.size(); ++i) {

@@ -263,7 +263,8 @@ const std::string coaches =
     "support: {types: [pinned, roller, roller, roller]}\n"
     "foundation: {vertical: {x: [16.0, 52.0], k: [0.0, 1.0e8], c: [3.0e6, 2.0e6]}}\n"
     "train: {speed: 83.333, vehicles: coach*2}\n"
-    "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+    "vehicle: {coach: {file: " +
+    source_folder() +
     "/options/vehicles/velaro.yml}}\n"
     "ts: {dt: 5e-4}\noutput: {interval: 5e-3, probes: [20, 52, 88]}\n";
 

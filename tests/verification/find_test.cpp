@@ -86,8 +86,8 @@ TEST(Find, PermittedSpeedsOnBothSidesOfAResonance) {
 }
 
 TEST(Find, TrainsHaveAnswersOfTheirOwnAndOneForAll) {
-  const std::string scene = bridge + "sweep: {hslm_a: [1, 5]}\nscene: {tail: 0.5}\nlimits: " TRAVERSE_SOURCE_DIR
-                                     "/tests/data/limits_of_forces.yml\n";
+  const std::string scene = bridge + "sweep: {hslm_a: [1, 5]}\nscene: {tail: 0.5}\nlimits: " + source_folder() +
+                            "/tests/data/limits_of_forces.yml\n";
   Results found = run_yaml(scene, {{"find_option", "load_speed"},
                                    {"find_between", "30,60"},
                                    {"find_keep", "deck_acceleration"},

@@ -69,7 +69,7 @@ Sines yang_yau(int modes) {
 const std::string continuous =
     "beam: {spans: [32, 40, 32], EI: 3.795e11, mass: 3e4, damping_ratios: 0.02, elements_per_span: 6}\n"
     "support: {types: [pinned, roller, roller, roller]}\n";
-const std::string coaches = "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+const std::string coaches = "vehicle: {coach: {file: " + source_folder() +
                             "/options/vehicles/velaro.yml}}\n"
                             "train: {vehicles: coach*2, speed: 80}\n"
                             "ts: {dt: 5e-4, max_time: 2.0}\noutput: {interval: 5e-3, probes: [16, 52, 88]}\n"
@@ -117,7 +117,7 @@ TEST(GivenModes, SprungMassOfR2) {
                      "    level: {body: body, coordinate: phi}\n"
                      "train: {vehicles: sprung_mass, positions: 0.0, speed: 27.777777777777778}\n",
                  {{"ts_dt", "1e-3"}, {"output_interval", "1e-3"}});
-    const auto reference = read_table(TRAVERSE_SOURCE_DIR "/tests/data/r2.csv");
+    const auto reference = read_table(source_folder() + "/tests/data/r2.csv");
     const double difference = relative_difference(every(5, run.column("/probes/deflection")), column(reference, 1));
     const double force = relative_difference(every(5, run("/vehicles/0/spring/normal_force")), column(reference, 4));
     RecordProperty(slopes ? "slopes" : "splines", text(difference));
@@ -267,7 +267,7 @@ TEST(GivenModes, SweepsAndKernels) {
   }
   for (const double moment : sweep("/sweep/peak_moment")) EXPECT_TRUE(std::isnan(moment));  // not known
 
-  const std::string coach = "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+  const std::string coach = "vehicle: {coach: {file: " + source_folder() +
                             "/options/vehicles/velaro.yml}}\n"
                             "train: {vehicles: coach*2, speed: 70}\nts: {dt: 5e-4}\noutput: {interval: 5e-3}\n";
   Results full = run_yaml(bridge + coach, {{"model_vehicles", "full"}});

@@ -18,7 +18,7 @@
 namespace traverse::test {
 namespace {
 
-const std::string path = TRAVERSE_SOURCE_DIR "/options/studies/gradient.yml";
+const std::string path = source_folder() + "/options/studies/gradient.yml";
 const std::string scene = "options_file: " + path + "\n";
 
 /// The scene without its study.

@@ -31,7 +31,7 @@ double largest(const norm::StaticEffects& all, Effect effect, std::size_t load =
 
 /// A haunched girder under a force at rest, by elements an eighth as long as those of the influence lines.
 TEST(InfluenceLines, OfAHaunchedGirder) {
-  const std::string folder = TRAVERSE_SOURCE_DIR "/options/bridges/haunched_";
+  const std::string folder = source_folder() + "/options/bridges/haunched_";
   const std::string girder = "beam: {spans: [35.0, 50.0, 35.0], EI: " + folder + "EI.csv, mass: " + folder +
                              "mass.csv}\nscene: {analysis: static}\nload: {forces: 1.0e6}\n" +
                              "output: {probes: 11.3}\n";

@@ -10,7 +10,7 @@
 namespace traverse::test {
 namespace {
 
-const std::string limits = TRAVERSE_SOURCE_DIR "/tests/data/limits_of_forces.yml";
+const std::string limits = source_folder() + "/tests/data/limits_of_forces.yml";
 const std::string decks = R"(
 beam: {spans: [20.0, 20.0], EI: 1.0e10, mass: 1.0e4, damping_ratios: 0.02, elements_per_span: 8}
 beam_continuity: simply_supported

@@ -11,7 +11,7 @@ namespace traverse::test {
 namespace {
 
 const std::string coaches =
-    "options_file: " TRAVERSE_SOURCE_DIR
+    "options_file: " + source_folder() +
     "/options/scenes/three_span_train.yml\n"
     "train_vehicles: coach*2\nscene_tail: 0.2\nbeam_elements_per_span: 8\nts_dt: 2.0e-3\noutput_interval: 0.02\n";
 

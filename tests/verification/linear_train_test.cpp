@@ -72,8 +72,9 @@ TEST(LinearTrain, AtAChangingSpeed) {
   const auto scene = [&](const char* damping) {
     return "beam: {spans: [32, 40, 32], EI: 3.795e11, EA: 3.1e11, mass: 3e4, elements_per_span: 8}\n"
            "support: {types: [pinned, roller, roller, roller]}\nts: {dt: 1e-3, max_time: 1.6}\n"
-           "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml, wheel_1: {damping: " +
-           std::string(damping) + "}}}\ntrain: {vehicles: coach*2, speed_file: " + law + "}\n";
+           "vehicle: {coach: {file: " +
+           source_folder() + "/options/vehicles/velaro.yml, wheel_1: {damping: " + std::string(damping) +
+           "}}}\ntrain: {vehicles: coach*2, speed_file: " + law + "}\n";
   };
   const Values linear = {{"model_vehicles", "linear"}};
   Results passes = run_yaml(scene("0"), linear), newton = run_yaml(scene("1e-9"), linear);
@@ -121,8 +122,8 @@ TEST(LinearTrain, PassesCornersWhereItHasMovedTo) {
   const Values fine = coarse + Values{{"ts_dt", "1e-4"}};
   const std::string scene =
       "beam: {spans: 29.3, elements_per_span: 96, EI: 4.70444e+10, mass: 4283.07, damping_ratios: 0.0062}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
-      "/options/vehicles/velaro.yml}}\ntrain: {vehicles: coach*2, speed: 23.5}\nmodel: {modes: 0}\n";
+      "vehicle: {coach: {file: " +
+      source_folder() + "/options/vehicles/velaro.yml}}\ntrain: {vehicles: coach*2, speed: 23.5}\nmodel: {modes: 0}\n";
   Results with_coarse = run_yaml(scene, coarse), with_fine = run_yaml(scene, fine);
   const double by_steps = std::abs(
       with_coarse.attribute("/summary", "acceleration") / with_fine.attribute("/summary", "acceleration") - 1.0);

@@ -77,7 +77,8 @@ TEST(LinearVehicle, LeavesOutSquares) {
   const auto scene = [](const char* height) {
     return std::string("track: {profile: bump, bump_start: 20, bump_length: 6, bump_height: ") + height +
            "}\ntrain: {vehicles: coach, positions: 0, speed: 40}\nts: {dt: 1e-3, max_time: 1.2}\n"
-           "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml}}\n";
+           "vehicle: {coach: {file: " +
+           source_folder() + "/options/vehicles/velaro.yml}}\n";
   };
   std::array<double, 2> left_out{}, defect{};
   int i = 0;
@@ -98,7 +99,7 @@ std::string bridge_and_bump(const char* height) {
              "beam: {spans: 25, EI: 2e10, mass: 1e4, damping_ratios: 0.01}\nmodel: {axial: false}\n"
              "train: {vehicles: coach, positions: -15, speed: 60}\naccuracy: 1e-2\nts: {max_time: 3}\n"
              "track: {profile: bump, bump_start: 90, bump_length: 6, bump_height: ") +
-         height + "}\nvehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml}}\n";
+         height + "}\nvehicle: {coach: {file: " + source_folder() + "/options/vehicles/velaro.yml}}\n";
 }
 
 // Out of balance by more than a tenth of the accuracy as its wheels jerk where the bridge's own weight has bent it, and
@@ -224,7 +225,8 @@ TEST(LinearVehicle, TrainsAtChangingSpeeds) {
       "beam: {spans: [32, 40, 32], EI: 3.795e11, EA: 3.1e11, mass: 3e4, damping_ratios: 0.02, elements_per_span: 8}\n"
       "support: {types: [pinned, roller, roller, roller]}\ntrain: {vehicles: coach*2}\n"
       "ts: {dt: 5e-4, max_time: 2.2}\noutput: {interval: 5e-3}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml}}\n";
+      "vehicle: {coach: {file: " +
+      source_folder() + "/options/vehicles/velaro.yml}}\n";
   for (const auto& [name, rows] : {std::pair("stop", "0,2\n0.3,2\n1.8,0\n"), std::pair("start", "0,0\n2,2\n"),
                                    std::pair("left", "0,-60\n0.5,-60\n1.5,-58.5\n")}) {
     const Values law = {{"train_speed_file", folder.write("law.csv", rows)}};
@@ -246,7 +248,8 @@ TEST(LinearVehicle, TrainsThatMeetAtChangingSpeeds) {
       "continuity: simply_supported}\nmodel: {axial: false}\ntrains: [up, down, through]\n"
       "up: {vehicles: coach*2}\ndown: {vehicles: coach}\nthrough: {vehicles: coach, speed: 35}\n"
       "ts: {dt: 1e-3, max_time: 2}\noutput: {interval: 0.01}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml}}\n";
+      "vehicle: {coach: {file: " +
+      source_folder() + "/options/vehicles/velaro.yml}}\n";
   const Values laws = {{"up_speed_file", folder.write("up.csv", "0,40\n0.5,40\n1.5,38.5\n")},
                        {"down_speed_file", folder.write("down.csv", "0,0\n1.8,-2\n")}};
   Results full = run_yaml(scene, laws + mechanisms);

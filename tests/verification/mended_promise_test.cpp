@@ -13,9 +13,8 @@ namespace traverse::test {
 namespace {
 
 std::string coaches(const std::string& bridge, const std::string& type, const std::string& train) {
-  return bridge +
-         "support: {types: [pinned, roller]}\nvehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/" +
-         type + ".yml}}\ntrain: {" + train + "}\nscene: {tail: 1.0}\n";
+  return bridge + "support: {types: [pinned, roller]}\nvehicle: {coach: {file: " + source_folder() +
+         "/options/vehicles/" + type + ".yml}}\ntrain: {" + train + "}\nscene: {tail: 1.0}\n";
 }
 
 /// A mass on a spring and a damper on one wheel. Bodies in kg, spring in N/m, damper in N s/m, wheel as its law has it.
@@ -163,7 +162,8 @@ TEST(MendedPromise, SlopesOfShortSpansCountMore) {
   const std::string scene =
       "beam: {spans: [13.4, 10.8], EI: 3.37012e+09, mass: 4079.67, damping_ratios: 0.0062}\n"
       "support: {types: [pinned, roller, roller]}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      "vehicle: {coach: {file: " +
+      source_folder() +
       "/options/vehicles/manchester.yml}}\n"
       "train: {vehicles: coach*2, speed: 20.4}\nscene: {tail: 0.3}\n";
   expect_kept(run_yaml(scene, {{"accuracy", "1e-3"}}), run_yaml(scene, finer("64", "2e-4")), {"acceleration"}, 1e-3);
@@ -211,7 +211,8 @@ TEST(MendedPromise, TheBetterTrialTakesShorterSteps) {
   const std::string scene =
       "beam: {spans: [59.1, 45.0, 47.7, 50.7], EI: 3.53771e+11, mass: 9308.31, damping_ratios: 0.0177}\n"
       "support: {types: [clamped, roller, roller, roller, roller]}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      "vehicle: {coach: {file: " +
+      source_folder() +
       "/options/vehicles/manchester.yml}}\ntrain: {vehicles: coach*3, speed: 56.2}\nscene: {tail: 0.0}\n";
   expect_kept(run_yaml(scene, {{"accuracy", "1e-2"}}), run_yaml(scene, finer("30", "5e-4")), {"wheel_force"}, 1e-2);
 }

@@ -74,7 +74,8 @@ TEST(ModalVehicle, DampingOfEachMode) {
       "beam: {spans: [32, 40, 32], EI: 3.795e11, mass: 3e4, self_weight: true}\n"
       "support: {types: [pinned, roller, roller, roller]}\n"
       "model: {modes: 10, damping_ratios: 0.03}\ntrain: {speed: 83.333}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/velaro.yml}}\n";
+      "vehicle: {coach: {file: " +
+      source_folder() + "/options/vehicles/velaro.yml}}\n";
   Results damped = run_yaml(scene, coaches);
   EXPECT_LT(std::abs(peak(damped("/balance/residual")).first), 1e-9 * 8.0 * axle_load);
   EXPECT_LT(energy_error(damped), 1e-8);

@@ -21,7 +21,7 @@ double static_deflection(double force) { return force * std::pow(length, 3) / (4
 // v = alpha L omega1/pi
 double speed_for(double alpha) { return alpha * pi / length * std::sqrt(EI / mass); }
 
-const std::string data = TRAVERSE_SOURCE_DIR "/tests/data/";
+const std::string data = source_folder() + "/tests/data/";
 
 // --- R1: a moving force, no damping ----------------------------------------------------------------------------------
 

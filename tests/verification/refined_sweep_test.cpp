@@ -60,7 +60,7 @@ TEST(RefinedSweep, FindsTheResonanceThatTheGridMisses) {
 
 // What limits judge has its peak known too, of every train, and every train has run at every speed.
 TEST(RefinedSweep, KnowsThePeaksOfJudgedQuantities) {
-  const Values options = {{"limits", TRAVERSE_SOURCE_DIR "/tests/data/limits_of_forces.yml"}, {"sweep_hslm_a", "1,9"}};
+  const Values options = {{"limits", source_folder() + "/tests/data/limits_of_forces.yml"}, {"sweep_hslm_a", "1,9"}};
   Results fine = run_yaml(bridge, options + Values{{"sweep_speed", "60,72,3"}, {"sweep_refine", "2e-3"}});
   Results dense = run_yaml(bridge, options + Values{{"sweep_speed", "60,72,0.02"}, {"sweep_refine", "0"}});
   const auto greatest = [](Results& run, std::size_t train, std::size_t limit) {

@@ -16,7 +16,8 @@ namespace {
 std::string train(const std::string& more) {
   return "beam: {spans: [32, 40, 32], EI: 3.795e11, mass: 3e4, damping_ratios: 0.02, elements_per_span: 8}\n"
          "support: {types: [pinned, roller, roller, roller]}\n"
-         "vehicle:\n  coach:\n    file: " TRAVERSE_SOURCE_DIR
+         "vehicle:\n  coach:\n    file: " +
+         source_folder() +
          "/options/vehicles/velaro.yml\n"
          "    sensors: [floor, frame, middle]\n"
          "    floor: {body: car, point: [10.0, 1.3]}\n    frame: {body: front_bogie, point: [7.4, 0.7]}\n"

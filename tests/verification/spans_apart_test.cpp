@@ -33,10 +33,11 @@ TEST(SpansApart, AllSteppedOrOnlyThoseThatMove) {
 
 // Around each of two trains that meet and part again.
 TEST(SpansApart, OfTrainsThatMeet) {
-  const char* scene =
+  const std::string scene =
       "beam: {spans: 32.0*60, elements_per_span: 6, EI: 3.795e11, mass: 3.0e4, damping_ratios: 0.2, "
       "continuity: simply_supported}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      "vehicle: {coach: {file: " +
+      source_folder() +
       "/options/vehicles/s300.yml}}\ntrains: [up, down]\n"
       "up: {vehicles: coach, positions: 200.0, speed: 83.333}\ndown: {vehicles: coach, positions: 1700.0, speed: "
       "-83.333}\n"

@@ -106,7 +106,8 @@ TEST(Settlement, InABatch) {
   const std::string scene =
       "beam: {spans: [25.0, 25.0], EI: 8.0e9, mass: 2303.0, elements_per_span: 6, "
       "damping_ratios: 0.02}\nsupport: {settlement: [0.0, -0.02, 0.0]}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      "vehicle: {coach: {file: " +
+      source_folder() +
       "/options/vehicles/manchester.yml}}\n"
       "train: {vehicles: coach, speed: 40.0}\nts: {dt: 1.0e-3}\nmodel: {vehicles: linear}\n"
       "output: {interval: 0.01, probes: [12.5, 25.0]}\n";
@@ -241,7 +242,7 @@ TEST(AsFound, VehiclesSeeIt) {
 beam: {spans: [25.0, 25.0], EI: 8.0e9, mass: 2303.0, elements_per_span: 8, damping_ratios: 0.02}
 support: {settlement: [0.0, -0.02, 0.0]}
 vehicle: {coach: {file: )") +
-                            TRAVERSE_SOURCE_DIR + R"(/options/vehicles/manchester.yml}}
+                            source_folder() + R"(/options/vehicles/manchester.yml}}
 train: {vehicles: coach, speed: 40.0}
 ts: {dt: 1.0e-3}
 output: {interval: 0.01}

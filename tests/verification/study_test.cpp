@@ -17,7 +17,7 @@ support: {types: [pinned, roller, roller]}
 output: {probes: [10.0, 31.0]}
 )";
 const std::string forces = bridge + "load: {forces: 1.0e5*3, positions: [0, -3, -20], speed: 40.0}\nts_dt: 2.0e-3\n";
-const std::string coach = "options_file: " TRAVERSE_SOURCE_DIR
+const std::string coach = "options_file: " + source_folder() +
                           "/options/scenes/three_span_train.yml\n"
                           "train_vehicles: coach\nscene_tail: 0.1\nbeam_elements_per_span: 8\n";
 const char* const peaks[] = {"deflection", "acceleration", "moment"};

@@ -341,8 +341,7 @@ TEST(SupportMotion, InAStudy) {
   const TemporaryFolder folder;
   const std::string file = pulse_file(folder, {1.0, 0.6});
   const std::string coach =
-      bridge +
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      bridge + "vehicle: {coach: {file: " + source_folder() +
       "/options/vehicles/velaro.yml}}\ntrain: {vehicles: coach, positions: -1}\nts: {max_time: 0.5, dt: 1.0e-3}\n"
       "model: {vehicles: linear}\n";
   Results study = run_yaml(coach, {{"support_motion", file}, {"study_vary_train_speed", "40,50"}}),

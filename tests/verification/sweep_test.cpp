@@ -18,7 +18,7 @@ const std::string stations =
 // Deflections by 2e-4 and at the same speed. Accelerations by 3e-3 where they are looked for along the whole beam, as
 // there: the largest of A2 is 2.5 % above that of midspan.
 TEST(Sweep, HslmTrainsAgainstAnotherProgram) {
-  const auto list = read_table(TRAVERSE_SOURCE_DIR "/tests/data/hslm_peaks.csv");
+  const auto list = read_table(source_folder() + "/tests/data/hslm_peaks.csv");
   Results run = run_scene("hslm_sweep", {{"output_probes", stations}});
   const std::vector<double>& speed = run("/sweep/speed");
   ASSERT_EQ(speed.size(), 131u);
@@ -119,9 +119,9 @@ TEST(SweepLowPassed, IsPromisedOfEveryRun) {
   const std::string forces = bridge +
                              "load: {forces: 1.7e5*6, positions: [0,-3,-18,-21,-36,-39]}\n"
                              "sweep: {speed: [40.0, 100.0, 3.0]}\n";
-  const std::string train = bridge + "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
-                                     "/options/vehicles/velaro.yml}}\n"
-                                     "train: {vehicles: coach*2}\nsweep: {speed: [60.0, 84.0, 6.0]}\n";
+  const std::string train = bridge + "vehicle: {coach: {file: " + source_folder() +
+                            "/options/vehicles/velaro.yml}}\n"
+                            "train: {vehicles: coach*2}\nsweep: {speed: [60.0, 84.0, 6.0]}\n";
   for (const std::string& yaml : {forces, train}) {
     Results fine = run_yaml(
         yaml,
@@ -218,7 +218,7 @@ TEST(Sweep, FindsCoupledModesThatDo) {
 
 TEST(Sweep, VehiclesHaveTheirLeastWheelForce) {
   const std::string coaches =
-      std::string("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n") +
+      std::string("options_file: " + source_folder() + "/options/scenes/three_span_train.yml\n") +
       "train_vehicles: coach\nscene_tail: 0\n";
   const Values options = {{"ts_dt", "5e-3"}, {"ts_type", "bdf"}, {"beam_elements_per_span", "8"}};
   Results sweep = run_yaml(coaches, options + Values{{"sweep_speed", "60,80,20"}});

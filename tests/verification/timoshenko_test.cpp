@@ -254,7 +254,7 @@ TEST(Timoshenko, WheelsMeetNoKinkAtNodes) {
   const std::string scene = std::string(R"(
 beam: {spans: 8.0, EI: 3.0e10, GA: 4.0e9, mass: 6.0e3, rayleigh: [2.0, 1.0e-4]}
 vehicle: {coach: {file: )") +
-                            TRAVERSE_SOURCE_DIR +
+                            source_folder() +
                             R"(/options/vehicles/velaro.yml}}
 train: {vehicles: coach, speed: 40.0}
 ts: {dt: 5.0e-5}

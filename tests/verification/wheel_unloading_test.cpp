@@ -16,7 +16,7 @@ double lost(const std::vector<double>& force, double at_rest) {
   return 1.0 - *std::min_element(force.begin(), force.end()) / at_rest;
 }
 
-const std::string coach = "options_file: " TRAVERSE_SOURCE_DIR
+const std::string coach = "options_file: " + source_folder() +
                           "/options/scenes/three_span_train.yml\n"
                           "train_vehicles: coach*2\nbeam_elements_per_span: 8\n"
                           "track: {profile: german_low, seed: 4, wavelengths: [2.0, 80.0]}\n";
@@ -60,7 +60,7 @@ TEST(WheelUnloadingOfARun, IsJudgedInSweeps) {
   const Values options = {{"ts_dt", "1e-3"},
                           {"model_modes", "8"},
                           {"output_unloading_level", "0.1"},
-                          {"limits", TRAVERSE_SOURCE_DIR "/tests/data/limits_of_wheels.yml"}};
+                          {"limits", source_folder() + "/tests/data/limits_of_wheels.yml"}};
   Results sweep = run_yaml(coach, options + Values{{"sweep_speed", "60,80,10"}, {"sweep_refine", "0"}});
   const std::vector<double> judged = sweep("/sweep/judged");
   ASSERT_EQ(judged.size(), 9u);
