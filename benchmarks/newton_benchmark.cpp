@@ -11,7 +11,7 @@
 #include <string>
 
 #include "coupling/system.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "integrate/stepper.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 

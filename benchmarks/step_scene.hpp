@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "coupling/system.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 

@@ -54,7 +54,7 @@ flags() {
   printf '%s\n' -std=c++20 -fsyntax-only -Wall -Wextra -Werror -DOMPI_SKIP_MPICXX "-DTRAVERSE_VERSION='\"\"'" \
     -DPETSC_USE_STRICT_PETSCERRORCODE=1 -DPETSC_HAVE_OPENMPI=1 '-DPETSC_PKG_OPENMPI_VERSION_GT(...)=0' \
     '-DPETSC_PKG_OPENMPI_VERSION_LT(...)=0' -Iinclude -Isrc -Itests -Ibenchmarks -Ibuild-checks/tests \
-    -include build-checks/tests/support/paths.hpp \
+    -include build-checks/tests/support/folders.hpp \
     -isystem "$kept/slepc-$1/include" -isystem "$kept/petsc-$1/include"
   pkg-config --cflags-only-I eigen3 "$(pkg-config --exists hdf5-openmpi && echo hdf5-openmpi || echo hdf5)" yaml-cpp \
     fmt ompi-cxx | sed 's/-I/-isystem /g'

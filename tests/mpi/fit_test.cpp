@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::test {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdlib>
 
 #include "support/extremes.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 
 namespace traverse::test {

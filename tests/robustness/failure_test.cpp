@@ -6,7 +6,7 @@
 #include <csignal>
 #include <fstream>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 

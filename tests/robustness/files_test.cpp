@@ -9,7 +9,7 @@
 #include <csignal>
 #include <memory>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 

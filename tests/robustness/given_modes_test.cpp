@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 
 namespace traverse::test {

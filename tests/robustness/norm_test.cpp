@@ -1,7 +1,7 @@
 // EN 1991-2 in a scene: what cannot be meant is refused in one line.
 #include <gtest/gtest.h>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 
 namespace traverse::test {

@@ -9,7 +9,7 @@
 
 #include "options/input_texts.hpp"
 #include "options/read_file.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/app/run.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"

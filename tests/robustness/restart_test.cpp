@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "results/checkpoint_file.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 

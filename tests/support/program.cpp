@@ -15,7 +15,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 
 namespace traverse::test {
 namespace {

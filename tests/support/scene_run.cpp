@@ -14,7 +14,7 @@
 #include <stdexcept>
 
 #include "base/petsc.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/app/run.hpp"
 #include "traverse/options/input.hpp"
 

@@ -137,7 +137,7 @@ beam::BeamModel separate() {
 TEST(ActiveWindow, ClosesAroundWhatMoves) {
   Moving m(continuous());
   m.add_bump(83, 97, 1e-3);
-  ActiveWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+  ActiveWindow window(m.beam, m.op, {1e-4, 1e-4}, {}, nullptr);
   window.begin(m.motion, m.v.data(), m.w.data(), {});
   EXPECT_EQ(first_of(window), 83);
   EXPECT_EQ(past_of(window), 97);
@@ -152,7 +152,7 @@ TEST(ActiveWindow, PutsToRestWhatIsBelowItsTolerance) {
     m.add_bump(32, 38, 1e-8);
     m.add_bump(152, 158, 2e-8);
     const double left = m.energy(32, 38) + m.energy(152, 158);
-    ActiveWindow window(m.beam, m.op, tolerance, {}, nullptr);
+    ActiveWindow window(m.beam, m.op, {tolerance, tolerance}, {}, nullptr);
     window.begin(m.motion, m.v.data(), m.w.data(), {});
     if (tolerance == 1e-6) {
       EXPECT_EQ(first_of(window), 32);
@@ -180,7 +180,7 @@ TEST(ActiveWindow, LooksAtEveryKind) {
     for (int c = 0; c < m.columns(); ++c) largest = std::max(largest, std::abs(x[2 * c + kind % 2]));
     x[2 * 44 + kind % 2] = 1.01e-4 * largest;
     x[2 * 131 + kind % 2] = -0.99e-4 * largest;
-    ActiveWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+    ActiveWindow window(m.beam, m.op, {1e-4, 1e-4}, {}, nullptr);
     window.begin(m.motion, m.v.data(), m.w.data(), {});
     EXPECT_EQ(first_of(window), 44);
     EXPECT_EQ(past_of(window), 97);
@@ -192,14 +192,15 @@ TEST(ActiveWindow, KeepsWhatIsLoadedOrWatched) {
   m.add_bump(83, 97, 1e-3);
   m.add_bump(32, 38, 1e-8);
   m.add_bump(152, 158, 1e-14);
-  ActiveWindow loaded(m.beam, m.op, 1e-4, {}, nullptr);
+  ActiveWindow loaded(m.beam, m.op, {1e-4, 1e-4}, {}, nullptr);
   loaded.begin(m.motion, m.v.data(), m.w.data(), {{60, 120}});
   EXPECT_EQ(first_of(loaded), 60);
   EXPECT_EQ(past_of(loaded), 120);
   EXPECT_TRUE(m.at_rest(0, 60));
 
   m.add_bump(32, 38, 1e-8);
-  ActiveWindow watching(m.beam, m.op, 1e-4, {155, 35}, nullptr);  // what is there counts down to 1e-9
+  ActiveWindow watching(m.beam, m.op, {1e-4, ActiveWindow::quiet}, {155, 35},
+                        nullptr);  // what is there counts down to 1e-9
   watching.begin(m.motion, m.v.data(), m.w.data(), {{60, 120}});
   EXPECT_EQ(first_of(watching), 35);
   EXPECT_EQ(past_of(watching), 120);
@@ -213,7 +214,7 @@ TEST(ActiveWindow, ClosesWholeSpansThatDoNotTouch) {
   m.add_bump(7 * span + 3, 7 * span + 7, 1e-3);
   m.add_bump(9 * span + 2, 9 * span + 5, 1e-9);
   const double left = m.energy(9 * span, 10 * span);
-  ActiveWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+  ActiveWindow window(m.beam, m.op, {1e-4, 1e-4}, {}, nullptr);
   window.begin(m.motion, m.v.data(), m.w.data(), {});
   EXPECT_EQ(first_of(window), 5 * span);
   EXPECT_EQ(past_of(window), 8 * span);
@@ -227,7 +228,7 @@ TEST(ActiveWindow, RestsUnderItsOwnWeight) {
   m.add_bump(83, 97, 1e-3);
   m.add_bump(32, 38, 1e-8);
   const double left = m.energy(32, 38);
-  ActiveWindow window(m.beam, m.op, 1e-4, {}, m.rest.data());
+  ActiveWindow window(m.beam, m.op, {1e-4, ActiveWindow::quiet}, {}, m.rest.data());
   window.begin(m.motion, m.v.data(), m.w.data(), {});
   EXPECT_EQ(first_of(window), 83);
   EXPECT_EQ(past_of(window), 97);
@@ -239,7 +240,7 @@ TEST(ActiveWindow, RestsUnderItsOwnWeight) {
 
 TEST(ActiveWindow, OpensByTheReachOfTheLoads) {
   Moving m(continuous());
-  ActiveWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+  ActiveWindow window(m.beam, m.op, {1e-4, 1e-4}, {}, nullptr);
   window.begin(m.motion, m.v.data(), m.w.data(), {});
   EXPECT_GE(first_of(window), past_of(window));  // nothing moves
   window.open({{60, 62}}, 10);
@@ -258,7 +259,7 @@ TEST(ActiveWindow, OpensByTheReachOfTheLoads) {
 
 TEST(ActiveWindow, OpensAroundEachOfSeveralLoads) {
   Moving m(continuous());
-  ActiveWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+  ActiveWindow window(m.beam, m.op, {1e-4, 1e-4}, {}, nullptr);
   window.begin(m.motion, m.v.data(), m.w.data(), {});
   window.open({{60, 62}, {200, 204}}, 10);
   EXPECT_EQ(window.moving(), (std::vector<Range>{{50, 72}, {190, 214}}));
@@ -270,7 +271,7 @@ TEST(ActiveWindow, OpensAroundEachOfSeveralLoads) {
 TEST(ActiveWindow, IsPartedWhereItRestsBetweenLoads) {
   for (const bool apart : {true, false}) {
     Moving m(apart ? separate() : continuous());
-    ActiveWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+    ActiveWindow window(m.beam, m.op, {1e-4, 1e-4}, {}, nullptr);
     const int span = apart ? m.beam.parts()[1] : 0;
     const std::vector<Range> loads = apart ? std::vector<Range>{{2 * span, 3 * span}, {15 * span, 16 * span}}
                                            : std::vector<Range>{{30, 34}, {300, 304}};
@@ -293,7 +294,8 @@ Comparison compare(const beam::BeamModel& model, double tolerance, bool own_weig
   constexpr double speed = 90.0;
   const int steps = static_cast<int>(1.05 * model.length() / (speed * Moving::h));
   Moving whole(model, own_weight), part(model, own_weight);
-  ActiveWindow window(part.beam, part.op, tolerance, {}, own_weight ? part.rest.data() : nullptr);
+  ActiveWindow window(part.beam, part.op, {tolerance, ActiveWindow::quiet}, {},
+                      own_weight ? part.rest.data() : nullptr);
   window.begin(part.motion, part.v.data(), part.w.data(), {});
   Comparison result;
   double peak = 0.0;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scene_helpers.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::error_control {

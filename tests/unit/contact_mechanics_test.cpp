@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/contact/law.hpp"
 
 namespace traverse::contact {

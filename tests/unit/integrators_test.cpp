@@ -10,7 +10,7 @@
 
 #include "base/one_step_methods.hpp"
 #include "support/message.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::integrate {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "recorder_helpers.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::run {

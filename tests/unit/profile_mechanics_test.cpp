@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/track/profile.hpp"
 

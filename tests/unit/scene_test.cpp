@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "scene_helpers.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace traverse::scene {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "scene_helpers.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace traverse::scene {

@@ -10,7 +10,7 @@
 #include "run/outputs.hpp"
 #include "run/passage.hpp"
 #include "support/counted_memory.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/scene/scene.hpp"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "options/read_verdict_limits.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::options {

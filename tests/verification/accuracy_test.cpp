@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/promised.hpp"
 #include "support/quarter_car.hpp"
 #include "support/scene_run.hpp"

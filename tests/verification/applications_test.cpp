@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/scene_run.hpp"
 #include "traverse/base/time_function.hpp"
 

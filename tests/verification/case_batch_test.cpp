@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 
 namespace traverse::test {
 namespace {

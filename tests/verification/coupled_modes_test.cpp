@@ -10,7 +10,7 @@
 
 #include "integrate/modal_peaks.hpp"
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 
 namespace traverse::test {
 namespace {

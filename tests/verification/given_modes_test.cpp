@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/runge_kutta.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/record.hpp"
 #include "support/temporary_folder.hpp"
 

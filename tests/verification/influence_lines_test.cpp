@@ -7,7 +7,7 @@
 #include "norm/en1991.hpp"
 #include "norm/static_bridge.hpp"
 #include "support/beam_model.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/record.hpp"
 #include "support/scene_run.hpp"
 #include "traverse/scene/scene.hpp"

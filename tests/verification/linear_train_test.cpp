@@ -8,7 +8,7 @@
 
 #include "support/curve.hpp"
 #include "support/message.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace traverse::test {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/promised.hpp"
 
 namespace traverse::test {

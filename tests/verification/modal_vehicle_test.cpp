@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 
 namespace traverse::test {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 
 namespace traverse::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace traverse::test {

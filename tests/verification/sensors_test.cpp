@@ -7,7 +7,7 @@
 
 #include "support/curve.hpp"
 #include "support/message.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 
 namespace traverse::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 
 namespace traverse::test {
 namespace {

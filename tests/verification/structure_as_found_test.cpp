@@ -10,7 +10,7 @@
 #include "support/curve.hpp"
 #include "support/exact_beam.hpp"
 #include "support/exact_timoshenko.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/scene_run.hpp"
 #include "traverse/base/error.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "support/curve.hpp"
 #include "support/message.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/scene_run.hpp"
 #include "support/temporary_folder.hpp"
 

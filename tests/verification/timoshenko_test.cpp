@@ -11,7 +11,7 @@
 #include "support/beam_model.hpp"
 #include "support/curve.hpp"
 #include "support/exact_timoshenko.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 #include "support/scene_run.hpp"
 #include "support/static_case.hpp"
 

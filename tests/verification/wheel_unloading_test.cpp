@@ -6,7 +6,7 @@
 
 #include "run/low_pass.hpp"
 #include "support/curve.hpp"
-#include "support/paths.hpp"
+#include "support/folders.hpp"
 
 namespace traverse::test {
 namespace {
