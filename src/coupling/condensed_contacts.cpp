@@ -49,7 +49,7 @@ void CondensedContacts::list(train::Fleet& fleet) {
   const std::size_t vehicles = fleet.vehicles.size();
   for (std::vector<int>* of_vehicles : {&first_, &count_}) of_vehicles->resize(vehicles);
   compliances_.resize(vehicles);
-  if (order_.empty()) {  // at the start, when all ranks know all places
+  if (order_.size() != vehicles) {  // at the start, when all ranks know all places
     order_.resize(vehicles);
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     const auto x = [&](std::size_t k) { return fleet.vehicles[k].state.q[0]; };

@@ -30,6 +30,7 @@ class CondensedContacts {
   void list(train::Fleet& fleet);
   int first(int vehicle) const { return first_[vehicle]; }
   int rows(int vehicle) const { return count_[vehicle]; }
+  int size() const { return static_cast<int>(rows_.size()); }
   const train::ContactRow& row(int i) const { return rows_[i]; }
   train::ContactRows rows_of(int vehicle) const {
     return train::ContactRows(rows_).subspan(static_cast<std::size_t>(first(vehicle)),
@@ -67,7 +68,6 @@ class CondensedContacts {
   double& A(int i, int j) { return A_(band_ + i - j, j); }
   int top(int j) const { return std::max(0, j - band_); }
   int bottom(int j) const { return std::min(size() - 1, j + band_); }
-  int size() const { return static_cast<int>(rows_.size()); }
   void factor(double shift);
   void set_beam_displacement(const Eigen::VectorXd& forces);
   void subtract_A_times(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;

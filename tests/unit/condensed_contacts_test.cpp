@@ -40,6 +40,7 @@ class Contacts : public testing::Test {
     fleet_.vehicles.emplace_back(std::move(unit));
     train::MovingVehicle& vehicle = fleet_.vehicles.back();
     vehicle.scale = scale;
+    vehicle.state.q = Eigen::Vector3d(-static_cast<double>(fleet_.vehicles.size()), 0.0, 0.0);
     for (int slot : slots) {
       train::WheelContact c;
       c.vehicle = static_cast<int>(fleet_.vehicles.size()) - 1;
@@ -92,7 +93,7 @@ class Contacts : public testing::Test {
     contacts_.couple(on_beam ? &compliance_ : nullptr, 3);
   }
 
-  int rows() const { return contacts_.first(static_cast<int>(with_P_.size())); }
+  int rows() const { return contacts_.size(); }
 
   struct Dense {
     Eigen::MatrixXd H, P, W;

@@ -69,7 +69,9 @@ TEST(TrainSharing, TrainsWithCommonColumnsStayTogether) {
 
 TEST(TrainSharing, RanksHaveEqualWork) {
   const std::vector<TrainReach> trains = line_of(40);
-  for (const Portion& portion : divide(trains, {}, 4)) EXPECT_EQ(vehicles_of(portion, trains), 80.0);
+  const std::vector<Portion> portions = divide(trains, {}, 3);
+  EXPECT_LT(vehicles_of(portions[0], trains), 70.0);  // it evaluates the trains of all
+  for (const std::size_t rank : {1U, 2U}) EXPECT_NEAR(vehicles_of(portions[rank], trains), 140.0, 8.0);
 }
 
 TEST(TrainSharing, MoreRanksThanTrains) {
