@@ -14,7 +14,7 @@ import h5py
 import runs
 
 RANKS = (2, 1)
-SMALLEST = {"beam_spans": "32.0*60", "trains_from": 28795.0, "ts_max_time": 1.0, "output_interval": 0.5}
+SMALLEST = {"beam_spans": "32.0*60", "up_times": "28795,28800", "down_times": 28798, "ts_max_time": 1.0, "output_interval": 0.5}
 
 
 def line(build, folder, ranks, minutes, smallest):

@@ -12,6 +12,10 @@
 namespace traverse::recovery {
 namespace {
 
+bool is_among(const std::vector<std::size_t>& which, std::size_t station) {
+  return std::binary_search(which.begin(), which.end(), station);
+}
+
 constexpr double standing_speed = 1e-6;  // m/s: a slower load stands; rounding errors are far smaller
 
 }  // namespace
@@ -249,8 +253,9 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
   }
   for (const ElementLoad& given : loads) {
     const ElementLoad load = in_own_element(given);
-    for (const Place& place : sections_of(load.element)) sections_[place.section].add_load(load, out[place.section]);
-    if (std::abs(load.speed) > standing_speed) add_beside(load, out);
+    for (const Place& place : sections_of(load.element))
+      if (is_among(which, place.section)) sections_[place.section].add_load(load, out[place.section]);
+    if (std::abs(load.speed) > standing_speed) add_beside(load, which, out);
   }
   for (const std::size_t i : which) out[i].relative_deflection = out[i].deflection - sections_[i].support_line;
 }
@@ -272,10 +277,12 @@ std::span<const Recovery::Place> Recovery::sections_of(int element) const {
 
 // A station at a node belongs to the element on its right, but a load also passes it in the element on its left. A load
 // that stands there passes nothing: it is on the side of is_left().
-void Recovery::add_beside(const ElementLoad& load, std::vector<Response>& out) const {
+void Recovery::add_beside(const ElementLoad& load, const std::vector<std::size_t>& which,
+                          std::vector<Response>& out) const {
   const auto add_at = [&](int element, double xi) {
     for (const Place& place : sections_of(element)) {
       if (std::abs(xi - sections_[place.section].at.xi) > beam::section_tolerance) continue;
+      if (!is_among(which, place.section)) continue;
       const Forces by = jump(place.section, load);
       const bool left = is_left_of(place.section, x_of(load)), from_left = load.speed > 0.0;
       const std::size_t side = left == from_left ? 1 : 0;

@@ -86,8 +86,7 @@ class Recovery {
                 std::vector<Response>& out) {
     evaluate(v, w, a, loads, all_, out);
   }
-  /// The same for the stations `which` only, the same on every rank, which contain all those on elements with loads;
-  /// the other entries of `out` remain.
+  /// The same for the stations `which` (ascending, the same on every rank) only; the other entries of `out` remain.
   void evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
                 const std::vector<std::size_t>& which, std::vector<Response>& out);
   /// All stations, 0, 1, ...
@@ -133,7 +132,7 @@ class Recovery {
   Response evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
   /// The load as one of the element at its place: a wheel may already be beyond the element that it was assigned to.
   ElementLoad in_own_element(ElementLoad load) const;
-  void add_beside(const ElementLoad& load, std::vector<Response>& out) const;
+  void add_beside(const ElementLoad& load, const std::vector<std::size_t>& which, std::vector<Response>& out) const;
   void add_sleepers(const RecoverySection& s, const Values* values, const double* sleepers, Response& r) const;
 
   const beam::Beam& beam_;

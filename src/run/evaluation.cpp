@@ -133,7 +133,7 @@ void Evaluation::sample(const integrate::Instant& instant) {
 
 void Evaluation::subtract_support_motion() {
   const structure::SupportMotion* moved = system_.structure()->support_motion();
-  if (moved == nullptr) return;
+  if (moved == nullptr || support_lines_.empty()) return;
   for (std::size_t i = 0; i < ground_.size(); ++i) ground_[i] = moved->upward()[i].displacement;
   for (const std::size_t p : moving_probes_.now())
     now_.probes[p].relative_deflection -= support_lines_[p].height(ground_);
@@ -366,7 +366,7 @@ void Evaluation::record_once(Result& result) {
     add(exits_.datasets());
     result.tables.emplace_back("/exit/body", exits_.bodies(system_.fleet()));
   }
-  if (scene_.train.courses.size() > 1) {
+  if (!scene_.vehicles.empty() && (scene_.train.courses.size() > 1 || !scene_.output.series)) {
     add(peaks_of_trains(scene_, system_.fleet(), wheels_));
     result.tables.emplace_back("/trains/name", names_of_trains(scene_));
   }

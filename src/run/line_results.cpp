@@ -13,13 +13,17 @@ using Datasets = std::vector<results::Recorder::Dataset>;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// The outer wheels of a train at t = 0, m, and its speed.
 struct RunningTrain {
-  double rear = std::numeric_limits<double>::infinity(), front = -rear;
+  std::string name;
+  std::size_t first = 0;  // its first vehicle
   base::SpeedLaw law;
+  bool is_driven = true;  // by the law
+  // The outer wheels at t = 0, m.
+  double rear = std::numeric_limits<double>::infinity(), front = -rear;
 
-  /// The distance between the train at t and the range from `left` to `right`; 0: they overlap.
+  /// The distance between the train at t and the range from `left` to `right`; 0: they overlap; infinite: unknown.
   double distance(double t, double left, double right) const {
+    if (!is_driven) return std::numeric_limits<double>::infinity();
     const double way = law.distance(t);
     return std::max({0.0, rear + way - right, left - front - way});
   }
@@ -27,13 +31,14 @@ struct RunningTrain {
 
 std::vector<RunningTrain> running_trains(const scene::Scene& scene) {
   std::vector<RunningTrain> trains;
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
-    const std::vector<train::Course>& courses = scene.train.courses;
-    if (next < courses.size() && courses[next].first == i) trains.push_back({.law = courses[next++].speed});
+  for (const train::Course& course : scene.train.courses) trains.push_back({course.name, course.first, course.speed});
+  if (trains.empty() && !scene.vehicles.empty()) trains.push_back({"train", 0, base::SpeedLaw(scene.train.speed)});
+  for (RunningTrain& train : trains) train.is_driven = drive_of(scene.train, train.first) == train::Drive::constant;
+  for (std::size_t i = 0, k = 0; i < scene.train.vehicles.size(); ++i) {
+    if (k + 1 < trains.size() && trains[k + 1].first == i) ++k;
     for (const double x : scene::wheels_at_start(scene, i)) {
-      trains.back().rear = std::min(trains.back().rear, x);
-      trains.back().front = std::max(trains.back().front, x);
+      trains[k].rear = std::min(trains[k].rear, x);
+      trains[k].front = std::max(trains[k].front, x);
     }
   }
   return trains;
@@ -60,11 +65,11 @@ struct Peaks {
 Datasets peaks_of_trains(const scene::Scene& scene, const train::Fleet& fleet, const WheelExtremes& wheels) {
   Peaks least, greatest, unloading;
   std::vector<double> on_bridge;
-  const std::vector<train::Course>& courses = scene.train.courses;
+  const std::vector<RunningTrain> trains = running_trains(scene);
   std::size_t entry = 0, wheel = 0;  // in Fleet::wheels, and without further contact points
-  for (std::size_t k = 0; k < courses.size(); ++k) {
+  for (std::size_t k = 0; k < trains.size(); ++k) {
     const int past =
-        k + 1 < courses.size() ? fleet.members[courses[k + 1].first].unit : static_cast<int>(fleet.vehicles.size());
+        k + 1 < trains.size() ? fleet.members[trains[k + 1].first].unit : static_cast<int>(fleet.vehicles.size());
     const std::size_t first = wheel;
     for (; entry < fleet.wheels.size() && fleet.wheels[entry].vehicle < past; ++entry)
       if (!fleet.wheels[entry].is_further) ++wheel;
@@ -74,22 +79,23 @@ Datasets peaks_of_trains(const scene::Scene& scene, const train::Fleet& fleet, c
     unloading.add(of_train.unloading.value < 0.0 ? Extreme{unknown, unknown} : of_train.unloading);
   }
   const double length = scene.beam ? scene.beam->length() : 0.0;
-  for (const RunningTrain& train : running_trains(scene)) {
+  for (const RunningTrain& train : trains) {
     const bool to_the_left = train.law.direction() < 0.0;
-    on_bridge.push_back(train.law.time_of(to_the_left ? length - train.rear : -train.front));
-    on_bridge.push_back(train.law.time_of(to_the_left ? -train.front : length - train.rear));
+    const auto time_of = [&](double way) { return train.is_driven ? train.law.time_of(way) : unknown; };
+    on_bridge.push_back(time_of(to_the_left ? length - train.rear : -train.front));
+    on_bridge.push_back(time_of(to_the_left ? -train.front : length - train.rear));
   }
   Datasets sets;
   least.store("/trains/least_wheel_force", "N", sets);
   greatest.store("/trains/greatest_wheel_force", "N", sets);
   unloading.store("/trains/wheel_unloading", "1", sets);
-  if (scene.beam) sets.push_back({"/trains/on_bridge", {courses.size(), 2}, std::move(on_bridge), "s"});
+  if (scene.beam) sets.push_back({"/trains/on_bridge", {trains.size(), 2}, std::move(on_bridge), "s"});
   return sets;
 }
 
 std::vector<std::pair<std::string, std::string>> names_of_trains(const scene::Scene& scene) {
   std::vector<std::pair<std::string, std::string>> names;
-  for (const train::Course& course : scene.train.courses) names.emplace_back(course.name, std::to_string(course.first));
+  for (const RunningTrain& train : running_trains(scene)) names.emplace_back(train.name, std::to_string(train.first));
   return names;
 }
 

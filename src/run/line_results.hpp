@@ -16,7 +16,7 @@ namespace traverse::run {
 
 /// /trains/least_wheel_force, greatest_wheel_force (N), wheel_unloading, each [trains] with its _time (s), and
 /// on_bridge [trains,2] (s): from the first wheel at one end of the bridge to the last at the other, also beyond the
-/// run.
+/// run; NaN without a prescribed speed.
 std::vector<results::Recorder::Dataset> peaks_of_trains(const scene::Scene& scene, const train::Fleet& fleet,
                                                         const WheelExtremes& wheels);
 /// Name of each train, and number of its first vehicle.

@@ -101,6 +101,20 @@ class SharedTrains(unittest.TestCase):
                                capture_output=True, check=True)
                 self.assert_same(one, series(self.folder / f"on_{ranks}.h5"))
 
+    def test_no_step_is_repeated(self):
+        """At a joint of spans the penetration has a kink: that the cubic over a step opens there is no loss of contact."""
+        meeting = (SCENE.replace("[fast, slow, oncoming, last]", "[fast, oncoming]")
+                   .replace("positions: 400.0, spacing: 25.0, speed: 83.0", "positions: 700.0, spacing: 25.0, speed: 97.0")
+                   .replace("positions: 1000.0, spacing: 25.0, speed: -60.0", "positions: 1100.0, spacing: 25.0, speed: -97.0")
+                   .replace("coach*3", "coach*8").replace("coach*2", "coach*8").replace("dt: 0.01", "dt: 0.02"))
+        (self.folder / "line.yml").write_text("".join(
+            line for line in meeting.splitlines(True) if not line.startswith(("slow:", "last:"))))
+        subprocess.run(self.command(1, "meeting.h5"), cwd=self.folder, capture_output=True, check=True)
+        with h5py.File(self.folder / "meeting.h5") as results:
+            summary = results["summary"].attrs
+            self.assertEqual(summary["contact_losses"], 0)
+            self.assertLess(summary["solves"] / summary["steps"], 37)
+
     def test_ends_in_order(self):
         """After a signal to the ranks."""
         run = subprocess.Popen(self.command(2, "ended.h5", "-ts_dt", "1e-4"), cwd=self.folder, stdout=subprocess.DEVNULL,

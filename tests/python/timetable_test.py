@@ -120,6 +120,12 @@ class Timetable(unittest.TestCase):
             np.testing.assert_allclose(two[name], values, rtol=0.0, atol=1e-6 * scale, err_msg=name)
             np.testing.assert_array_equal(rest[name], values, err_msg=name)
 
+    def test_one_train(self):
+        one = self.results(LINE + f"train: {{vehicles: coach*2, spacing: 25.0, speed: {SPEED}}}\n", "one.h5", "-output_series", "false")
+        self.assertEqual(one["names"], ["train"])
+        self.assertEqual(set(one["spans/deflection_train"]), {0.0})
+        self.assertGreater(one["trains/least_wheel_force"][0], 0.0)
+
     def test_refusals(self):
         for change, message in ((("speed: 80.0, times", "positions: 3.0, speed: 80.0, times"), "up_positions"),
                                 (("speed: 80.0", "speed: 0.0"), "up_times"),
