@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/one_step_methods.hpp"
-#include "support/message.hpp"
 #include "support/folders.hpp"
+#include "support/message.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::integrate {

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "support/curve.hpp"
-#include "support/message.hpp"
 #include "support/folders.hpp"
+#include "support/message.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace traverse::test {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "support/curve.hpp"
-#include "support/message.hpp"
 #include "support/folders.hpp"
+#include "support/message.hpp"
 
 namespace traverse::test {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "support/curve.hpp"
-#include "support/message.hpp"
 #include "support/folders.hpp"
+#include "support/message.hpp"
 #include "support/scene_run.hpp"
 #include "support/temporary_folder.hpp"
 

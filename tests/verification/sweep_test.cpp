@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "support/curve.hpp"
-#include "support/message.hpp"
 #include "support/folders.hpp"
+#include "support/message.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace traverse::test {
