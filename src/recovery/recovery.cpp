@@ -47,7 +47,7 @@ Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<d
 Recovery::Recovery(Recovery&&) noexcept = default;
 Recovery::~Recovery() = default;
 
-int Recovery::element_index(std::size_t station) const { return sections_[station].at.element; }
+int Recovery::node_of(std::size_t station) const { return line_.mesh.element(sections_[station].at.element).left; }
 
 std::pair<double, double> Recovery::element_of(std::size_t station) const {
   const beam::Element& e = sections_[station].element;

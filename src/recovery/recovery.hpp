@@ -92,7 +92,7 @@ class Recovery {
   /// All stations, 0, 1, ...
   const std::vector<std::size_t>& all() const { return all_; }
   /// The left node of a station's element.
-  int node_of(std::size_t station) const { return line_.mesh.element(element_index(station)).left; }
+  int node_of(std::size_t station) const;
 
   const std::vector<double>& stations() const { return stations_; }
   StationForms forms(std::size_t station) const;
@@ -128,7 +128,6 @@ class Recovery {
   using Values = std::array<double, 6>;
 
   void gather(const double* v, const double* w, const double* a, const std::vector<std::size_t>& which);
-  int element_index(std::size_t station) const;
   Response evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
   /// The load as one of the element at its place: a wheel may already be beyond the element that it was assigned to.
   ElementLoad in_own_element(ElementLoad load) const;
