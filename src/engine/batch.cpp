@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "engine/processor.hpp"
@@ -38,9 +40,11 @@ class Batch {
   void start_wheels();
   void set_track();
   void prepare_peaks();
+  void watch_cars();
   void set_step(double ds);
   void activate_vehicles(double distance);
   void store_responses();
+  void add_wheels(std::size_t lane, BatchResult& result) const;
   std::size_t rows(std::size_t count) const { return count * arrays_.lanes; }
 
   const BatchPlan& plan_;
@@ -60,7 +64,8 @@ class Batch {
   double ds_ = 0.0, ds_before_ = 0.0;
   std::size_t unknowns_ = 0;
   double* roots_ = nullptr;
-  std::vector<std::vector<double>> samples_;  // for each run
+  std::vector<std::vector<double>> samples_, wheel_samples_;  // for each run
+  std::vector<LinearForm> cars_;
 };
 
 std::vector<BatchRun> Batch::filled(std::span<const BatchRun> runs) {
@@ -93,7 +98,8 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
       arrays_(blocks_of(runs_), structure_.line_.per_node,
               structure_.beam_.rail() == nullptr ? structure_.line_.model.surface_height : 0.0),
       beam_(structure_lanes_.task()),
-      samples_(runs.size()) {
+      samples_(runs.size()),
+      wheel_samples_(runs.size()) {
   task_.train = &train_;
   task_.beam = &beam_;
   task_.peaks = &peaks_;
@@ -238,9 +244,11 @@ void Batch::prepare_peaks() {
   for (double*& force : peaks_.force) force = arrays_.add(wheels);
   peaks_.peak = arrays_.add(3 * n);
   peaks_.peak_time = arrays_.add(3 * n);
-  peaks_.least = arrays_.add(1);
   peaks_.greatest = arrays_.add(1);
-  std::fill_n(peaks_.least, arrays_.lanes, 1e300);
+  peaks_.at_start = arrays_.add(wheels);
+  peaks_.least = arrays_.add(wheels);
+  peaks_.least_time = arrays_.add(wheels);
+  std::fill_n(peaks_.least, rows(wheels), 1e300);
   std::fill_n(peaks_.greatest, arrays_.lanes, -1e300);
   peaks_.contact_lost_time = arrays_.add(wheels);
   std::fill_n(peaks_.contact_lost_time, rows(wheels), -1.0);
@@ -252,6 +260,32 @@ void Batch::prepare_peaks() {
   peaks_.lag = structure_lanes_.lag();
   peaks_.largest_residual_root = arrays_.add(arrays_.blocks.size());
   peaks_.coordinates_at_largest = arrays_.add(static_cast<std::size_t>(train_.coordinates));
+  task_.rotations = static_cast<int>(structure_lanes_.rotations().size());
+  task_.rotation = structure_lanes_.rotations().data();
+  for (double** of : {&peaks_.rotation, &peaks_.rotation_time}) *of = arrays_.add(structure_.rotations_.size());
+  watch_cars();
+}
+
+/// Sets the forms of the bodies' vertical accelerations.
+void Batch::watch_cars() {
+  for (std::size_t k = 0; k < runs_.front().cars.size(); ++k) {
+    const std::size_t vehicle = runs_.front().cars[k].vehicle;
+    const VehicleBlock& b = arrays_.blocks[vehicle];
+    const auto count = static_cast<std::size_t>(b.freedom);
+    int* row = arrays_.add_integers(count);
+    std::iota(row, row + count, b.first_coordinate);
+    double* coefficient = arrays_.add(count);
+    for (std::size_t l = 0; l < arrays_.lanes; ++l) {
+      const BodyOfVehicle& car = runs_[l].cars[k];
+      const Eigen::MatrixXd& B = runs_[l].fleet->vehicles[vehicle].dynamics->linear()->matrices().B;
+      for (std::size_t i = 0; i < count; ++i)
+        coefficient[rows(i) + l] = B(3 * car.body + 1, static_cast<Eigen::Index>(i));
+    }
+    cars_.push_back({b.freedom, row, coefficient, nullptr});
+  }
+  task_.cars = static_cast<int>(cars_.size());
+  task_.car = cars_.data();
+  for (double** of : {&peaks_.car, &peaks_.car_time}) *of = arrays_.add(cars_.size());
 }
 
 void Batch::set_step(double ds) {
@@ -272,6 +306,10 @@ void Batch::store_responses() {
     for (const Response response : plan_.stored)
       for (std::size_t p = 0; p < n; ++p)
         samples_[l].push_back(peaks_.response[kept_samples - 1][rows(static_cast<std::size_t>(response) * n + p) + l]);
+  if (!plan_.stores_wheels) return;
+  for (std::size_t l = 0; l < count_; ++l)
+    for (std::size_t j = 0; j < static_cast<std::size_t>(train_.wheels); ++j)
+      wheel_samples_[l].push_back(peaks_.force[kept_samples - 1][rows(j) + l]);
 }
 
 void Batch::run() {
@@ -321,17 +359,33 @@ std::vector<BatchResult> Batch::results() const {
       return base::Extreme{peaks_.peak[rows(row) + l], peaks_.peak_time[rows(row) + l]};
     };
     for (std::size_t p = 0; p < n; ++p) r.peaks.push_back({peak(p), peak(n + p), peak(2 * n + p)});
+    for (std::size_t k = 0; k < structure_.rotations_.size(); ++k)
+      r.rotations.push_back({peaks_.rotation[rows(k) + l], peaks_.rotation_time[rows(k) + l], k});
+    for (std::size_t k = 0; k < cars_.size(); ++k)
+      r.car_accelerations.push_back({peaks_.car[rows(k) + l], peaks_.car_time[rows(k) + l], k});
     r.samples = samples_[l];
-    r.least_wheel_force = peaks_.least[l];
-    r.greatest_wheel_force = peaks_.greatest[l];
-    r.contact_losses = peaks_.contact_loss_count[l];
-    r.longest_loss = peaks_.longest_contact_loss[l];
+    r.wheel_samples = wheel_samples_[l];
+    add_wheels(l, r);
     for (const VehicleBlock& b : arrays_.blocks)
       for (int i = 0; i < b.freedom; ++i)
         r.coordinates_at_largest.push_back(
             peaks_.coordinates_at_largest[rows(static_cast<std::size_t>(b.first_coordinate + i)) + l]);
   }
   return results;
+}
+
+void Batch::add_wheels(std::size_t lane, BatchResult& r) const {
+  r.least_wheel_force = std::numeric_limits<double>::infinity();
+  r.greatest_wheel_force = peaks_.greatest[lane];
+  r.contact_losses = peaks_.contact_loss_count[lane];
+  r.longest_loss = peaks_.longest_contact_loss[lane];
+  for (std::size_t j = 0; j < static_cast<std::size_t>(train_.wheels); ++j) {
+    const std::size_t at = rows(j) + lane;
+    const double least = peaks_.least[at], start = peaks_.at_start[at], lost = peaks_.contact_lost_time[at];
+    r.least_wheel_force = std::min(r.least_wheel_force, least);
+    if (start > 0.0) r.unloading.raise(1.0 - least / start, peaks_.least_time[at], j);
+    if (lost >= 0.0) r.longest_loss = std::max(r.longest_loss, runs_[lane].end_time - lost);
+  }
 }
 
 std::vector<BatchResult> run_batch(const BatchPlan& plan, std::span<const BatchRun> runs) {

@@ -22,6 +22,12 @@
 
 namespace traverse::engine {
 
+/// A nodal unknown, or its difference to another one.
+struct NodalRotation {
+  int unknown = 0, other = none;
+  static constexpr int none = -1;
+};
+
 /// The structure, its surface and the probes of one run or of several.
 class BatchStructure {
  public:
@@ -29,9 +35,11 @@ class BatchStructure {
   static std::string obstacle(const beam::Beam& beam, const structure::ModalBridge* modal);
 
   /// The fleet's wheels at their positions on the structure; rest: nodal displacements at rest, without the wheels;
-  /// probes in m; gravity for the self-weight, m/s2 (0: none). Beam and modes must outlive this object.
+  /// probes in m; gravity for the self-weight, m/s2 (0: none); rotations: nodal rotations that are observed. Beam and
+  /// modes must outlive this object.
   BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
-                 const std::vector<double>& rest, const std::vector<double>& probes, double gravity);
+                 const std::vector<double>& rest, const std::vector<double>& probes, double gravity,
+                 const std::vector<NodalRotation>& rotations = {});
   /// Whether the other structure has the same mesh, supports and probes, so that both can be in lanes of one batch.
   bool same_layout(const BatchStructure& other) const;
   BatchStructure(const BatchStructure&) = delete;
@@ -44,6 +52,7 @@ class BatchStructure {
   void read_modes(const std::vector<double>& rest);
   void find_columns();
   void add_probe(const recovery::Recovery& recovery, std::size_t station);
+  void add_rotation(const NodalRotation& rotation, const std::vector<double>& rest);
   void find_inner_responses(const recovery::Recovery& recovery, std::size_t station, int element, ProbeForms& p,
                             std::vector<double>& inside) const;
   const double* keep(const std::vector<double>& numbers) { return numbers_.emplace_back(numbers).data(); }
@@ -60,8 +69,9 @@ class BatchStructure {
   int offset_[most_nodal] = {};  // offset of each unknown of an element from its first column
   Surfaces surfaces_;
   std::vector<ProbeForms> probes_;
-  std::deque<std::vector<double>> numbers_;  // storage for the coefficients of probes_
-  std::deque<std::vector<int>> lists_;       // storage for the indices of unknowns of probes_
+  std::vector<LinearForm> rotations_;
+  std::deque<std::vector<double>> numbers_;  // storage for the coefficients of probes_ and rotations_
+  std::deque<std::vector<int>> lists_;       // storage for the indices of their unknowns
   std::vector<double> kinks_;
   bool has_shear_ = false;
 };
@@ -74,6 +84,12 @@ struct EqualSteps {
   bool stores = false;        // whether responses at the end are stored
 };
 
+/// A body of a vehicle of the fleet.
+struct BodyOfVehicle {
+  std::size_t vehicle = 0;
+  Eigen::Index body = 0;
+};
+
 /// One run: a train in its initial state, on its own track. The vehicles of all runs differ in parameter values only,
 /// and their structures have the same layout.
 struct BatchRun {
@@ -84,12 +100,14 @@ struct BatchRun {
   // `speed`.
   const std::vector<double>* state = nullptr;
   double speed = 0.0, end_time = 0.0;  // m/s; s: end of the peaks' interval
+  std::span<const BodyOfVehicle> cars = {};  // bodies whose vertical accelerations are observed, as many in all runs
 };
 
 enum class Response { deflection, acceleration, moment };
 
 struct BatchPlan {
   std::vector<Response> stored;  // at the start and at the end of the series that store
+  bool stores_wheels = false;    // normal forces of all wheels there too
   base::Method method;           // coefficients for a step of 1 s, scaled to each run's step
   std::vector<EqualSteps> equal_steps;
   double last_change = 1e-7;  // of a force in the last pass of a stage, over the vehicle's weight
@@ -99,6 +117,9 @@ struct BatchPlan {
 struct BatchResult : base::PassagePeaks {
   RunFailure failure = none;
   std::vector<double> samples;  // [instant][stored response][probe]; deflections relative to the line of the supports
+  std::vector<double> wheel_samples;                      // [instant][wheel], N
+  std::vector<base::Extreme> rotations, car_accelerations;  // largest magnitudes: rad; m/s2
+  base::Extreme unloading;                                // largest loss of a wheel's force, relative to its start
   std::vector<double> coordinates_at_largest;  // for each vehicle the coordinates at its largest linearisation residual
 };
 

@@ -112,11 +112,28 @@ inline Row extremum(const double* at, double* const* response, int i, int m, con
   return base::extreme_between(at, y, m, by, five, behind);
 }
 
-inline void record_peak(const BatchTask& t, int i, RowMask counts, Row value, Row time) {
-  Row &peak = rows(t.peaks->peak)[i], &at = rows(t.peaks->peak_time)[i];
+/// Raises row i of `peaks` to a value with its time.
+inline void raise(double* peaks, double* times, int i, RowMask counts, Row value, Row time) {
+  Row &peak = rows(peaks)[i], &at = rows(times)[i];
   const RowMask larger = counts & (value > peak);
   peak = larger ? value : peak;
   at = larger ? time : at;
+}
+
+inline void record_peak(const BatchTask& t, int i, RowMask counts, Row value, Row time) {
+  raise(t.peaks->peak, t.peaks->peak_time, i, counts, value, time);
+}
+
+/// Records the magnitudes of linear combinations of rows.
+template <class Entry>
+void record_forms(const LinearForm* forms, int count, const double* values, double* peaks, double* times,
+                  RowMask counts, Row time) {
+  for (int k = 0; k < count; ++k) {
+    const LinearForm& form = forms[k];
+    Row value = form.constant != nullptr ? spread(entries<Entry>(form.constant)[0]) : Row{};
+    for (int i = 0; i < form.count; ++i) value += entries<Entry>(form.coefficient)[i] * rows(values)[form.row[i]];
+    raise(peaks, times, k, counts, Rows::magnitude(value), time);
+  }
 }
 
 /// Response i, if its magnitude at sample m is larger than at the neighbouring samples.
@@ -181,6 +198,13 @@ inline bool smooth(const BatchTask& t, double x, double from, double to) {
   return true;
 }
 
+inline void record_least(const BatchTask& t, int wheel, RowMask counts, Row force, Row time) {
+  Row &least = rows(t.peaks->least)[wheel], &at = rows(t.peaks->least_time)[wheel];
+  const RowMask smaller = counts & (force < least);
+  least = smaller ? force : least;
+  at = smaller ? time : at;
+}
+
 /// Extremes of wheel forces between steps, interpolated near sample m.
 inline void interpolate_forces(const BatchTask& t, int m) {
   const PeakState& s = *t.peaks;
@@ -191,7 +215,7 @@ inline void interpolate_forces(const BatchTask& t, int m) {
   for (int j = 0; j < t.train->wheels; ++j) {
     const auto y = [&](int k) { return rows(s.force[k])[j]; };
     const Row F = y(m);
-    if (!Rows::any((F > near_peak * row(s.greatest)) | (near_peak * F < row(s.least)))) continue;
+    if (!Rows::any((F > near_peak * row(s.greatest)) | (near_peak * F < rows(s.least)[j]))) continue;
     const Row before = F - y(by.left), after = y(by.right) - F;
     const RowMask turns =
         counts & (before * after <= Row{}) & ((F - y(m - 1)) * (y(m + 1) - F) <= Row{}) & (after != Row{});
@@ -203,8 +227,8 @@ inline void interpolate_forces(const BatchTask& t, int m) {
       for (int i = 1; i < kept_samples; ++i) touched &= y(i) > Row{};
       top = touched ? extremum(at, s.force, j, m, by, true, behind) : top;
     }
-    Row &least = rows(s.least)[0], &greatest = rows(s.greatest)[0];
-    least = turns & (top < least) & (top > Row{}) ? top : least;
+    record_least(t, j, turns & (top > Row{}), top, (at[m] + behind) / row(t.speed));
+    Row& greatest = rows(s.greatest)[0];
     greatest = turns & (top > greatest) ? top : greatest;
   }
 }
@@ -229,10 +253,12 @@ inline void record_losses(const BatchTask& t, RowMask counts) {
 
 inline void update_wheel_forces(const BatchTask& t, RowMask counts, bool moved) {
   PeakState& s = *t.peaks;
-  Row *now = rows(rotate_samples(s.force)), &least = rows(s.least)[0], &greatest = rows(s.greatest)[0];
+  Row *now = rows(rotate_samples(s.force)), &greatest = rows(s.greatest)[0];
+  const Row time = s.distance[latest] / row(t.speed);
   for (int j = 0; j < t.train->wheels; ++j) {
     const Row force = now[j] = rows(t.train->normal)[j];
-    least = counts & (force < least) ? force : least;
+    if (!moved) rows(s.at_start)[j] = force;
+    record_least(t, j, counts, force, time);
     greatest = counts & (force > greatest) ? force : greatest;
   }
   if (!moved) return;
@@ -266,7 +292,14 @@ inline void sample(const BatchTask& t, double distance, bool moved) {
   ++s.samples_since_kink;
   ++s.samples;
   const RowMask counts = runs_until(t, distance);
-  t.beam->shared ? evaluate_probes<double>(t, before) : evaluate_probes<Row>(t, before);
+  const Row time = distance / row(t.speed);
+  const auto observe_structure = [&](auto entry) {
+    using Entry = decltype(entry);
+    evaluate_probes<Entry>(t, before);
+    record_forms<Entry>(t.rotation, t.rotations, t.beam->v, s.rotation, s.rotation_time, counts, time);
+  };
+  t.beam->shared ? observe_structure(double{}) : observe_structure(Row{});
+  record_forms<Row>(t.car, t.cars, t.train->a[0], s.car, s.car_time, counts, time);
   update_probe_peaks(t, counts);
   update_wheel_forces(t, counts, moved);
   if (moved) record_departures(t);

@@ -66,7 +66,8 @@ std::string BatchStructure::obstacle(const beam::Beam& beam, const structure::Mo
 }
 
 BatchStructure::BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
-                               const std::vector<double>& rest, const std::vector<double>& probes, double gravity)
+                               const std::vector<double>& rest, const std::vector<double>& probes, double gravity,
+                               const std::vector<NodalRotation>& rotations)
     : beam_(beam),
       modal_(modal),
       line_(beam.running()),
@@ -84,6 +85,7 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const structure::ModalBri
   find_columns();
   const recovery::Recovery recovery(beam, probes, gravity);
   for (std::size_t i = 0; i < probes.size(); ++i) add_probe(recovery, i);
+  for (const NodalRotation& rotation : rotations) add_rotation(rotation, rest);
 }
 
 bool BatchStructure::same_layout(const BatchStructure& other) const {
@@ -94,6 +96,9 @@ bool BatchStructure::same_layout(const BatchStructure& other) const {
   const auto same_probe = [](const ProbeForms& a, const ProbeForms& b) {
     return a.count == b.count && std::equal(a.unknown, a.unknown + a.count, b.unknown) && a.x == b.x &&
            a.from == b.from && a.to == b.to;
+  };
+  const auto same_rotation = [](const LinearForm& a, const LinearForm& b) {
+    return a.count == b.count && std::equal(a.row, a.row + a.count, b.row);
   };
   if (task_.block != other.task_.block || task_.columns != other.task_.columns ||
       task_.unknowns != other.task_.unknowns || task_.elements != other.task_.elements ||
@@ -106,7 +111,9 @@ bool BatchStructure::same_layout(const BatchStructure& other) const {
     if (!same_element(e)) return false;
   return held_ == other.held_ && first_column_ == other.first_column_ &&
          std::equal(std::begin(offset_), std::end(offset_), std::begin(other.offset_)) && kinks_ == other.kinks_ &&
-         std::equal(probes_.begin(), probes_.end(), other.probes_.begin(), other.probes_.end(), same_probe);
+         std::equal(probes_.begin(), probes_.end(), other.probes_.begin(), other.probes_.end(), same_probe) &&
+         std::equal(rotations_.begin(), rotations_.end(), other.rotations_.begin(), other.rotations_.end(),
+                    same_rotation);
 }
 
 void BatchStructure::read_matrices(const std::vector<double>& rest) {
@@ -178,6 +185,30 @@ void BatchStructure::add_probe(const recovery::Recovery& recovery, std::size_t s
   std::vector<double> inside(ProbeForms::inner, 0.0);
   if (beam_.rail() == nullptr && modal_ == nullptr) find_inner_responses(recovery, station, forms.element, p, inside);
   p.inside = keep(inside);
+}
+
+void BatchStructure::add_rotation(const NodalRotation& rotation, const std::vector<double>& rest) {
+  std::vector<int>& rows = lists_.emplace_back();
+  std::vector<double> coefficients;
+  double constant = 0.0;
+  const auto add = [&](int unknown, double sign) {
+    if (unknown == NodalRotation::none) return;
+    if (modal_ == nullptr) {
+      rows.push_back(unknown);
+      coefficients.push_back(sign);
+      return;
+    }
+    constant += sign * rest[static_cast<std::size_t>(unknown)];
+    coefficients.resize(modal_->modes(), 0.0);
+    for (std::size_t i = 0; i < coefficients.size(); ++i) coefficients[i] += sign * modal_->shape(i)[unknown];
+  };
+  add(rotation.unknown, 1.0);
+  add(rotation.other, -1.0);
+  if (modal_ != nullptr) {
+    rows.resize(coefficients.size());
+    std::iota(rows.begin(), rows.end(), 0);
+  }
+  rotations_.push_back({static_cast<int>(rows.size()), rows.data(), keep(coefficients), keep({constant})});
 }
 
 /// Fits the polynomials of both sides to as many loads as they have coefficients.

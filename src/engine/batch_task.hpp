@@ -102,6 +102,13 @@ struct ProbeForms {
   const double* inside = nullptr;
 };
 
+/// A linear combination of rows whose largest magnitude is observed.
+struct LinearForm {
+  int count = 0;
+  const int* row = nullptr;
+  const double *coefficient = nullptr, *constant = nullptr;  // entries; null: no constant
+};
+
 inline constexpr int kept_samples = base::samples_kept;
 
 /// The observed motion of the runs: rows of the latest samples, peaks.
@@ -112,7 +119,10 @@ struct PeakState {
   double* force[kept_samples] = {};              // normal, of all wheels
   double* peak = nullptr;                        // [deflections, accelerations, moments]: magnitudes
   double* peak_time = nullptr;                   // s
-  double *least = nullptr, *greatest = nullptr;  // N: a row
+  double* greatest = nullptr;                    // N: a row, of all wheels
+  double *at_start = nullptr, *least = nullptr, *least_time = nullptr;  // N, N, s: a row for each wheel
+  // m/s2 or rad, s: rows for each of BatchTask::rotation, and for each of BatchTask::car.
+  double *rotation = nullptr, *rotation_time = nullptr, *car = nullptr, *car_time = nullptr;
   double* contact_lost_time = nullptr;           // s: for each wheel; negative: in contact
   double *contact_loss_count = nullptr, *longest_contact_loss = nullptr;  // rows: 1; s
   // N m, for each probe: moment from loads and inertia inside the element, before and after the lag of b M' damping
@@ -139,8 +149,9 @@ struct BatchTask {
   double* failed = nullptr;             // a row: RunFailure
   double* work = nullptr;               // two rows for each coordinate
 
-  int probes = 0, kinks = 0;
+  int probes = 0, kinks = 0, rotations = 0, cars = 0;
   const ProbeForms* probe = nullptr;
+  const LinearForm *rotation = nullptr, *car = nullptr;  // of BeamTask::v; of TrainTask::a[0], whose entries are rows
   const double* kink = nullptr;   // m: stations with a kink of the surface, ascending
   const double* roots = nullptr;  // a row for each coordinate: train::residual_roots
   PeakState* peaks = nullptr;

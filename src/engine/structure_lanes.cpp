@@ -42,6 +42,12 @@ StructureLanes::StructureLanes(std::span<const BatchStructure* const> of_lanes)
   task_.by_mass = row_of([](const BatchStructure& one) { return one.by_mass_; });
   task_.by_stiffness = row_of([](const BatchStructure& one) { return one.by_stiffness_; });
   for (std::size_t i = 0; i < first.probes_.size(); ++i) add_probe(i);
+  for (std::size_t i = 0; i < first.rotations_.size(); ++i) {
+    LinearForm& form = rotations_.emplace_back(first.rotations_[i]);
+    form.coefficient = entries(static_cast<std::size_t>(form.count),
+                               [i](const BatchStructure& one) { return one.rotations_[i].coefficient; });
+    form.constant = entries(1, [i](const BatchStructure& one) { return one.rotations_[i].constant; });
+  }
   for (std::size_t lane = 0; lane < of_lanes_.size(); ++lane) {
     first_surface_.push_back(task_.shared ? 0 : surfaces_.size());
     if (task_.shared && lane > 0) continue;

@@ -87,6 +87,7 @@ class StructureLanes {
   /// The number of rows of BeamTask::factor.
   std::size_t factor_size() const { return matrices_ ? matrices_->factor_size() : 0; }
   const std::vector<ProbeForms>& probes() const { return probes_; }
+  const std::vector<LinearForm>& rotations() const { return rotations_; }
   const std::vector<SurfaceTable>& surfaces() const { return surfaces_; }
   /// The index of the surface of a lane's wheels with this radius, m.
   std::size_t surface(std::size_t lane, double radius) const;
@@ -107,6 +108,7 @@ class StructureLanes {
   BeamTask task_;
   std::optional<MatrixLanes> matrices_;  // by elements
   std::vector<ProbeForms> probes_;
+  std::vector<LinearForm> rotations_;
   std::vector<SurfaceTable> surfaces_;
   std::vector<std::size_t> first_surface_;  // of each lane
   std::vector<std::unique_ptr<Aligned>> numbers_;

@@ -1,8 +1,10 @@
 // Batches of linear vehicles in the lanes of vectors; what does not converge there, or needs mechanisms, is run by
 // itself.
 #include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "ensemble/batch_limits.hpp"
 #include "ensemble/case_batch.hpp"
 #include "ensemble/engines.hpp"
 #include "ensemble/single_cases.hpp"
@@ -14,7 +16,9 @@ namespace {
 class BatchEngine : public Engine {
  public:
   BatchEngine(CaseSet& cases, std::unique_ptr<CaseBatch> lanes)
-      : cases_(cases), lanes_(std::move(lanes)), static_deflection_(lanes_->static_deflection()), single_(cases) {}
+      : cases_(cases), lanes_(std::move(lanes)), static_deflection_(lanes_->static_deflection()), single_(cases) {
+    if (cases.scene().has_run_limits()) limits_.emplace(cases.scene(), *lanes_, cases.cutoff_frequency());
+  }
 
   std::vector<CaseResult> run(std::size_t train, std::span<const Member> members,
                               const std::function<void(double)>& reached) override;
@@ -22,13 +26,16 @@ class BatchEngine : public Engine {
   double cost() const override { return cases_.seconds_in_batches(); }
   bool merge(const Engine& other) override {
     const auto* batch = dynamic_cast<const BatchEngine*>(&other);
-    return batch != nullptr && lanes_->merge(*batch->lanes_);
+    return batch != nullptr && steps().stored_each == batch->steps().stored_each && lanes_->merge(*batch->lanes_);
   }
   long separate_runs() const override { return separate_runs_; }
 
  private:
+  CaseBatch::Steps steps() const { return limits_ ? limits_->steps() : lanes_->steps(); }
+
   CaseSet& cases_;
   std::unique_ptr<CaseBatch> lanes_;
+  std::optional<BatchLimits> limits_;
   std::vector<double> static_deflection_;  // m
   SingleEngine single_;
   long separate_runs_ = 0;
@@ -43,8 +50,9 @@ std::vector<CaseResult> BatchEngine::run(std::size_t train, std::span<const Memb
         {own.lanes_.get(), {one.speed, own.cases_.duration(train, one.speed), one.seed, one.speed_of_steps()}});
   }
   std::vector<CaseResult> results;
+  const CaseBatch::Steps steps = static_cast<const BatchEngine&>(*members.front().engine).steps();
   for (const engine::BatchResult& batched :
-       CaseBatch::ready(std::span<const CaseBatch::Member>(batch), batch.front().lanes->steps()).run()) {
+       CaseBatch::ready(std::span<const CaseBatch::Member>(batch), steps).run()) {
     if (run::caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const Member& member = members[results.size()];
     auto& own = static_cast<BatchEngine&>(*member.engine);
@@ -58,6 +66,8 @@ std::vector<CaseResult> BatchEngine::run(std::size_t train, std::span<const Memb
     CaseResult& result = results.emplace_back();
     static_cast<base::PassagePeaks&>(result) = batched;
     result.static_deflection = own.static_deflection_;
+    if (own.limits_)
+      result.evaluated = own.limits_->evaluate(batch[results.size() - 1].run, batched, own.static_deflection_);
     result.outside_trials = batched.contact_losses > 0.0 && !model.trials_lost_contact;
     result.ended = true;
   }
@@ -70,8 +80,6 @@ std::unique_ptr<Engine> batch_engine_for(CaseSet& cases, std::string& why) {
   const scene::Scene& scene = cases.of(0, {cases.speeds().front(), {}});
   if (scene.sweep->lanes == 0)
     why = "sweep_lanes is 0";
-  else if (scene.has_run_limits())
-    why = "the check of limits needs single runs";
   if (!why.empty()) return nullptr;
   double distance = 0.0;
   for (const double speed : cases.speeds())

@@ -8,6 +8,7 @@
 #include "engine/speed_class.hpp"
 #include "engine/train_arrays.hpp"
 #include "integrate/integrators.hpp"
+#include "run/limit_check.hpp"
 #include "run/passage.hpp"
 #include "train/linear_dynamics.hpp"
 
@@ -74,8 +75,15 @@ void CaseBatch::set_up() {
   for (const train::WheelContact& c : fleet_.wheels) wheels_.push_back(fleet_.coordinates(c).x());
   state_.resize(2 * static_cast<std::size_t>(system_.structure()->unknowns()));
   const double gravity = scene_.self_weight ? scene_.gravity : 0.0;
+  std::vector<engine::NodalRotation> rotations;
+  if (scene_.limits_quantity("end_rotation") || scene_.limits_quantity("joint_rotation"))
+    for (const auto& [unknown, other] : run::DeckRotations(*shared_.beam).differences())
+      rotations.push_back({unknown, other});
   structure_ = std::make_shared<const engine::BatchStructure>(*shared_.beam, modal(), fleet_, unloaded_,
-                                                              scene_.output.probes, gravity);
+                                                              scene_.output.probes, gravity, rotations);
+  const run::CarAccelerations cars(fleet_);
+  if (scene_.limits_quantity("car_acceleration"))
+    for (const auto& [vehicle, body] : cars.bodies()) cars_.push_back({vehicle, body});
   plan_.level_until = scene_.profile.level() && !system_.structure()->deformed_without_traffic()
                           ? shared_.beam->running().mesh.start()
                           : -1e300;
@@ -138,11 +146,13 @@ base::Method method_of(const scene::Scene& scene) {
 CaseBatch::Steps CaseBatch::steps() const { return {method_of(scene_), *scene_.model.step}; }
 
 double CaseBatch::spacing(const Steps& steps, double speed) {
-  return steps.longest * engine::speed_of_class(engine::speed_class(speed));
+  return static_cast<double>(steps.stored_each) * steps.longest * engine::speed_of_class(engine::speed_class(speed));
 }
 
-void CaseBatch::Ready::add_equal_steps(const std::vector<double>& events, double ds, double distance,
+void CaseBatch::Ready::add_equal_steps(const std::vector<double>& events, double spacing, double distance,
                                        const Steps& steps) {
+  const double ds = spacing / static_cast<double>(steps.stored_each);
+  const bool stores_any = !steps.stored.empty() || steps.stores_wheels;
   std::vector<engine::EqualSteps>& equal_steps = plan_.equal_steps;
   double from = 0.0;
   long stored = 0;
@@ -152,14 +162,14 @@ void CaseBatch::Ready::add_equal_steps(const std::vector<double>& events, double
     from = to;
   };
   const auto store_until = [&](double to) {  // also adds the series of equal steps up to `to`
-    if (steps.stored.empty()) return;
-    for (double next = static_cast<double>(stored + 1) * ds; next < to - same_position;
-         next = static_cast<double>(++stored + 1) * ds)
+    if (!stores_any) return;
+    for (double next = static_cast<double>(stored + 1) * spacing; next < to - same_position;
+         next = static_cast<double>(++stored + 1) * spacing)
       add(next, false, true);
   };
   for (const double event : events) {
     store_until(event);
-    const bool stores = !steps.stored.empty() && static_cast<double>(stored + 1) * ds < event + same_position;
+    const bool stores = stores_any && static_cast<double>(stored + 1) * spacing < event + same_position;
     add(event, true, stores);
     stored += stores ? 1 : 0;
   }
@@ -181,16 +191,18 @@ CaseBatch::Ready CaseBatch::ready(std::span<const Member> members, const Steps& 
   ready.plan_ = first.plan_;
   ready.plan_.method = steps.method;
   ready.plan_.stored = steps.stored;
+  ready.plan_.stores_wheels = steps.stores_wheels;
   ready.plan_.last_change = steps.last_change;
-  const LaneRun& any = members.front().run;
-  const double ds = spacing(steps, any.step_speed > 0.0 ? any.step_speed : any.speed);
+  const double stored_every = spacing(steps, members.front().run.speed_of_steps());
+  const double ds = stored_every / static_cast<double>(steps.stored_each);
   double distance = 0.0;
   for (const Member& member : members) distance = std::max(distance, member.run.speed * member.run.end);
-  ready.add_equal_steps(first.events(distance), ds, distance, steps);
+  ready.add_equal_steps(first.events(distance), stored_every, distance, steps);
   for (const auto& [lanes, run] : members) {
     ready.tracks_.push_back(lanes->track(run.seed, distance + ds));
     ready.runs_.push_back(
-        {lanes->structure_.get(), &lanes->fleet_, ready.tracks_.back().get(), &lanes->state_, run.speed, run.end});
+        {lanes->structure_.get(), &lanes->fleet_, ready.tracks_.back().get(), &lanes->state_, run.speed, run.end,
+         lanes->cars_});
   }
   return ready;
 }

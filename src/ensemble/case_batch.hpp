@@ -23,6 +23,8 @@ struct LaneRun {
   double speed = 0.0, end = 0.0;      // speed in m/s; duration in s
   std::optional<std::uint64_t> seed;  // seed of its track; none: the scene's track
   double step_speed = 0.0;            // m/s: the speed whose steps the run has; 0: its own
+
+  double speed_of_steps() const { return step_speed > 0.0 ? step_speed : speed; }
 };
 
 /// The method of a sweep's runs, with its coefficients for a step of 1 s.
@@ -44,6 +46,8 @@ class CaseBatch {
     bool trial = false;    // all runs have the same distance, whose end is sampled exactly; a batch may have one run
     /// Responses that are stored at positions at the distance `spacing`, at which time steps end too.
     std::vector<engine::Response> stored = {};
+    bool stores_wheels = false;  // normal forces of the wheels too
+    long stored_each = 1;        // `spacing` in steps
     double last_change = engine::BatchPlan().last_change;  // BatchPlan
   };
   /// The steps that the scene defines.
@@ -55,7 +59,7 @@ class CaseBatch {
 
    private:
     friend class CaseBatch;
-    void add_equal_steps(const std::vector<double>& events, double ds, double distance, const Steps& steps);
+    void add_equal_steps(const std::vector<double>& events, double spacing, double distance, const Steps& steps);
 
     engine::BatchPlan plan_;
     std::vector<std::shared_ptr<const track::HeightTable>> tracks_;
@@ -63,6 +67,9 @@ class CaseBatch {
   };
   /// At most engine::widest runs with steps of one step group (engine/speed_class.hpp).
   Ready ready(std::span<const LaneRun> runs, const Steps& steps);
+  const train::Fleet& fleet() const { return fleet_; }
+  const beam::Beam& beam() const { return *shared_.beam; }
+  std::size_t wheels() const { return wheels_.size(); }
   /// Distance, m, between the positions at which runs of this speed's step group store responses.
   static double spacing(const Steps& steps, double speed);
   /// A run of a common batch of trains with different parameters. `lanes` of all members were merged with the same
@@ -107,7 +114,8 @@ class CaseBatch {
   std::vector<double> state_;    // initial state of the bridge, v and w
   std::shared_ptr<const engine::BatchStructure> structure_;
   engine::BatchPlan plan_;
-  std::vector<double> kinks_;  // m: stations at which the surface has a kink
+  std::vector<double> kinks_;                  // m: stations at which the surface has a kink
+  std::vector<engine::BodyOfVehicle> cars_;  // whose accelerations have a limit
 };
 
 }  // namespace traverse::ensemble

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integrate/modal_motion.hpp"
 #include "run/deck_acceleration.hpp"
@@ -17,8 +18,7 @@ MovingForceLimits::MovingForceLimits(const scene::Scene& scene, run::SharedBeam&
       cutoff_frequency_(cutoff_frequency),
       by_modes_(shared.modal->modes() < shared.modal->probes().count),
       count_(by_modes_ ? shared.modal->modes() : shared.modal->probes().count),
-      rotates_(std::any_of(scene.limits.begin(), scene.limits.end(),
-                           [](const options::VerdictLimit& limit) { return limit.quantity.ends_with("_rotation"); })),
+      rotates_(scene.limits_quantity("end_rotation") || scene.limits_quantity("joint_rotation")),
       slopes_(
           shared.modal->slopes(run::DeckRotations(*shared.beam).unknowns(), scene.self_weight ? scene.gravity : 0.0)) {}
 
@@ -31,24 +31,9 @@ std::vector<results::EvaluatedQuantity> MovingForceLimits::evaluate(std::size_t 
   sample_run(train, plan, check);
 
   results::Summary summary;
-  summary.probes = !peaks.empty();
-  std::vector<base::Extreme> deflections;
-  for (std::size_t p = 0; p < peaks.size(); ++p) {
-    const auto record_largest = [&](const base::Extreme& peak, results::Extreme& largest) {
-      if (peak.value <= largest.value) return false;
-      largest = {peak.value, peak.time, scene_.output.probes[p]};
-      return true;
-    };
-    deflections.push_back({peaks[p].deflection.value, peaks[p].deflection.time, p});
-    record_largest(peaks[p].acceleration, summary.acceleration);
-    if (record_largest(peaks[p].deflection, summary.deflection))
-      summary.amplification = static_deflection[p] > 0.0 ? peaks[p].deflection.value / static_deflection[p] : 0.0;
-  }
   if (cutoff_frequency_ > 0.0 && run::filter_obstacle(cutoff_frequency_, plan, peaks.size()).empty())
     summary.low_passed = filtered(plan.interval);
-  std::vector<results::EvaluatedQuantity> evaluated;
-  for (const results::Verdict& verdict : check.verdicts(summary, deflections)) evaluated.push_back(verdict.found);
-  return evaluated;
+  return check.evaluate(std::move(summary), peaks, static_deflection);
 }
 
 /// Samples the run at the same instants as a single run.

@@ -192,6 +192,27 @@ std::vector<results::Verdict> LimitCheck::verdicts(const results::Summary& summa
   return list;
 }
 
+std::vector<results::EvaluatedQuantity> LimitCheck::evaluate(results::Summary summary,
+                                                             std::span<const base::ProbePeaks> peaks,
+                                                             std::span<const double> static_deflection) const {
+  summary.probes = !peaks.empty();
+  std::vector<Extreme> deflections;
+  for (std::size_t p = 0; p < peaks.size(); ++p) {
+    const auto record_largest = [&](const Extreme& peak, results::Extreme& largest) {
+      if (peak.value <= largest.value) return false;
+      largest = {peak.value, peak.time, scene_.output.probes[p]};
+      return true;
+    };
+    deflections.push_back({peaks[p].deflection.value, peaks[p].deflection.time, p});
+    record_largest(peaks[p].acceleration, summary.acceleration);
+    if (record_largest(peaks[p].deflection, summary.deflection))
+      summary.amplification = static_deflection[p] > 0.0 ? peaks[p].deflection.value / static_deflection[p] : 0.0;
+  }
+  std::vector<EvaluatedQuantity> evaluated;
+  for (const results::Verdict& verdict : verdicts(summary, deflections)) evaluated.push_back(verdict.found);
+  return evaluated;
+}
+
 DeckRotations::DeckRotations(const beam::Beam& beam) : beam_(beam) {
   const beam::Line& line = beam.bridge();
   const beam::Mesh& mesh = line.mesh;
@@ -204,6 +225,13 @@ DeckRotations::DeckRotations(const beam::Beam& beam) : beam_(beam) {
     x_.push_back(mesh.span_ends()[static_cast<std::size_t>(i)]);
   }
   slopes_.resize(unknowns_.size());
+}
+
+std::vector<std::pair<int, int>> DeckRotations::differences() const {
+  std::vector<std::pair<int, int>> all;
+  for (std::size_t i = 0; i < ends; ++i) all.emplace_back(unknowns_[i], -1);
+  for (std::size_t i = ends; i < unknowns_.size(); i += 2) all.emplace_back(unknowns_[i], unknowns_[i + 1]);
+  return all;
 }
 
 void DeckRotations::add(double t, const double* v) {
@@ -219,22 +247,21 @@ CarAccelerations::CarAccelerations(const train::Fleet& fleet) : fleet_(fleet) {
   for (const train::Member& member : fleet.members) {
     const std::vector<multibody::Body>& bodies = member.type->mechanism.bodies;
     const auto lighter = [](const multibody::Body& a, const multibody::Body& b) { return a.mass < b.mass; };
-    heaviest_.push_back(
-        static_cast<std::size_t>(std::max_element(bodies.begin(), bodies.end(), lighter) - bodies.begin()));
+    const auto heaviest = std::max_element(bodies.begin(), bodies.end(), lighter) - bodies.begin();
+    bodies_.emplace_back(static_cast<std::size_t>(member.unit), member.first_body + heaviest);
   }
 }
 
 void CarAccelerations::add(double t) {
-  for (std::size_t i = 0; i < heaviest_.size(); ++i) {
-    const train::Member& member = fleet_.members[i];
-    const auto body = member.first_body + static_cast<Eigen::Index>(heaviest_[i]);
-    const Eigen::VectorXd& qdd = fleet_.vehicles[static_cast<std::size_t>(member.unit)].state.qdd;
-    largest_.raise(std::abs(qdd[3 * body + 1]), t, i);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const auto [vehicle, body] = bodies_[i];
+    largest_.raise(std::abs(fleet_.vehicles[vehicle].state.qdd[3 * body + 1]), t, i);
   }
 }
 
 const std::string& CarAccelerations::body(std::size_t vehicle) const {
-  return fleet_.members[vehicle].type->mechanism.bodies[heaviest_[vehicle]].name;
+  const train::Member& member = fleet_.members[vehicle];
+  return member.type->mechanism.bodies[static_cast<std::size_t>(bodies_[vehicle].second - member.first_body)].name;
 }
 
 }  // namespace traverse::run

@@ -7,9 +7,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/extremum.hpp"
+#include "base/passage_peaks.hpp"
 #include "beam/beam.hpp"
 #include "results/verdict.hpp"
 #include "run/response_extremes.hpp"
@@ -29,11 +31,19 @@ class DeckRotations {
   void add(double t, const double* v);
   /// Records given rotations, rad, in the order of unknowns().
   void record(double t, std::span<const double> slopes) {
-    for (std::size_t i = 0; i < 2; ++i) ends_.raise(std::abs(slopes[i]), t, i);
-    for (std::size_t i = 0; i < x_.size(); ++i) joints_.raise(std::abs(slopes[2 * i + 3] - slopes[2 * i + 2]), t, i);
+    for (std::size_t i = 0; i < ends; ++i) raise({std::abs(slopes[i]), t, i});
+    for (std::size_t i = ends; i < ends + x_.size(); ++i)
+      raise({std::abs(slopes[2 * i - 1] - slopes[2 * i - 2]), t, i});
+  }
+  /// Records a magnitude, rad; its place: the index in differences().
+  void raise(const Extreme& one) {
+    one.place < ends ? ends_.raise(one.value, one.time, one.place)
+                     : joints_.raise(one.value, one.time, one.place - ends);
   }
   /// The unknowns of the ends, then the unknowns of the left and right side of each joint.
   const std::vector<int>& unknowns() const { return unknowns_; }
+  /// What is recorded: the unknown of each end, with -1, then both unknowns of each joint.
+  std::vector<std::pair<int, int>> differences() const;
 
   // Magnitudes, rad; below 0: none.
   const Extreme& at_ends() const { return ends_; }      // place: 0 left, 1 right
@@ -42,6 +52,8 @@ class DeckRotations {
   void keep(base::Bytes& bytes) { bytes(ends_, joints_); }
 
  private:
+  static constexpr std::size_t ends = 2;
+
   const beam::Beam& beam_;
   std::vector<int> unknowns_;
   std::vector<double> slopes_;  // rad, of unknowns_
@@ -54,6 +66,10 @@ class CarAccelerations {
  public:
   explicit CarAccelerations(const train::Fleet& fleet);
   void add(double t);
+  /// Records a magnitude, m/s2; its place: the index in bodies().
+  void raise(const Extreme& one) { largest_.raise(one.value, one.time, one.place); }
+  /// Index of the vehicle in Fleet::vehicles and of the body there, for each member.
+  const std::vector<std::pair<std::size_t, Eigen::Index>>& bodies() const { return bodies_; }
 
   /// m/s2; place: the vehicle; value below 0: no vehicle.
   const Extreme& largest() const { return largest_; }
@@ -62,7 +78,7 @@ class CarAccelerations {
 
  private:
   const train::Fleet& fleet_;
-  std::vector<std::size_t> heaviest_;  // index in each vehicle's bodies
+  std::vector<std::pair<std::size_t, Eigen::Index>> bodies_;
   Extreme largest_{-1.0};
 };
 
@@ -76,9 +92,16 @@ class LimitCheck {
   void sample(double t, const double* v);
   /// Evaluates an instant at which only the rotations at the rotations' unknowns are known, rad.
   void rotations(double t, std::span<const double> slopes) { rotations_->record(t, slopes); }
+  /// Records the largest magnitudes that are known: DeckRotations::raise, CarAccelerations::raise.
+  void rotation(const Extreme& one) { rotations_->raise(one); }
+  void car(const Extreme& one) { cars_.raise(one); }
 
   /// The verdicts, after the last instant. deflections: the largest deflection at each probe.
   std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Extreme> deflections) const;
+  /// What is found for each limit, from the peaks and the static deflection (m) at each probe. The summary has no
+  /// values at probes but those of filtered series.
+  std::vector<results::EvaluatedQuantity> evaluate(results::Summary summary, std::span<const base::ProbePeaks> peaks,
+                                                   std::span<const double> static_deflection) const;
 
   void keep(base::Bytes& bytes) {
     if (rotations_) rotations_->keep(bytes);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "run/deck_acceleration.hpp"
 #include "run/low_pass.hpp"
 #include "run/response_extremes.hpp"
 
@@ -56,9 +57,7 @@ std::string wheel_name(const train::Fleet& fleet, std::size_t wanted) {
 }
 
 bool filters_wheels(const scene::Scene& scene) {
-  const bool limited = std::any_of(scene.limits.begin(), scene.limits.end(), [](const options::VerdictLimit& limit) {
-    return limit.quantity == "filtered_wheel_unloading" || limit.quantity == "unloading_time";
-  });
+  const bool limited = scene.limits_quantity("filtered_wheel_unloading") || scene.limits_quantity("unloading_time");
   const bool has_wheels = std::any_of(scene.vehicles.begin(), scene.vehicles.end(),
                                       [](const train::Vehicle& vehicle) { return !vehicle.wheels.empty(); });
   return has_wheels && (limited || scene.output.wheels_filtered) && scene.analysis == options::Analysis::transient &&
@@ -78,7 +77,7 @@ bool FilteredWheels::is_due(double t) const {
 
 results::FilteredUnloading FilteredWheels::finish(const train::Fleet& fleet) {
   const std::vector<double> at_start(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(wheels_));
-  LowPass(frequency_, interval_).apply(rows_, wheels_);
+  rows_.resize(wheels_ * std::max<std::size_t>(1, filter(rows_, wheels_, frequency_, interval_)));
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const double initial = at_start[i % wheels_];
     rows_[i] = initial > 0.0 ? std::max(0.0, 1.0 - rows_[i] / initial) : 0.0;

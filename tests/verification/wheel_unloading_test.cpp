@@ -59,6 +59,7 @@ TEST(WheelUnloadingOfARun, IsThatOfItsStoredForces) {
 TEST(WheelUnloadingOfARun, IsJudgedInSweeps) {
   const Values options = {{"ts_dt", "1e-3"},
                           {"model_modes", "8"},
+                          {"sweep_lanes", "0"},
                           {"output_unloading_level", "0.1"},
                           {"limits", source_folder() + "/tests/data/limits_of_wheels.yml"}};
   Results sweep = run_yaml(coach, options + Values{{"sweep_speed", "60,80,10"}, {"sweep_refine", "0"}});

@@ -172,11 +172,12 @@ struct Scene {
       return options::limit_quantity(limit.quantity)->finder == options::LimitFinder::run;
     });
   }
-  /// Whether there is a limit of the low-passed deck acceleration.
-  bool limits_deck_acceleration() const {
+  bool limits_quantity(std::string_view quantity) const {
     return std::any_of(limits.begin(), limits.end(),
-                       [](const options::VerdictLimit& limit) { return limit.quantity == "deck_acceleration"; });
+                       [&](const options::VerdictLimit& limit) { return limit.quantity == quantity; });
   }
+  /// Whether there is a limit of the low-passed deck acceleration.
+  bool limits_deck_acceleration() const { return limits_quantity("deck_acceleration"); }
   /// Whether the bridge consists of given modes, without elements.
   bool by_given_modes() const { return beam && beam->given; }
   bool supports_move() const { return !support_motion.empty() || !support_motion_along.empty(); }
