@@ -136,6 +136,8 @@ WAYS = [
             [Check("EXPECT_LT(worst, {});", "differences of other steps")]),
         Row("stiffness, mass of a vehicle and speed, fitted by runs in batches", "values of the recorded single run", "FitOfVehicles.InLanesAndOneByOne",
             [Check('EXPECT_LT(worst, {}) << "estimates";', "estimates in lanes")]),
+        Row("every limited quantity of coaches on a rough track, in batches", "the same runs, one by one",
+            "JudgedRuns.OfVehiclesInBatches", [Check('== "unloading_time" ? 5e-3 : {};')]),
         Row("filtered accelerations and rotations of a sweep by modes with limits", "single runs", "JudgedRuns.OfASweepByModes",
             [Check("EXPECT_NEAR(found[l], wanted[l], {} * wanted[l]) << run")]),
     ]),

@@ -1,6 +1,7 @@
 // The peaks of one run of a train over the bridge, independent of the solver that computed it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/extremum.hpp"
@@ -11,6 +12,12 @@ namespace traverse::base {
 struct ProbePeaks {
   Extreme deflection, acceleration, moment;
   Extreme low_passed{};  // peak of the low-passed acceleration, if it was filtered
+};
+
+/// The largest magnitudes of a mass damper's travel, m, and of its force on the beam, N.
+struct DamperPeaks {
+  std::string name;
+  Extreme travel, force;
 };
 
 struct PassagePeaks {

@@ -2,7 +2,11 @@
 // paper); equal neighbouring elements share one computed matrix.
 #include "assembly.hpp"
 
+#include <algorithm>
+#include <string>
+
 #include "beam/shape.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::beam {
 namespace {
@@ -42,6 +46,49 @@ void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness)
         mass.add(line.axial(e), m.axial_mass);
         stiffness.add(line.axial(e), m.axial_stiffness);
       });
+  for (const PointMass& point : model.point_masses)
+    for (const Direction direction : {Direction::vertical, Direction::longitudinal}) {
+      const PointShape s = shape_at(line, direction, line.mesh.locate(point.x));
+      mass.add(s.unknown, outer(point.mass, s.shape));
+    }
+}
+
+std::vector<DamperPlace> places_of_dampers(const Line& line, const Layout& layout) {
+  const Mesh& mesh = line.mesh;
+  std::vector<DamperPlace> places;
+  for (const MassDamper& damper : line.model.dampers) {
+    const Station at = mesh.locate(damper.x);
+    const int left = mesh.element(at.element).left;
+    std::vector<int> nodes = {left, left + 1};
+    if (at.xi == 0.0 && at.element > 0 && mesh.element(at.element - 1).left + 1 == left) nodes.push_back(left - 1);
+    const auto unknown_at = [&](int node) {
+      return (line.first_column + node) * layout.block + layout.place[Kind::damper];
+    };
+    const auto is_free = [&](int node) {
+      return std::none_of(places.begin(), places.end(),
+                          [&](const DamperPlace& other) { return other.unknown == unknown_at(node); });
+    };
+    const auto node = std::find_if(nodes.begin(), nodes.end(), is_free);
+    if (node == nodes.end())
+      throw InputError("beam_" + damper.name + "_x: too many dampers at x = " + std::to_string(damper.x) +
+                       " m; allowed: three at a node, and one more for every element beside it; equal ones may be one");
+    places.push_back({&damper, shape_at(line, Direction::vertical, at), unknown_at(*node)});
+  }
+  return places;
+}
+
+void add_dampers(const std::vector<DamperPlace>& dampers, Rows& mass, Rows& stiffness, Rows& damping) {
+  for (const auto& [damper, beam, unknown] : dampers) {
+    std::array<int, 5> unknowns{};
+    std::array<double, 5> travel{};
+    std::copy(beam.unknown.begin(), beam.unknown.end(), unknowns.begin());
+    std::copy(beam.shape.begin(), beam.shape.end(), travel.begin());
+    unknowns.back() = unknown;
+    travel.back() = -1.0;
+    mass.add(std::array{unknown}, std::array{damper->mass});
+    stiffness.add(unknowns, outer(damper->k, travel));
+    damping.add(unknowns, outer(damper->c, travel));
+  }
 }
 
 void add_cracks(const Line& line, const Slice& slice, Rows& stiffness) {

@@ -32,8 +32,20 @@ Transverse bed_matrix(Direction direction, const Distribution& density, const El
 /// Integral of density(x) s: the coefficients of the unknowns in the resultant of a bed.
 std::array<double, 4> bed_form(Direction direction, const Distribution& density, const Element& element);
 
-/// Adds mass and stiffness of a beam without foundation, eqs. 8-12.
+/// Adds mass and stiffness of a beam without foundation, eqs. 8-12, with its point masses.
 void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness);
+
+/// A mass damper among the unknowns: its own, and those of the beam with their shapes.
+struct DamperPlace {
+  const MassDamper* damper = nullptr;
+  PointShape beam;
+  int unknown = 0;  // global
+};
+/// The dampers of the line's model, in their order. InputError if too many are at one place.
+std::vector<DamperPlace> places_of_dampers(const Line& line, const Layout& layout);
+
+/// Adds the masses, springs and dashpots of the dampers.
+void add_dampers(const std::vector<DamperPlace>& dampers, Rows& mass, Rows& stiffness, Rows& damping);
 
 /// Adds the springs of cracks, each between the two rotations of its node, to K*; the damping b K does not include
 /// them.

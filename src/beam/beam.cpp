@@ -139,6 +139,7 @@ Slice Beam::slice() const {
     release_links(bridge_, layout_, slice);
   }
   hold_supports(bridge_, slice);
+  for (const DamperPlace& place : places_of_dampers(bridge_, layout_)) slice.release(place.unknown);
   for (const int node : held_rail_ends()) slice.hold(rail_->unknown(node, 0));
   return slice;
 }
@@ -168,7 +169,9 @@ void Beam::assemble(const Slice& slice) {
     damping.add(1.0, track_damping);
   }
   add_cracks(bridge_, slice, stiffness);
-  const bool sprung = !own.empty() || !model().cracks.empty();
+  const std::vector<DamperPlace> dampers = places_of_dampers(bridge_, layout_);
+  add_dampers(dampers, mass, stiffness, damping);
+  const bool damped = !own.empty() || !dampers.empty(), sprung = damped || !model().cracks.empty();
   for (auto& [handle, rows] : own) *handle = rows.matrix(comm_, rows);
   const Rows springs = stiffness;
   stiffness.add(1.0, beams);
@@ -176,18 +179,22 @@ void Beam::assemble(const Slice& slice) {
   record_reactions(slice, beams, mass, beam_mass, beam_stiffness, stiffness, damping);
   const auto direction_of_weight = [&](int unknown) {
     const Kind kind = layout_.kind[index(unknown % block())];
+    if (kind == Kind::damper) return 0.0;  // at rest its spring is balanced
     return Layout::is_vertical(kind) ? -1.0 : Layout::axial(kind) ? -model().gradient : 0.0;
   };
   for (int i = begin; i < end; ++i) weight_.push_back(mass.times(i, direction_of_weight));
+  for (const auto& [damper, beam, unknown] : dampers)
+    for (std::size_t i = 0; i < beam.unknown.size(); ++i)
+      if (local(beam.unknown[i]) >= 0) weight_[index(local(beam.unknown[i]))] -= damper->mass * beam.shape[i];
 
   Rows pattern(slice);
   for (const Rows* rows : {&mass, &beam_stiffness, &stiffness, &damping}) pattern.add_pattern(*rows);
   mass_ = mass.matrix(comm_, pattern);
-  beam_mass_ = rail_ ? beam_mass.matrix(comm_, pattern) : shared(mass_);
+  beam_mass_ = rail_ || !dampers.empty() ? beam_mass.matrix(comm_, pattern) : shared(mass_);
   beam_stiffness_ = beam_stiffness.matrix(comm_, pattern);
   stiffness_ = sprung ? stiffness.matrix(comm_, pattern) : shared(beam_stiffness_);
   if (sprung) springs_ = springs.matrix(comm_, springs);
-  if (own.empty()) return;
+  if (!damped) return;
   foundation_damping_ = damping.matrix(comm_, pattern);
   PetscReal norm = 0.0;
   base::check(MatNorm(foundation_damping_, NORM_INFINITY, &norm));

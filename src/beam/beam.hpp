@@ -73,13 +73,13 @@ class Beam {
   /// Frees M, K and C, most of the memory of a long beam, after a BeamOperator has read them; they are null afterwards.
   /// The matrices of foundation and track remain. Free memory is returned to the operating system.
   void release_matrices();
-  Mat mass() const { return mass_; }                      // M_aa, with the mass of a layered track
+  Mat mass() const { return mass_; }                      // M_aa, with the masses of a layered track and of dampers
   Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
-  Mat springs() const { return springs_; }                // K* without the beams: foundation, track layers; or null
-  Mat dampers() const { return foundation_damping_; }     // damping of foundation and track layers; null: none
-  Mat beam_mass() const { return beam_mass_; }            // mass of the bridge alone
-  Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
-  Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
+  Mat springs() const { return springs_; }  // K* without the beams: foundation, track layers, mass dampers; or null
+  Mat dampers() const { return foundation_damping_; }  // damping of the same; null: none
+  Mat beam_mass() const { return beam_mass_; }         // mass of the bridge alone
+  Mat stiffness() const { return stiffness_; }         // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
+  Mat damping() const { return damping_; }             // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
   /// Stiffness and damping matrix of each kind of foundation of section 3; null if the scene has no such kind.
   struct FoundationMats {
     using Pair = std::array<base::Handle<Mat>, 2>;  // [0] stiffness, [1] damping

@@ -29,6 +29,7 @@ Layout::Layout(const BeamModel& model) {
   add(Kind::v);
   add(Kind::theta);
   if (hinges) add(Kind::theta_right);
+  if (!model.dampers.empty()) add(Kind::damper);
 }
 
 Line::Line(BeamModel its_model, const Layout& layout, bool rail, int its_first_column)

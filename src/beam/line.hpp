@@ -5,7 +5,8 @@
 // track it also contains a node of the rail, with a second rotation if the rail has joints and a second displacement
 // along x if it has expansion devices, and the sleeper at the node. On the ground the ballast's mass uses the place of
 // the bridge's deflection, unless it has a separate place because the ballast on the bridge is a separate mass too.
-// Only neighbouring columns are coupled, for every model.
+// A mass damper has a place in a column of its element or, at a node, in one beside it. Only neighbouring columns are
+// coupled, for every model.
 #pragma once
 
 #include <array>
@@ -27,6 +28,7 @@ enum Kind {
   v,
   theta,
   theta_right,
+  damper,
   kinds
 };
 
@@ -45,7 +47,7 @@ struct Layout {
   static bool rotation(Kind k) {
     return k == rail_theta || k == rail_theta_right || k == Kind::theta || k == Kind::theta_right;
   }
-  /// Whether the unknown is a vertical displacement.
+  /// Whether the unknown is a vertical displacement: also that of a damper.
   static bool is_vertical(Kind k) { return !axial(k) && !rotation(k); }
   /// Whether the unknown belongs to the bridge; on the ground the ballast may use its place.
   static bool of_bridge(Kind k) { return k == Kind::u || k == Kind::v || k == Kind::theta || k == Kind::theta_right; }

@@ -151,21 +151,26 @@ void check_cracks(const BeamModel& model) {
 
 /// Checks the distances of the nodes that divide the beam. Short elements between close nodes cause rounding errors.
 void check_divisions(const BeamModel& model) {
-  if (model.track || (model.cracks.empty() && model.cuts.empty() && model.hinges.empty())) return;
+  const bool masses = !model.point_masses.empty() || !model.dampers.empty();
+  if (model.track || (model.cracks.empty() && model.cuts.empty() && model.hinges.empty() && !masses)) return;
   std::vector<double> x = model.hinges;
   for (const Crack& crack : model.cracks) x.push_back(crack.x);
+  for (const PointMass& mass : model.point_masses) x.push_back(mass.x);
+  for (const MassDamper& damper : model.dampers) x.push_back(damper.x);
   x.insert(x.end(), model.cuts.begin(), model.cuts.end());
   x.push_back(model.start);
   double end = model.start;
   for (const double span : model.spans) x.push_back(end += span);
   std::sort(x.begin(), x.end());
-  const std::string option = model.cracks.empty() && model.cuts.empty() ? "beam_hinges"
-                             : model.cuts.empty()                       ? "beam_cracks_x"
-                                                                        : "beam_cracks_width";
+  const std::string option = !model.cuts.empty()           ? "beam_cracks_width"
+                             : !model.cracks.empty()       ? "beam_cracks_x"
+                             : !model.hinges.empty()       ? "beam_hinges"
+                             : !model.point_masses.empty() ? "beam_point_masses_x"
+                                                           : "beam_dampers";
   for (std::size_t i = 1; i < x.size(); ++i)
     if (x[i] - x[i - 1] > 0.0 && x[i] - x[i - 1] < min_distance)
       throw InputError(
-          fmt::format("{}: what divides the beam (ends of spans and of cracks, hinges) at x = {:.9g} and "
+          fmt::format("{}: what divides the beam (ends of spans and of cracks, hinges, masses on it) at x = {:.9g} and "
                       "{:.9g} m is {:.3g} m apart; allowed: 0, or at least {:g} m",
                       option, x[i - 1], x[i], x[i] - x[i - 1], min_distance));
 }

@@ -51,9 +51,14 @@ std::vector<Division> divisions_of(const BeamModel& model) {
   for (const Crack& crack : model.cracks) divisions.push_back({crack.x, Joint::cracked});
   for (const double x : model.expansion_devices) divisions.push_back({x, Joint::expansion});
   for (const double x : model.cuts) divisions.push_back({x, Joint::continuous});
+  if (!model.track) {
+    for (const PointMass& mass : model.point_masses) divisions.push_back({mass.x, Joint::continuous});
+    for (const MassDamper& damper : model.dampers) divisions.push_back({damper.x, Joint::continuous});
+  }
   std::stable_sort(divisions.begin(), divisions.end(), [](const Division& a, const Division& b) { return a.x < b.x; });
   const auto same = [](const Division& a, const Division& b) { return a.x == b.x; };
   divisions.erase(std::unique(divisions.begin(), divisions.end(), same), divisions.end());
+  std::erase_if(divisions, [&](const Division& one) { return one.x == model.start; });
   return divisions;
 }
 
@@ -136,6 +141,7 @@ RailMesh rail_mesh(const BeamModel& model) {
 
 BeamModel bridge_alone(const BeamModel& model) {
   BeamModel bridge = model;
+  bridge.dampers.clear();
   if (!model.track) return bridge;
   const LayeredTrack& track = *model.track;
   bridge.mass = model.mass.plus(mass_on_bridge(model, track) / track.spacing);

@@ -109,7 +109,7 @@ void FirstRun::find_frequencies() {
       if (frequencies.size() < frequency_count) frequencies.push_back(one / (2.0 * std::numbers::pi));
     return;
   }
-  const bool linear = beam.rail() == nullptr && !beam.model().nonlinear();
+  const bool linear = beam.rail() == nullptr && beam.model().dampers.empty() && !beam.model().nonlinear();
   const std::vector<double> omega =
       linear ? modes::distinct_frequencies(beam, frequency_count)
              : modes::distinct_frequencies(beam::Beam(PETSC_COMM_SELF, linearised(bridge_alone(beam.model()))),

@@ -70,7 +70,7 @@ double SceneAtRest::first_frequency() const {
   if (!shared->beam) return 0.0;
   const beam::Beam& beam = *shared->beam;
   if (beam.model().given) return beam.model().given->omega.front() / (2.0 * std::numbers::pi);
-  const bool linear = beam.rail() == nullptr && !beam.model().nonlinear();
+  const bool linear = beam.rail() == nullptr && beam.model().dampers.empty() && !beam.model().nonlinear();
   const std::vector<double> omega =
       linear ? modes::distinct_frequencies(beam, 1)
              : modes::distinct_frequencies(beam::Beam(PETSC_COMM_SELF, linearised(bridge_alone(beam.model()))), 1);

@@ -132,7 +132,8 @@ void add_slopes(const beam::Beam& beam, const beam::ShapePoints& points, const s
 /// Adds damping ratios if C* = a M + b K*, for which the modes are not coupled.
 void add_ratios(const beam::Beam& beam, Modes& modes) {
   const beam::Rayleigh ab = beam.rayleigh();
-  if (beam.dampers() != nullptr || (beam.springs() != nullptr && ab.b != 0.0)) return;
+  const bool other_mass = beam.mass() != beam.beam_mass() && ab.a != 0.0;
+  if (beam.dampers() != nullptr || (beam.springs() != nullptr && ab.b != 0.0) || other_mass) return;
   for (const double omega : modes.omega)
     modes.ratio.push_back(omega > 0.0 ? (ab.a + ab.b * omega * omega) / (2.0 * omega) : 0.0);
 }

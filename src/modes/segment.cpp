@@ -176,7 +176,8 @@ class Splitter {
       s.unknowns.push_back(static_cast<int>(unknowns_[static_cast<std::size_t>(row)]));
       // On the ground the ballast of a layered track uses the place of the bridge's deflection.
       const bool bridge = s.nodes.back() >= 0 && s.nodes.back() < beam_.mesh().nodes();
-      s.slope.push_back(bridge && kind(row) == (axial_ ? beam::Kind::u : beam::Kind::v) ? 0 : 1);
+      const bool moves = axial_ ? kind(row) == beam::Kind::u : kind(row) == beam::Kind::v || kind(row) == beam::damper;
+      s.slope.push_back(bridge && moves ? 0 : 1);
     }
     s.K = part_of(K_, rows);
     s.M = part_of(M_, rows);

@@ -189,6 +189,8 @@ std::vector<HelpGroup> help_groups() {
        "Each coupler NAME in the list of train_couplers, in addition to the options of a spring or a joint",
        {}});
   add("train_NAME_", coupler_rows());
+  groups.push_back({"damper", "Each tuned mass damper NAME in the list of beam_dampers", {}});
+  add("beam_NAME_", damper_rows());
   groups.push_back({"stretch", "Each stretch NAME in the list of track_stretches", {}});
   add("track_NAME_", stretch_rows());
   groups.push_back({"vary", "Each option NAME that a study varies", {}});

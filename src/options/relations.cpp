@@ -39,6 +39,8 @@ constexpr Relation relations[] = {
   {Related::scene, "beam_cracks_k", excludes, "beam_cracks_width", ""},
   {Related::scene, "beam_cracks_width", needs, "beam_cracks_EI_factor", ""},
   {Related::scene, "beam_cracks_EI_factor", needs, "beam_cracks_width", ""},
+  {Related::scene, "beam_point_masses_x", needs, "beam_point_masses_mass", ""},
+  {Related::scene, "beam_point_masses_mass", needs, "beam_point_masses_x", ""},
   {Related::scene, "beam_temperature_expansion beam_temperature_depth", needs, "beam_temperature_uniform beam_temperature_gradient", ""},
   {Related::scene, "support_scour", needs, "support_stiffness", "needs support_stiffness, which it reduces"},
   {Related::scene, "support_motion_values", needs, "support_motion support_motion_along", ""},
@@ -61,6 +63,7 @@ constexpr Relation relations[] = {
   {Related::scene, "model_damping_ratios", excludes, "beam_damping_ratios beam_rayleigh", "give either these or Rayleigh damping (beam_damping_ratios, beam_rayleigh)"},
   {Related::scene, "model_damping_bound", needs, "beam_spans", "needs a bridge (beam_spans)"},
   {Related::scene, "model_damping_bound", excludes, "model_damping_ratios beam_damping_ratios beam_rayleigh", ""},
+  {Related::scene, "norm_lane_gap", needs, "norm_lane_load", ""},
   {Related::scene, "scene_analysis=modes", needs, "beam_spans bridge_modes_file", "modes need a beam (beam_spans)"},
   {Related::scene, "scene_analysis=rail", needs, "track_rail_EI", "rail needs a bridge with a layered track (beam_spans, track_rail_EI)"},
   {Related::scene, "scene_analysis=rail", needs, "track_rail_area", "rail needs track_rail_area, for the stress of the rails"},
@@ -108,6 +111,10 @@ constexpr Relation relations[] = {
   {Related::springs, "k c gap cubic side one_sided depth limit spacing", needs, "x", "needs ~x, the stations"},
   {Related::springs, "x", needs, "k c cubic", ""},
   {Related::bed, "gap one_sided", needs, "k c cubic", "needs ~k, the stiffness of the bed"},
+
+  {Related::damper, "mass", needs, "frequency k", ""},
+  {Related::damper, "frequency", excludes, "k", ""},
+  {Related::damper, "damping_ratio", excludes, "c", ""},
 
   {Related::measurement, "series", excludes, "frequency", ""},
   {Related::measurement, "frequency", needs_all, "value sd", ""},

@@ -62,6 +62,9 @@ constexpr Row beam_rows[] = {
   {"beam_cracks_k", numbers, "N m/rad", "", positive, "", 0, "stiffness of the rotational spring in each crack; one value applies to all"},
   {"beam_cracks_width", numbers, "m", "", positive, "", 0, "instead of springs: length along x over which EI is reduced; one value applies to all"},
   {"beam_cracks_EI_factor", numbers, "1", "", {1e-6, 1.0, true}, "", 0, "remaining fraction of EI over beam_cracks_width; one value applies to all"},
+  {"beam_point_masses_x", numbers, "m", "", not_negative, "", 0, "stations of masses on the beam"},
+  {"beam_point_masses_mass", numbers, "kg", "", positive, "", 0, "mass at each of these stations; one value applies to all"},
+  {"beam_dampers", texts, "", "", any, "", 0, "names of tuned mass dampers"},
   {"beam_temperature_uniform", number, "K", "0", any, "", 0, "temperature change since the beam was built, positive: warmer"},
   {"beam_temperature_gradient", number, "K", "0", any, "", 0, "temperature difference top minus bottom"},
   {"beam_temperature_expansion", number, "1/K", "1.2e-5", not_negative, "", 0, "coefficient of thermal expansion"},
@@ -193,6 +196,8 @@ constexpr Row later_rows[] = {
   {"norm_alpha", number, "1", "1", {0.1, 10.0}, "", 0, "classification factor of LM71 and SW/0, EN 1991-2 6.3.2"},
   {"norm_track", choice, "", "standard", any, "standard careful", 0, "maintenance of the track; standard: Phi3; careful: Phi2 of EN 1991-2 6.4.5.2"},
   {"norm_length", number, "m", "(from the spans)", positive, "", 0, "determinant length L_Phi of EN 1991-2 6.4.5.3"},
+  {"norm_lane_load", number, "N/m", "0", not_negative, "", 0, "uniform load that accompanies the scene's train or forces in static effects, on all unfavourable parts of the bridge"},
+  {"norm_lane_gap", numbers, "m", "0,0", any, "", 2, "range without norm_lane_load, from the foremost force on, in which behind it is below 0"},
   {"norm_spacing", number, "m", "(a twentieth of each span)", positive, "", 0, "largest distance between the sections at which static effects are computed"},
 
   {"uic774_train_length", number, "m", "300", positive, "", 0, "scene_analysis rail: length of the train"},

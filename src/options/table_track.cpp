@@ -1,4 +1,4 @@
-// Rows of the option table: a layered track, whose properties may vary along x, and its stretches.
+// Rows of the option table: a layered track, whose properties may vary along x, and its stretches; mass dampers.
 #include <fmt/format.h>
 
 #include <string>
@@ -42,6 +42,15 @@ constexpr Row ends_of_stretch[] = {
   {"to", number, "m", "", any, "", 0, "x of the end; sleepers up to there belong to the stretch"},
   {"sleepers", choice, "", "standard", any, "standard none", 0, "none: no sleepers and no pads; the ballast remains"},
 };
+
+constexpr Row rows_of_damper[] = {
+  {"x", number, "m", "", not_negative, "", 0, "station of the tuned mass damper"},
+  {"mass", number, "kg", "", positive, "", 0, "its mass"},
+  {"frequency", number, "Hz", "", positive, "", 0, "its natural frequency on a beam at rest"},
+  {"damping_ratio", number, "1", "0", {0.0, 10.0}, "", 0, "its damping ratio on a beam at rest"},
+  {"k", number, "N/m", "", positive, "", 0, "stiffness of its spring, instead of frequency"},
+  {"c", number, "Ns/m", "", not_negative, "", 0, "coefficient of its dashpot, instead of damping_ratio"},
+};
 // clang-format on
 
 /// The default of a property; stiffnesses have none.
@@ -71,6 +80,8 @@ std::span<const Row> track_rows() {
   }();
   return rows;
 }
+
+std::span<const Row> damper_rows() { return rows_of_damper; }
 
 std::span<const Row> stretch_rows() {
   static const std::vector<Row> rows = [] {

@@ -33,6 +33,8 @@ GroundForces::GroundForces(const beam::Beam& beam) : beam_(beam) {
   for (auto& along : bridge_masses_) along.assign(beam::index(beam.local_unknowns()), 0.0);
   add_masses(beam.bridge(), bridge_masses_);
   masses_ = bridge_masses_;
+  for (const beam::DamperPlace& place : beam::places_of_dampers(beam.bridge(), beam.layout()))
+    add_mass(masses_[1], place.unknown, place.damper->mass);
   if (beam.rail() != nullptr) {
     add_masses(*beam.rail(), masses_);
     add_track();
@@ -87,6 +89,14 @@ void GroundForces::add_masses(const beam::Line& line, Masses& masses) const {
     for (std::size_t i = 0; i < 2; ++i) add_mass(masses[0], line.axial(e)[i], along[i]);
     for (std::size_t i = 0; i < 4; ++i) add_mass(masses[1], line.transverse(e)[i], up[i]);
   }
+  const auto add_at = [&](double x, double mass) {
+    for (const beam::Direction direction : {beam::Direction::longitudinal, beam::Direction::vertical}) {
+      const beam::PointShape s = beam::shape_at(line, direction, line.mesh.locate(x));
+      std::vector<double>& sums = masses[direction == beam::Direction::longitudinal ? 0 : 1];
+      for (std::size_t i = 0; i < 4; ++i) add_mass(sums, s.unknown[i], mass * s.shape[i]);
+    }
+  };
+  for (const beam::PointMass& point : line.model.point_masses) add_at(point.x, point.mass);
 }
 
 void GroundForces::add_track() {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -128,6 +129,7 @@ class File {
     std::string path;
     hobj_ref_t reference = 0;
     hsize_t length = 0;  // any length for the time, which grows
+    bool has_coordinates = true;
   };
   const Scale& scale_of(const std::string& dimension, hsize_t length);
   void make_scale(const Id& dataset, const std::string& name);
@@ -142,6 +144,7 @@ class File {
   std::size_t open_ = 0;  // datasets held open
   std::vector<std::pair<std::string, std::vector<std::string>>> unscaled_;  // new datasets and their dimensions
   std::unordered_map<std::string, Scale> scales_;                           // of each dimension
+  std::unordered_set<std::string> linked_;                                  // paths of links to scales in other groups
 };
 
 /// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. The first 2,000 datasets of a file remain

@@ -51,6 +51,13 @@ std::vector<Attribute> attributes_of(const Summary& summary) {
     add("least_wheel", summary.least_wheel);
     add("greatest_wheel_force", summary.greatest_wheel_force);
   }
+  for (const base::DamperPeaks& damper : summary.dampers) {
+    const std::string name = "damper_" + damper.name;
+    add(name + "_travel", damper.travel.value);
+    add(name + "_travel_time", damper.travel.time);
+    add(name + "_force", damper.force.value);
+    add(name + "_force_time", damper.force.time);
+  }
   if (summary.unloading) {
     add("wheel_unloading", summary.unloading->value);
     add("wheel_unloading_time", summary.unloading->time);

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/passage_peaks.hpp"
 #include "modes/modes.hpp"
 #include "results/place.hpp"
 
@@ -104,6 +105,7 @@ struct Summary {
   std::optional<Unloading>
       unloading;  // for unfiltered forces at the ends of steps; empty if the initial state is not an equilibrium
   std::optional<FilteredUnloading> filtered_unloading;
+  std::vector<base::DamperPeaks> dampers;
   int contact_losses = 0;
   double longest_loss = 0.0;            // s
   double energy_residual = 0.0;         // largest |residual|, J

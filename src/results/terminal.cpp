@@ -78,6 +78,16 @@ void print_beam(const Summary& summary) {
   }
 }
 
+void print_dampers(const Summary& summary) {
+  for (const base::DamperPeaks& damper : summary.dampers) {
+    line("damper " + damper.name,
+         fmt::format("{:<18}its travel, t = {:.6g} s", in_engineering_units("deflection", damper.travel.value),
+                     damper.travel.time));
+    line("", fmt::format("{:<18}its force, t = {:.6g} s", in_engineering_units("force", damper.force.value),
+                         damper.force.time));
+  }
+}
+
 void print_wheels(const Summary& summary) {
   if (summary.least_wheel.empty()) return;
   line("least wheel force",
@@ -240,6 +250,7 @@ void print_summary(const Summary& summary, const std::string& file) {
   if (!is_first_rank()) return;
   fmt::print("summary\n");
   print_beam(summary);
+  print_dampers(summary);
   print_wheels(summary);
   if (summary.energy_left != 0.0)
     line("put to rest", fmt::format("{:<18}about {:.1e} of the structure's motion",

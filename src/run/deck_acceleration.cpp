@@ -43,7 +43,8 @@ std::vector<double> first_frequencies(const SharedBeam& shared) {
   std::vector<double> frequencies;
   if (shared.beam->model().given)
     frequencies = distinct_of_modes(shared.beam->model().given->omega);
-  else if (const beam::Beam& beam = *shared.beam; beam.rail() == nullptr && !beam.model().nonlinear())
+  else if (const beam::Beam& beam = *shared.beam;
+           beam.rail() == nullptr && beam.model().dampers.empty() && !beam.model().nonlinear())
     frequencies = modes::distinct_frequencies(beam, frequency_count);
   else
     frequencies =

@@ -54,6 +54,7 @@ Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, cons
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     now_.ground.emplace(*beam);
+    if (!beam->model().dampers.empty()) now_.dampers.emplace(*beam);
     if (!scene.support_motion.empty()) {
       ground_.assign(beam->model().supports.size(), 0.0);
       for (const double x : scene.output.probes) support_lines_.push_back(beam->support_lines().at(x));
@@ -124,6 +125,7 @@ void Evaluation::sample(const integrate::Instant& instant) {
   if (instant.purpose == integrate::Purpose::exit) return;
   add_wheels(instant.time);  // the first instant is not the end of a step
   record_peaks();
+  if (now_.dampers) now_.dampers->evaluate(time_, now_.motion.beam.v, now_.motion.beam.damped_w);
   record_largest_deflection();
   if (limit_check_) limit_check_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
@@ -289,6 +291,7 @@ void Evaluation::keep(base::Archive& archive) {
   if (lag_) archive.same(*lag_);
   if (limit_check_) archive.same(*limit_check_);
   archive.same(axle_passages_, exits_);
+  if (now_.dampers) archive.same(*now_.dampers);
   // The first rank only stores the deck's accelerations.
   deck_ ? archive.same(*deck_) : archive.same();
   filtered_wheels_ ? archive.same(*filtered_wheels_) : archive.same();
@@ -310,6 +313,7 @@ Result Evaluation::finish() {
   wheels_.finish();
   record_wheels();
   record_separations(result);
+  if (now_.dampers) summary_.dampers = now_.dampers->largest();
   if (deck_) summary_.low_passed = deck_->peak();
   if (filtered_wheels_) summary_.filtered_unloading = filtered_wheels_->finish(system_.fleet());
   if (wants_.stored || wants_.limits) summarise_peaks();

@@ -84,6 +84,16 @@ void record_bridge(const beam::BeamModel& beam, Recorder& recorder) {
   std::vector<double> cracks;
   for (const beam::Crack& crack : beam.cracks) cracks.insert(cracks.end(), {crack.x, crack.k});
   add_rows(recorder, "cracks", 2, std::move(cracks), "m, N m/rad");
+  std::vector<double> masses, dampers;
+  Pairs names;
+  for (const beam::PointMass& one : beam.point_masses) masses.insert(masses.end(), {one.x, one.mass});
+  for (const beam::MassDamper& one : beam.dampers) {
+    dampers.insert(dampers.end(), {one.x, one.mass, one.k, one.c});
+    names.emplace_back(std::to_string(names.size()), one.name);
+  }
+  add_rows(recorder, "point_masses", 2, std::move(masses), "m, kg");
+  add_rows(recorder, "dampers", 4, std::move(dampers), "m, kg, N/m, N s/m");
+  if (!names.empty()) recorder.tables({{"/model/damper_names", names}});
   add_rows(recorder, "settlement", 1, beam.settlement, "m");
   if (beam.temperature)
     add_rows(recorder, "temperature", 2, {beam.temperature->strain(), beam.temperature->curvature()}, "1, 1/m");

@@ -16,6 +16,7 @@
 
 #include "coupling/system.hpp"
 #include "recovery/ground_forces.hpp"
+#include "recovery/mass_dampers.hpp"
 #include "recovery/recovery.hpp"
 #include "results/recorder.hpp"
 #include "traverse/scene/scene.hpp"
@@ -36,6 +37,7 @@ struct Observed {
   std::optional<recovery::GroundForces> ground;     // with a bridge
   std::optional<recovery::SleeperForces> sleepers;  // forces of the sleepers in output_sleepers
   std::optional<recovery::RailDevices> devices;     // with a rail
+  std::optional<recovery::MassDampers> dampers;     // with a bridge
   EnergyTerms energy;
 };
 

@@ -1,6 +1,7 @@
 // Outputs of the structure: responses of the bridge and of a rail at the probes, the reactions of supports, and the
 // balance of all forces.
 #include <numeric>
+#include <utility>
 
 #include "output_groups.hpp"
 
@@ -124,6 +125,18 @@ void add_balance(const Source& source, Outputs& outputs) {
   outputs.add("/balance/", balance_rows,
               [gravity, axial = source.beam->model().axial, gradient = source.beam->model().gradient](
                   const Observed& now) { return balance_of(now, gravity, axial, gradient); });
+}
+
+void add_dampers(const Source& source, Outputs& outputs) {
+  const std::vector<beam::MassDamper>& dampers = source.beam->model().dampers;
+  if (dampers.empty()) return;
+  std::vector<double> x;
+  for (const beam::MassDamper& damper : dampers) x.push_back(damper.x);
+  outputs.add_constant("/dampers/x", std::move(x), "m");
+  outputs.add_numbers("/dampers/travel", "m", dampers.size(),
+                      [](const Observed& now, std::size_t i) { return now.dampers->travel(i); });
+  outputs.add_numbers("/dampers/force", "N", dampers.size(),
+                      [](const Observed& now, std::size_t i) { return now.dampers->force(i); });
 }
 
 void add_rail(const Source& source, Outputs& outputs) {

@@ -188,8 +188,8 @@ bool shares_trains(const scene::Scene& scene) {
   if (!scene.beam || scene.all_ranks || scene.analysis != options::Analysis::transient) return false;
   const beam::BeamModel& beam = *scene.beam;
   const bool plain_bridge = beam.all_separate() && beam.spans.size() > 1 && !beam.track && !beam.nonlinear() &&
-                            !beam.strained() && !scene.self_weight && scene.support_motion.empty() &&
-                            scene.support_motion_along.empty();
+                            !beam.strained() && beam.dampers.empty() && !scene.self_weight &&
+                            scene.support_motion.empty() && scene.support_motion_along.empty();
   const scene::NumericalModel& model = scene.model;
   const bool by_window = model.modes == 0 && model.window_tolerance != 0.0 && !model.step_kinks;
   const bool only_trains = scene.load.forces.empty() && scene.train.courses.size() > 1 &&

@@ -114,12 +114,14 @@ std::string beam_text(const beam::Beam& beam) {
 
 double hertz(double omega) { return omega / (2.0 * std::numbers::pi); }
 
-/// The first distinct modes of small motions: of the bridge without the rail, but with the mass of the track.
+/// The first distinct modes of small motions: of the bridge without the rail and mass dampers, but with the mass of the
+/// track.
 std::vector<modes::BendingMode> distinct_modes_of(const beam::Beam& beam) {
   const beam::BeamModel& model = beam.model();
   const bool sprung = beam.springs() != nullptr || beam.rail() != nullptr || model.foundation.nonlinear();
   const std::size_t count = sprung ? modes_with_springs : modes_without;
-  if (beam.rail() == nullptr && !model.foundation.nonlinear()) return modes::distinct_modes(beam, count);
+  if (beam.rail() == nullptr && model.dampers.empty() && !model.foundation.nonlinear())
+    return modes::distinct_modes(beam, count);
   beam::BeamModel small = linearised(bridge_alone(model));
   const beam::Beam with_track(beam.comm(), small);
   if (beam.rail() == nullptr) return modes::distinct_modes(with_track, count);

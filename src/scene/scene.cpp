@@ -196,6 +196,7 @@ NamedVehicles declare_parts(Options& o) {
   NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
   declare_stretches(o);
+  declare_dampers(o);
   return vehicles;
 }
 

@@ -283,6 +283,7 @@ void read_beam(const Options& o, Scene& scene) {
   if (o.has("beam_rotary_inertia")) beam.rotary_inertia = read_distribution(o, "beam_rotary_inertia");
   read_joints(o, beam);
   read_cracks(o, beam);
+  read_masses(o, beam);
   read_supports(o, beam);
   beam.foundation = read_foundation(o, beam);
   read_tension(o, beam);

@@ -72,15 +72,7 @@ std::vector<double> read_at_nodes(const Options& o, const char* option, const ch
 
 }  // namespace
 
-void declare_stretches(Options& o) {
-  if (!o.has("track_stretches")) return;
-  for (const std::string& name : o.texts("track_stretches"))
-    for (const options::Row& row : options::stretch_rows()) {
-      const std::string full = fmt::format("track_{}_{}", name, row.name);
-      if (!o.declare(full, row))
-        o.refuse("track_stretches", fmt::format("two options would have the name {}; rename a stretch", full));
-    }
-}
+void declare_stretches(Options& o) { declare_named(o, "track_stretches", "track", "stretch", options::stretch_rows()); }
 
 void read_layers(const Options& o, Scene& scene) {
   if (!o.has("track_rail_EI")) return;

@@ -82,8 +82,16 @@ void check_courses(const options::Options& options, Scene& scene);
 
 /// Declares the options of the trains' couplers.
 void declare_couplers(options::Options& options);
+/// Declares the options GROUP_NAME_<row> for each NAME in the list of the option `list`, the names of things that
+/// `what` says.
+void declare_named(options::Options& options, const std::string& list, const std::string& group,
+                   const std::string& what, std::span<const options::Row> rows);
 /// Declares the options of the parts of a layered track with different properties (TrackStretch).
 void declare_stretches(options::Options& options);
+/// Declares the options of the beam's tuned mass dampers (beam::MassDamper).
+void declare_dampers(options::Options& options);
+/// Reads point masses and mass dampers of a beam whose spans have been read.
+void read_masses(const options::Options& options, beam::BeamModel& beam);
 /// Reads a coupler of a train, without checking its bodies.
 Coupler read_coupler(const options::Options& options, const Block& train, const std::string& name);
 

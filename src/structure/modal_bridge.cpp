@@ -89,10 +89,12 @@ void ModalBridge::set_damping(const std::vector<double>& ratios) {
   const auto m = static_cast<Eigen::Index>(modes());
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(m, m);  // other than Rayleigh damping
   Eigen::VectorXd dampers = Eigen::VectorXd::Zero(m);
-  // Rayleigh's b damps the beam, but not the foundation's springs.
-  if (beam_.dampers() != nullptr || (beam_.springs() != nullptr && ab.b != 0.0)) {
-    const Eigen::MatrixXd by_dampers = on_shapes(beam_.dampers()),
-                          forces = by_dampers - ab.b * on_shapes(beam_.springs());
+  // Rayleigh's a and b damp the beam, but not the mass of dampers and the foundation's springs.
+  const bool other_mass = beam_.mass() != beam_.beam_mass() && ab.a != 0.0;
+  if (beam_.dampers() != nullptr || (beam_.springs() != nullptr && ab.b != 0.0) || other_mass) {
+    const Eigen::MatrixXd by_dampers = on_shapes(beam_.dampers());
+    Eigen::MatrixXd forces = by_dampers - ab.b * on_shapes(beam_.springs());
+    if (other_mass) forces -= ab.a * (on_shapes(beam_.mass()) - on_shapes(beam_.beam_mass()));
     damping = share_of_modes(forces);
     if (beam_.dampers() != nullptr) dampers = 0.5 * share_of_modes(by_dampers).diagonal();
     set_forces_on_others(forces, damping);

@@ -85,6 +85,8 @@ class Files(unittest.TestCase):
                         for name, variable in found.variables.items():
                             if variable.dtype.kind == "f":
                                 np.testing.assert_array_equal(variable.values, file[group][name][()])
+                        if "time" in found.dims:
+                            np.testing.assert_array_equal(found["time"], file["time"][()])
 
     def test_the_netcdf_library_reads_them_too(self):
         for scene in ("scenes/three_span_train", "studies/en1991_bridge", "studies/bearing_stiffness"):

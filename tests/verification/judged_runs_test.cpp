@@ -66,8 +66,7 @@ TEST(JudgedRuns, OfASweepByElements) { expect_runs_alone({{"ts_dt", "2e-3"}}, 1e
 // rotations at the same ones.
 TEST(JudgedRuns, OfASweepByModes) { expect_runs_alone({{"model_modes", "6"}}, 2e-3); }
 
-// Coaches on a rough track, judged by every quantity of a run, in batches and one by one. Both have other steps: what
-// is left of that falls with their length.
+// Coaches on a rough track, judged by every quantity of a run, in batches and one by one, with other steps.
 TEST(JudgedRuns, OfVehiclesInBatches) {
   const TemporaryFolder folder;
   const std::vector<std::string> quantities = {"deck_acceleration",    "unfiltered_deck_acceleration",
@@ -82,29 +81,31 @@ TEST(JudgedRuns, OfVehiclesInBatches) {
 beam: {spans: [20.0, 25.0], EI: 2.0e10, mass: 1.0e4, damping_ratios: 0.02, elements_per_span: 8}
 beam_continuity: simply_supported
 support: {types: [pinned, roller, roller]}
-vehicle_coach_file: )" + source_folder() + R"(/options/vehicles/s300.yml
+vehicle_coach_file: )" + source_folder() +
+                            R"(/options/vehicles/s300.yml
 train: {vehicles: coach*2, spacing: 25.0}
 track: {profile: german_low, seed: 3}
 model: {vehicles: linear}
 scene: {tail: 0.5}
-sweep: {speed: "50,70,10", refine: 0}
+sweep: {speed: "30,50,10", refine: 0}
 output: {unloading_level: 0.02}
 )";
   const auto judged = [&](const char* lanes, const char* step) {
-    Results sweep = run_yaml(scene, {{"limits", folder.write("limits.yml", all)}, {"sweep_lanes", lanes}, {"ts_dt", step}});
+    Results sweep =
+        run_yaml(scene, {{"limits", folder.write("limits.yml", all)}, {"sweep_lanes", lanes}, {"ts_dt", step}});
     return sweep("/sweep/judged");
   };
-  const std::vector<double> alone = judged("0", "2.5e-4"), rough = judged("8", "1e-3"), fine = judged("8", "2.5e-4");
+  const std::vector<double> alone = judged("0", "2.5e-4"), fine = judged("8", "2.5e-4");
   for (std::size_t l = 0; l < quantities.size(); ++l) {
-    double largest = 0.0, of_rough = 0.0, of_fine = 0.0;
+    double largest = 0.0, of_fine = 0.0;
     for (std::size_t i = l; i < alone.size(); i += quantities.size()) {
       largest = std::max(largest, alone[i]);
-      of_rough = std::max(of_rough, std::abs(rough[i] - alone[i]));
       of_fine = std::max(of_fine, std::abs(fine[i] - alone[i]));
     }
-    printf("%-30s %.6g %.2e %.2e\n", quantities[l].c_str(), largest, of_rough / largest, of_fine / largest);
-    if (quantities[l] != "contact_loss") EXPECT_GT(largest, 0.0);
-    EXPECT_LE(of_fine, 1e-3 * largest) << quantities[l];
+    EXPECT_TRUE(largest > 0.0 || quantities[l] == "contact_loss") << quantities[l];
+    // The times of crossing a level are interpolated between instants that differ.
+    const double bound = quantities[l] == "unloading_time" ? 5e-3 : 1e-3;
+    EXPECT_LE(of_fine, bound * largest) << quantities[l];
   }
 }
 

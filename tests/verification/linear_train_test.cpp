@@ -66,6 +66,29 @@ TEST_P(Passes, SameAsNewtonOfAllContacts) {
 }
 
 // A train that brakes, with the work of its drives.
+// Steps end where the contact turns about the joint between two decks, and it stays exactly there within them: the
+// height of the track there has to be known on the other deck too.
+TEST(LinearTrain, OnARoughTrackOverAJoint) {
+  const std::string scene = R"(
+beam: {spans: [20.0, 25.0], EI: 2.0e10, mass: 1.0e4, damping_ratios: 0.02, elements_per_span: 8}
+beam_continuity: simply_supported
+support: {types: [pinned, roller, roller]}
+vehicle_coach_file: )" + source_folder() +
+                            R"(/options/vehicles/s300.yml
+train: {vehicles: coach, speed: 40}
+track: {profile: german_low, seed: 3}
+ts: {dt: 2.5e-4, max_time: 0.6}
+output: {probes: 22.5}
+step_probes: true
+)";
+  Results linear = run_yaml(scene, {{"model_vehicles", "linear"}}),
+          full = run_yaml(scene, {{"model_vehicles", "full"}});
+  for (const char* name : {"least_wheel_force", "greatest_wheel_force"})
+    EXPECT_NEAR(linear.attribute("/summary", name), full.attribute("/summary", name),
+                1e-3 * full.attribute("/summary", name))
+        << name;
+}
+
 TEST(LinearTrain, AtAChangingSpeed) {
   const TemporaryFolder folder;
   const std::string law = folder.write("law.csv", "0,50\n0.4,50\n1,47\n1.6,47\n");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "support/curve.hpp"
+#include "support/folders.hpp"
 #include "support/program.hpp"
 #include "support/record.hpp"
 #include "support/scene_run.hpp"
@@ -97,6 +99,35 @@ TEST(NormVerdict, OfContinuousSpans) {
   for (std::size_t i = 0; i < sections; ++i) least = std::min(least, moment[2 * (2 * sections + i)]);
   EXPECT_LT(least, -0.8 * 133e3 * L * L / 8.0);
   EXPECT_GT(least, -1.0 * 133e3 * L * L / 8.0);
+}
+
+/// Least and greatest moment of the train in an envelope at x.
+std::pair<double, double> moments_at(double x, const std::string& spans, const Values& load) {
+  Results run = run_yaml("beam: {spans: [" + spans + "], EI: 1.0e10, mass: 1.0e4, elements_per_span: 8}\n" +
+                             "scene: {analysis: envelope}\n",
+                         load);
+  const std::vector<double>&sections = run("/static/x"), &moment = run("/static/moment");
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    if (std::abs(sections[i] - x) < 1e-3) return {moment[2 * i], moment[2 * i + 1]};
+  return {};
+}
+
+// A lane load acts wherever it is unfavourable, and behind a locomotive only where its gap ends.
+TEST(NormVerdict, LaneLoadBesideTheTruck) {
+  const std::string truck = source_folder() + "/options/loads/hl93_truck.yml";
+  const double w = 9.3e3, midspan = 145e3 * 7.5 + (145e3 + 35e3) * (7.5 - 2.15);
+  EXPECT_NEAR(moments_at(15.0, "30", {{"options_file", truck}}).second, midspan + w * 30.0 * 30.0 / 8.0,
+              1e-6 * midspan);
+  const double with = moments_at(20.0, "20, 20", {{"options_file", truck}}).first,
+               without = moments_at(20.0, "20, 20", {{"options_file", truck}, {"norm_lane_load", "0"}}).first;
+  EXPECT_NEAR(with - without, -w * 20.0 * 20.0 / 8.0, 1e-4 * w * 50.0);
+  const Values behind = {{"load_forces", "1.0"}, {"load_speed", "10"}, {"norm_lane_load", "1e5"}};
+  const double full = moments_at(5.0, "10", behind).second;
+  EXPECT_NEAR(full, 1e5 * 100.0 / 8.0, 10.0);
+  EXPECT_NEAR(moments_at(5.0, "10", behind + Values{{"norm_lane_gap", "-3,1000"}}).second, full, 10.0);
+  // 40 m of gap on either side of the force leave nothing beside it on the span.
+  EXPECT_NEAR(moments_at(5.0, "10", behind + Values{{"load_forces", "1e7"}, {"norm_lane_gap", "-40,40"}}).second,
+              1e7 * 2.5, 1.0);
 }
 
 TEST(NormVerdict, LimitsAreJudged) {

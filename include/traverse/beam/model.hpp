@@ -59,6 +59,22 @@ struct Crack {
   double k = 0.0;  // N m/rad, > 0
 };
 
+/// A mass that moves with the beam at a station.
+struct PointMass {
+  double x = 0.0;     // m
+  double mass = 0.0;  // kg
+};
+
+/// A tuned mass damper: a mass that a spring and a dashpot carry on the beam, and that moves vertically. At rest under
+/// gravity its spring has the length at which its travel is zero.
+struct MassDamper {
+  std::string name;
+  double x = 0.0;     // m
+  double mass = 0.0;  // kg, > 0
+  double k = 0.0;     // N/m, > 0
+  double c = 0.0;     // N s/m
+};
+
 /// Temperature change since the beam was built. An unloaded free beam lengthens; if its top is warmer than its bottom,
 /// it bends convex upward.
 struct Temperature {
@@ -84,6 +100,8 @@ struct BeamModel {
   std::vector<Crack> cracks;              // ascending, none at a hinge
   std::vector<double> expansion_devices;  // stations of a rail at which u may jump, m, ascending, none at a hinge
   std::vector<double> cuts;               // stations of additional nodes, m, ascending
+  std::vector<PointMass> point_masses;    // with a node at each, unless the beam has a layered track
+  std::vector<MassDamper> dampers;        // likewise
   std::vector<Support> supports;   // one at every span end: spans + 1; separate spans share the support between them
   std::vector<double> settlement;  // m upward, settlements of supports that fix v: one at every span end, or empty
   std::vector<double> shift;       // m along the beam, displacements of supports that fix u: likewise
@@ -142,8 +160,8 @@ struct RailMesh {
 };
 RailMesh rail_mesh(const BeamModel& model);
 
-/// The bridge without its layered track. The ballast on the bridge (without ballast its sleepers) becomes a uniform
-/// mass per length. Damping ratios refer to the frequencies of this beam.
+/// The bridge without its layered track and its mass dampers. The ballast on the bridge (without ballast its sleepers)
+/// becomes a uniform mass per length. Damping ratios refer to the frequencies of this beam.
 BeamModel bridge_alone(const BeamModel& model);
 
 /// The model with linear foundations, for small motions about the static equilibrium: a foundation without a gap acts

@@ -36,6 +36,9 @@ struct NormRules {
   bool careful = false;                  // true: careful maintenance of the track, Phi2; false: Phi3
   std::optional<double> length;          // L_Phi of the whole bridge, m; default: computed from the spans
   double spacing = 0.0;                  // m, distance of sections; 0: a twentieth of each span
+  /// A uniform load that accompanies the train of the scene in its static effects, where it is unfavourable, N/m; and
+  /// the range without it, m from the foremost force.
+  double lane_load = 0.0, lane_gap_from = 0.0, lane_gap_to = 0.0;
 };
 
 enum class BridgeMaterial { steel, composite, prestressed, reinforced, filler_beam };

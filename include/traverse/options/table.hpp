@@ -65,8 +65,9 @@ std::span<const Row> part_rows(Part part);
 /// The options train_<coupler>_<row>, in addition to the options of springs and joints.
 std::span<const Row> coupler_rows();
 
-/// The options track_<stretch>_<row>.
+/// The options track_<stretch>_<row>, and beam_<damper>_<row>.
 std::span<const Row> stretch_rows();
+std::span<const Row> damper_rows();
 
 /// The options study_vary_<option>_<row>, and study_vary_<option> itself.
 std::span<const Row> vary_rows();
