@@ -2,8 +2,9 @@
 // paper); equal neighbouring elements share one computed matrix.
 #include "assembly.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <string>
 
 #include "beam/shape.hpp"
 #include "traverse/base/error.hpp"
@@ -70,8 +71,9 @@ std::vector<DamperPlace> places_of_dampers(const Line& line, const Layout& layou
     };
     const auto node = std::find_if(nodes.begin(), nodes.end(), is_free);
     if (node == nodes.end())
-      throw InputError("beam_" + damper.name + "_x: too many dampers at x = " + std::to_string(damper.x) +
-                       " m; allowed: three at a node, and one more for every element beside it; equal ones may be one");
+      throw InputError(fmt::format("beam_{}_x: too many dampers near x = {:g} m; allowed: three at a node of the mesh, "
+                                   "two within an element; equal ones may be one",
+                                   damper.name, damper.x));
     places.push_back({&damper, shape_at(line, Direction::vertical, at), unknown_at(*node)});
   }
   return places;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -79,6 +80,14 @@ void print_properties(const Page& page, const beam::BeamModel& beam) {
     page.line("crack", fmt::format("at x = {:g} m, {:.4g} N m/rad", crack.x, crack.k));
   if (!beam.cuts.empty())
     page.line("cracks of a width", fmt::format("with ends at x = {:g} m", fmt::join(beam.cuts, ", ")));
+  for (const beam::PointMass& one : beam.point_masses)
+    page.line("mass on it", fmt::format("at x = {:g} m, {}", one.x, mass_text(one.mass)));
+  for (const beam::MassDamper& one : beam.dampers) {
+    const double omega = std::sqrt(one.k / one.mass);
+    page.line("damper " + one.name,
+              fmt::format("at x = {:g} m, {}, {:.4g} Hz, damping ratio {:.4g} %", one.x, mass_text(one.mass),
+                          omega / (2.0 * std::numbers::pi), 100.0 * one.c / (2.0 * one.mass * omega)));
+  }
   for (std::size_t end = 0; end < beam.settlement.size(); ++end)
     if (beam.settlement[end] != 0.0)
       page.line("settlement", fmt::format("support {}: {:g} mm", end, 1e3 * beam.settlement[end]));

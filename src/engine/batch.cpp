@@ -21,8 +21,6 @@ TRAVERSE_LANES_DECLARE(void set_batch_step(const BatchTask& t);
                        void start_batch_peaks(const BatchTask& t); void end_peaks_at_kink(const BatchTask& t);
                        void finish_batch(const BatchTask& t);)
 
-constexpr double no_station = -1e9;  // m: initial profile_station, far from any track
-
 /// The memory of a batch and the loop over its steps.
 class Batch {
  public:
@@ -213,7 +211,7 @@ void Batch::start_wheels() {
   task_.table = table_.data();
   task_.interval = interval_.data();
   std::fill_n(train_.h, table_.size(), 0.0);
-  std::fill_n(train_.profile_station, table_.size(), no_station);
+  std::fill_n(train_.profile_station, table_.size(), TrainArrays::no_station);
 }
 
 void Batch::set_track() {

@@ -130,7 +130,7 @@ bool LinearTrain::place(train::Fleet& fleet) {
     set_patches(task_, static_cast<int>(at), *patches);
     task_.h[at] = patches->candidates > 0 ? 0.0 : TrainArrays::no_surface;
     task_.h_x[at] = task_.h_xx[at] = 0.0;
-    task_.profile_station[at] = TrainArrays::infinite;  // the profile is evaluated there, also if its station stays
+    task_.profile_station[at] = TrainArrays::no_station;  // the profile is evaluated also if the contact stays there
   }
   if (!placed_ || !elements_listed()) list_elements();
   evaluate_profiles(0.0);

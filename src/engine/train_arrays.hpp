@@ -29,6 +29,7 @@ class TrainArrays {
 
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   static constexpr double no_surface = -1e3;  // m: height of the surface if there is none
+  static constexpr double no_station = -1e9;  // m: profile_station without an evaluated profile, far from any track
 
   /// Sets the method, scaled to steps of h[lane] seconds.
   void set_rules(const base::Method& method, std::span<const double> h);

@@ -197,7 +197,7 @@ constexpr Row later_rows[] = {
   {"norm_track", choice, "", "standard", any, "standard careful", 0, "maintenance of the track; standard: Phi3; careful: Phi2 of EN 1991-2 6.4.5.2"},
   {"norm_length", number, "m", "(from the spans)", positive, "", 0, "determinant length L_Phi of EN 1991-2 6.4.5.3"},
   {"norm_lane_load", number, "N/m", "0", not_negative, "", 0, "uniform load that accompanies the scene's train or forces in static effects, on all unfavourable parts of the bridge"},
-  {"norm_lane_gap", numbers, "m", "0,0", any, "", 2, "range without norm_lane_load, from the foremost force on, in which behind it is below 0"},
+  {"norm_lane_gap", numbers, "m", "0,0", any, "", 2, "from, to: range without norm_lane_load, relative to the foremost force; behind it is below 0"},
   {"norm_spacing", number, "m", "(a twentieth of each span)", positive, "", 0, "largest distance between the sections at which static effects are computed"},
 
   {"uic774_train_length", number, "m", "300", positive, "", 0, "scene_analysis rail: length of the train"},

@@ -178,8 +178,9 @@ class Scripts(InAFolder):
         rows = self.table("lanes.csv", ["scene", "runs", "passages", "ms each", "error of deflection",
                                         "error of acceleration", "error of moment", "error of wheel force"])
         together = ["1 side by side", "4 side by side", "8 side by side", "8, two ranks"]
-        self.assertEqual([row["runs"] for row in rows], together * 2 + (["one by one"] + together) * 2)
-        self.assertEqual([row["passages"] for row in rows], ["22"] * 8 + ["2"] * 10)
+        self.assertEqual([row["runs"] for row in rows], together * 2 + (["one by one"] + together)
+                         + ["one by one", "8 side by side", "8, two ranks"] + (["one by one"] + together))
+        self.assertEqual([row["passages"] for row in rows], ["22"] * 8 + ["2"] * 13)
         self.assert_positive(rows, "ms each")
         self.assert_errors(rows, "error of deflection", 1e-3)
         self.assert_errors(rows[:8], "error of acceleration", 5e-3)
