@@ -129,7 +129,6 @@ class File {
     std::string path;
     hobj_ref_t reference = 0;
     hsize_t length = 0;  // any length for the time, which grows
-    bool has_coordinates = true;
   };
   const Scale& scale_of(const std::string& dimension, hsize_t length);
   void make_scale(const Id& dataset, const std::string& name);

@@ -1,8 +1,9 @@
 // Tables that are written row by row, in any order, and series, which grow by blocks of rows. All space of a table is
 // allocated at the start, so that a row changes no metadata and a kill leaves every other row intact.
 //
-// Each dataset has unit, long name and dimension scales as netCDF-4 has them. Some of its readers look for the
-// coordinates of a dataset in the dataset's group only, which has links to those elsewhere. REFERENCE_LIST, the way
+// Each dataset has unit, long name and dimension scales as netCDF-4 has them. Its readers look for the coordinates of a
+// dataset in the dataset's group and in the parents of it, some in the group only: there it has a link to the time and
+// to coordinates that are in none of these. REFERENCE_LIST, the way
 // back from a scale, is left out: no reader needs it, and H5DSattach_scale would rewrite it for each of the fifty
 // thousand datasets of a long train, for two minutes (decision 041).
 #include <algorithm>
@@ -223,10 +224,7 @@ const File::Scale& File::scale_of(const std::string& dimension, hsize_t length) 
                  without_coordinates);
     }
   }
-  const Id data(check(H5Dopen2(id(), scale.path.c_str(), H5P_DEFAULT)));
-  make_scale(data, name_of_dimension(scale.path));
-  const Id type(check(H5Dget_type(data.get())));
-  scale.has_coordinates = check(H5Tequal(type.get(), H5T_IEEE_F32BE)) == 0;
+  make_scale(Id(check(H5Dopen2(id(), scale.path.c_str(), H5P_DEFAULT))), name_of_dimension(scale.path));
   check(H5Rcreate(&scale.reference, id(), scale.path.c_str(), H5R_OBJECT, H5I_INVALID_HID));
   scale.length = length_of(*this, scale.path);
   return scales_.emplace(dimension, std::move(scale)).first->second;
@@ -243,7 +241,8 @@ void File::attach_scales(const std::string& dataset, const std::vector<std::stri
   for (std::size_t i = 0; i < dimensions.size(); ++i) {
     const Scale& scale = scale_of(dimensions[i], shape[i]);
     if (scale.length != shape[i] && scale.path != "/time") return;
-    if (const std::string here = folder_of(dataset) + last_of(scale.path); scale.has_coordinates && here != scale.path)
+    const std::string folder = folder_of(dataset), here = folder + last_of(scale.path), of_scale = folder_of(scale.path);
+    if (!folder.starts_with(of_scale) || (folder != of_scale && last_of(scale.path) == "time"))
       if (linked_.insert(here).second && check(H5Lexists(id(), here.c_str(), H5P_DEFAULT)) == 0)
         check(H5Lcreate_soft(scale.path.c_str(), id(), here.c_str(), H5P_DEFAULT, H5P_DEFAULT));
     references[i] = scale.reference;
