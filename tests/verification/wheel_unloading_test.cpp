@@ -38,6 +38,7 @@ TEST(WheelUnloadingOfARun, IsThatOfItsStoredForces) {
         const double at_rest = force.front();
         raw = std::max(raw, lost(force, at_rest));
         run::LowPass(20.0, 1e-3).apply(force);
+        force.resize(force.size() - 150);  // three periods of the filter, which lack the later forces
         filtered = std::max(filtered, lost(force, at_rest));
         double since = 0.0;
         for (const double f : force) {
