@@ -9,6 +9,8 @@ import numpy as np
 from . import words
 from .shared_library import NUMBERS, check, library
 
+BESIDE_TABLES = ("columns", "unit", "factor", "shift", "decimal")  # options beside the name of a table, in its block
+
 
 class Problem:
     """A bridge and what crosses it, as a value: nothing is read or computed before `simulate`.
@@ -36,8 +38,9 @@ class Problem:
     def _flat(self, block, prefix=""):
         """The options of nested blocks by their names; tables are kept by the names of their options."""
         found = {}
+        is_table = {"name"} < set(block) <= {"name", *BESIDE_TABLES}
         for key, value in block.items():
-            name = f"{prefix}{key}"
+            name = prefix.removesuffix("_") if key == "name" and is_table else f"{prefix}{key}"
             if isinstance(value, dict):
                 found |= self._flat(value, f"{name}_")
             elif _is_table(value):

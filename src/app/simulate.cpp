@@ -13,7 +13,7 @@
 #include "base/bytes.hpp"
 #include "check/unusual.hpp"
 #include "ensemble/parallel_cases.hpp"
-#include "options/data_file.hpp"
+#include "options/parse_number.hpp"
 #include "run/process.hpp"
 #include "step_by_step.hpp"
 #include "study/prepared_study.hpp"

@@ -21,7 +21,7 @@
 #include "base/one_step_methods.hpp"
 #include "base/regular_file.hpp"
 #include "integrate/integrators.hpp"
-#include "options/data_file.hpp"
+#include "options/parse_number.hpp"
 #include "options/input_texts.hpp"
 #include "results/place.hpp"
 #include "run/model_record.hpp"

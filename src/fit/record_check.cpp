@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "options/data_file.hpp"
+#include "options/parse_number.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
 

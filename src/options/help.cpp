@@ -193,6 +193,8 @@ std::vector<HelpGroup> help_groups() {
   add("beam_NAME_", damper_rows());
   groups.push_back({"stretch", "Each stretch NAME in the list of track_stretches", {}});
   add("track_NAME_", stretch_rows());
+  groups.push_back({"table", "Each option NAME that names a table of numbers (doc/guide/tables.md)", {}});
+  add("NAME_", table_rows());
   groups.push_back({"vary", "Each option NAME that a study varies", {}});
   add("study_vary_NAME", {&vary_list_row(), 1});
   add("study_vary_NAME_", vary_rows());
@@ -218,7 +220,12 @@ std::string help_text(const std::string& about) {
     candidates.push_back(group.name);
     for (const HelpGroup::Option& option : group.options) candidates.push_back(option.name);
   }
+  const auto beside = beside_table(wanted);
   for (HelpGroup group : groups) {
+    if (beside && std::ranges::any_of(group.options, [&](const HelpGroup::Option& option) {
+          return option.name == beside->first && names_table(*option.row);
+        }))
+      group.options.push_back({wanted, beside->second});
     std::erase_if(group.options,
                   [&](const HelpGroup::Option& option) { return option.name != wanted && option.row->name != wanted; });
     if (!group.options.empty()) append(group, out);

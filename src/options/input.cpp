@@ -15,7 +15,7 @@
 #include <sstream>
 
 #include "base/petsc.hpp"
-#include "options/data_file.hpp"
+#include "options/parse_number.hpp"
 #include "options/petscrc.hpp"
 #include "options/read_file.hpp"
 #include "traverse/options/options.hpp"

@@ -156,7 +156,7 @@ std::string bash_completion(const std::vector<std::string>& ts_types) {
       const std::string pattern = "-" + pattern_of(name);
       add_words(row->choices, choices[pattern]);
       if (row->kind == Kind::flag) add_words("true false", choices[pattern]);
-      if (row->kind == Kind::file || row->kind == Kind::number_or_file) files.insert(pattern);
+      if (row->kind == Kind::file || names_table(*row)) files.insert(pattern);
       bool named = false;
       for (const std::string_view before : user_named) {
         if (named || !name.starts_with(before)) continue;

@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "base/text.hpp"
-#include "options/data_file.hpp"
 #include "options/limits.hpp"
+#include "options/parse_number.hpp"
 #include "options/read_file.hpp"
 #include "traverse/base/error.hpp"
 
@@ -102,51 +102,14 @@ void Options::add_defaults(const std::vector<Entry>& entries) {
   for (const Entry& entry : entries_of(entries)) entries_.set_default(entry);
 }
 
-bool Options::declare(const std::string& name, const Row& row) {
-  return !knows(name) && declared_.try_emplace(name, &row).second;
-}
-
-const Row* Options::find_known(std::string_view name) const {
-  if (const Row* fixed = find_row(fixed_rows(), name)) return fixed;
-  const auto declared = declared_.find(std::string(name));
-  return declared == declared_.end() ? nullptr : declared->second;
-}
-
 const Row& Options::row(std::string_view name) const {
   const Row* known = find_known(name);
   if (known == nullptr) throw Error(fmt::format("option {} is read but is not in the option table", name), 1);
   return *known;
 }
 
-std::string Options::nearest_known(const std::string& name) const {
-  std::vector<std::string> candidates;
-  for (const Row& fixed : fixed_rows()) candidates.emplace_back(fixed.name);
-  const auto fixed = static_cast<std::ptrdiff_t>(candidates.size());
-  for (const auto& declared : declared_) candidates.push_back(declared.first);
-  std::sort(candidates.begin() + fixed, candidates.end());
-  return nearest(name, candidates);  // the first of the table among equally near ones
-}
-
-void Options::check_known(std::string_view name, const std::string& other) const {
-  if (knows(other)) return;
-  const std::string near = nearest_known(other);
-  refuse(name,
-         fmt::format("there is no option {}{}", other, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-}
-
 void Options::check_at_most(std::string_view name, double count, double most, std::string_view what) const {
   if (!(count <= most)) refuse(name, fmt::format("{:.6g} {}; allowed: at most {:g}", count, what, most));
-}
-
-void Options::check_names() const {
-  for (const Entry& entry : entries_) {
-    if (knows(entry.name)) continue;
-    const std::string near = nearest_known(entry.name);
-    const bool part = entry.name.starts_with("vehicle_");
-    throw InputError(fmt::format("unknown option {}{}{}; -help lists all options", entry.given(),
-                                 near.empty() ? "" : fmt::format("; did you mean {}?", near),
-                                 part ? " (each part must be in a list of its vehicle: bodies, springs, ...)" : ""));
-  }
 }
 
 void Options::check_values() const {
@@ -173,6 +136,7 @@ void Options::check_value(const Entry& entry, const Row& row) const {
       (void)flag(name);
       break;
     case Kind::text:
+    case Kind::word_or_table:
     case Kind::choice:
       (void)text(name);
       break;
@@ -187,6 +151,7 @@ void Options::check_value(const Entry& entry, const Row& row) const {
       (void)texts(name);
       break;
     case Kind::file:
+    case Kind::table:
       (void)path(name);
       break;
     case Kind::number_or_file:
@@ -364,6 +329,13 @@ bool Options::is_number(std::string_view name) const {
   if (!parse_number(value, parsed) && !like_a_number) return false;
   (void)to_number(name, value);
   return true;
+}
+
+bool Options::is_table(std::string_view name) const {
+  const Kind kind = row(name).kind;
+  return kind == Kind::number_or_file
+             ? !is_number(name)
+             : kind != Kind::word_or_table || text(name).find_first_of("./") != std::string::npos;
 }
 
 std::string Options::path_or_folder(std::string_view name) const {

@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "options/input_texts.hpp"
 #include "traverse/base/error.hpp"
+#include "traverse/options/table.hpp"
 
 namespace traverse::options {
 namespace {
@@ -34,6 +35,7 @@ class Flattener {
 
   void map(const YAML::Node& node, const std::string& prefix, bool merged = false) {
     const Nested nested(*this, node);
+    const bool table = !prefix.empty() && is_table(node);
     std::unordered_map<std::string, int> lines;
     std::vector<YAML::Node> merges;
     for (const auto& item : node) {
@@ -53,7 +55,7 @@ class Flattener {
         throw InputError(at(file_, line) + "'" + key +
                          "' is in the place of a name: in braces a comma ends a value; use a decimal point, and "
                          "brackets for a list");
-      value(item.second, prefix + key, line, merged);
+      value(item.second, table && key == "name" ? prefix.substr(0, prefix.size() - 1) : prefix + key, line, merged);
     }
     for (const YAML::Node& merge : merges) add_merged(merge, prefix);
   }
@@ -77,6 +79,15 @@ class Flattener {
   };
 
   static int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
+
+  /// Whether a block is a file with options beside it, {name: track.csv, unit: mm}.
+  static bool is_table(const YAML::Node& node) {
+    const auto belongs = [](const auto& item) {
+      return item.first.IsScalar() &&
+             (item.first.Scalar() == "name" || find_row(table_rows(), item.first.Scalar()) != nullptr);
+    };
+    return node.size() > 1 && node["name"] && std::all_of(node.begin(), node.end(), belongs);
+  }
 
   void check_key(const std::string& key, int line) const {
     for (const char c : key) {

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "options/data_file.hpp"
 #include "options/input_texts.hpp"
+#include "options/parse_number.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/table.hpp"
 

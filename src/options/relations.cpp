@@ -92,7 +92,7 @@ constexpr Relation relations[] = {
   {Related::load, "amplitude unbalance phase", needs, "frequency", ""},
   {Related::load, "frequency", needs, "amplitude unbalance", ""},
   {Related::load, "wagons", has_no_effect_without, "en15528", "it is for ~en15528"},
-  {Related::load, "file_x", has_no_effect_without, "file", "it is for ~file"},
+  {Related::load, "file_x formation", has_no_effect_without, "file", "it is for ~file"},
 
   {Related::part, "table", excludes, "stiffness force moment value rate", ""},
   {Related::part, "damper_table", excludes, "damping", ""},
@@ -159,10 +159,22 @@ std::string text_of(const Relation& relation, const std::string& block, const st
   return text;
 }
 
+/// Options beside one that names a table: without it they are refused, without a table they have no effect.
+void check_beside_tables(const Options& o, std::vector<std::string>& notes) {
+  for (const Entry& entry : o.entries()) {
+    const auto beside = beside_table(entry.name);
+    if (!beside || o.find_known(entry.name) != beside->second) continue;
+    if (!o.has(beside->first)) o.refuse(entry.name, fmt::format("needs {}, the table that it is for", beside->first));
+    if (!o.is_table(beside->first))
+      notes.push_back(fmt::format("{} has no effect: {} names no table", entry.name, beside->first));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> check_relations(const Options& o, Related related, const std::string& block) {
   std::vector<std::string> notes;
+  if (related == Related::scene) check_beside_tables(o, notes);
   for (const Relation& relation : relations) {
     if (relation.related != related) continue;
     const std::vector<std::string> others = names_of(relation.others, block);

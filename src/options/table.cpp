@@ -38,7 +38,10 @@ std::string kind_text(const Row& row) {
     case Kind::text:
       return "text";
     case Kind::file:
+    case Kind::table:
       return "a file";
+    case Kind::word_or_table:
+      return "a word or a file";
     case Kind::choice:
     case Kind::choice_list:
       return "one of";
@@ -106,6 +109,17 @@ std::string joined(std::string_view words, std::string_view separator) {
 const Row* find_row(std::span<const Row> rows, std::string_view name) {
   const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == name; });
   return row == rows.end() ? nullptr : &*row;
+}
+
+bool names_table(const Row& row) {
+  return row.kind == Kind::table || row.kind == Kind::number_or_file || row.kind == Kind::word_or_table;
+}
+
+std::optional<std::pair<std::string, const Row*>> beside_table(std::string_view name) {
+  const std::size_t end = name.rfind('_');
+  const Row* row = end == name.npos ? nullptr : find_row(table_rows(), name.substr(end + 1));
+  if (row == nullptr) return {};
+  return std::pair(std::string(name.substr(0, end)), row);
 }
 
 std::string allowed(const Row& row) {

@@ -77,8 +77,8 @@ constexpr Row beam_rows[] = {
 
   {"support_settlement", numbers, "m", "0", any, "", 0, "upward displacement of each support from its built position, negative: settlement; one per span end"},
   {"foundation_shear_layer", number_or_file, "N", "", positive, "", 0, "shear stiffness of the layer of a Pasternak foundation, or a file x,value: with a deflection v it exerts the force G v'' per length; its springs are foundation_vertical_bed_k"},
-  {"support_motion", file, "", "", any, "", 0, "a file t,value of the vertical motion of all supports, or t,value0,value1,... with one column for each span end; the ground moves with the first and the last one"},
-  {"support_motion_along", file, "", "", any, "", 0, "as support_motion, for the motion along the beam of the supports that hold it along x"},
+  {"support_motion", table, "s, m/s2", "", any, "", 0, "a file t,value of the vertical motion of all supports, or t,value0,value1,... with one column for each span end; the ground moves with the first and the last one"},
+  {"support_motion_along", table, "s, m/s2", "", any, "", 0, "as support_motion, for the motion along the beam of the supports that hold it along x"},
   {"support_motion_values", choice, "", "acceleration", any, "acceleration displacement", 0, "what the files of support_motion and support_motion_along have; acceleration: m/s2, linear between its rows, from rest; displacement: m, cubic spline through its rows, which holds its end values"},
   {"support_stiffness", numbers, "N/m", "0", not_negative, "", 0, "vertical stiffness of each support, one per span end; 0: rigid"},
   {"support_scour", numbers, "1", "0", {0.0, 1.0}, "", 0, "fraction of support_stiffness that scour removes, one per span end"},
@@ -96,9 +96,9 @@ constexpr Row run_rows[] = {
   {"train_times", numbers, "s", "(one train, by train_positions)", any, "", 0, "timetable: at each of these times such a train enters the bridge with its first wheel; those that are never on it during the run are left out"},
   {"trains_from", number, "s", "0", any, "", 0, "the time of the timetable (train_times) at which the run begins"},
   {"train_speed", number, "m/s", "", {-1e4, 1e4}, "", 0, "speed at t = 0, in m/s or as 100 km/h; positive: to the right; negative: to the left, vehicles mirrored"},
-  {"train_speed_file", file, "", "", any, "", 0, "table t,v (s, m/s) instead of a speed, linear between its rows"},
+  {"train_speed_file", table, "s, m/s", "", any, "", 0, "table t,v (s, m/s) instead of a speed, linear between its rows"},
   {"train_speed_over", choice, "", "time", any, "time position", 0, "position: the table is x,v over the position of the front wheel, with constant acceleration between its rows"},
-  {"train_profile", text, "", "(track_profile)", any, "", 0, "running surface of the wheels of this train only, values as of track_profile"},
+  {"train_profile", word_or_table, "m, m", "(track_profile)", any, "", 0, "running surface of the wheels of this train only, values as of track_profile"},
   {"train_profile_shape", choice, "", "linear", any, "linear spline", 0, "as track_profile_shape, for the profile of this train"},
   {"train_bump_start", number, "m", "", any, "", 0, "as track_bump_start, for the profile of this train"},
   {"train_bump_length", number, "m", "", positive, "", 0, "as track_bump_length, for the profile of this train"},
@@ -112,24 +112,25 @@ constexpr Row run_rows[] = {
   {"load_positions", numbers, "m", "(first force at 0)", any, "", 0, "x of each force at t = 0; with load_hslm_a, load_hslm_b, load_en15528 or load_file: x of the first axle; a force that moves from an end of the bridge is not on it at t = 0"},
   {"loads", texts, "", "(one load: the options of load)", any, "", 0, "names of several groups of forces; each has its own block with the options of load: NAME_forces, NAME_speed, ..."},
   {"load_speed", number, "m/s", "(train_speed)", {-1e4, 1e4}, "", 0, "speed of the forces, in m/s or as 100 km/h; positive: to the right; negative: to the left"},
-  {"load_speed_file", file, "", "", any, "", 0, "table t,v (s, m/s) instead of a speed, linear between its rows"},
+  {"load_speed_file", table, "s, m/s", "", any, "", 0, "table t,v (s, m/s) instead of a speed, linear between its rows"},
   {"load_speed_over", choice, "", "time", any, "time position", 0, "position: the table is x,v over the position of the first force, with constant acceleration between its rows"},
   {"load_hslm_a", integer, "", "", {1, 10}, "", 0, "instead of load_forces: train A1 to A10 of EN 1991-2"},
   {"load_hslm_b", numbers, "1, m", "", positive, "", 2, "instead of load_forces: HSLM-B of EN 1991-2, the number of forces of 170 kN and their distance"},
   {"load_en15528", choice, "", "", any, "A1 B1 B2 C2 C3 C4 D2 D3 D4 D5 E4 E5", 0, "instead of load_forces: reference wagons of this line category of EN 15528"},
   {"load_wagons", integer, "", "1", {1, 1000}, "", 0, "number of reference wagons (load_en15528)"},
   {"load_spread", number, "m", "(no distribution)", {0.0, 10.0, true}, "", 0, "sleeper spacing: each force is distributed over three sleepers, a quarter, a half and a quarter"},
-  {"load_file", file, "", "", any, "", 0, "instead of load_forces: a file of two columns, x in m and force in N"},
+  {"load_file", table, "m, N", "", any, "", 0, "instead of load_forces: a file of two columns, x in m and force in N, or a table of axles or of weighed vehicles as for screen_fleet"},
+  {"load_formation", text, "", "(the only one)", any, "", 0, "name of the formation or vehicle in load_file"},
   {"load_file_x", choice, "", "forward", any, "forward backward", 0, "direction in which x of load_file grows; forward: travel direction; backward: as distances behind the first axle"},
   {"load_moments", numbers, "N m", "", any, "", 0, "moving concentrated moments at load_positions, counter-clockwise, one for each force or alone"},
   {"load_distributed", numbers, "m, m, N/m", "", any, "", 0, "moving line loads: x of both ends at t = 0 and the load per length, downward; three numbers for each"},
-  {"load_table", file, "", "", any, "", 0, "table t,F (s, N; of line loads N/m), linear between its rows, that is added to each force of the group"},
+  {"load_table", table, "s, N", "", any, "", 0, "table t,F (s, N; of line loads N/m), linear between its rows, that is added to each force of the group"},
   {"load_frequency", number, "Hz", "", positive, "", 0, "frequency f of the harmonic part that is added to each force: sum of amplitude_k sin(2 pi k f t + phase_k)"},
   {"load_amplitude", numbers, "N", "", any, "", 0, "amplitudes of the harmonics k = 1, 2, ... (of line loads N/m)"},
   {"load_phase", numbers, "rad", "0", any, "", 0, "phases of the harmonics, one for each amplitude"},
   {"load_unbalance", number, "kg m", "", not_negative, "", 0, "rotating mass times its eccentricity; adds unbalance (2 pi f)^2 to the first amplitude"},
 
-  {"track_profile", text, "", "none", any, "", 0, text_of_profile},
+  {"track_profile", word_or_table, "m, m", "none", any, "", 0, text_of_profile},
   {"track_profile_shape", choice, "", "linear", any, "linear spline", 0, "of a profile file; linear: straight lines, kinks rounded within 0.25 m of a row or up to the nearer row; spline: natural cubic spline"},
   {"track_bump_start", number, "m", "", any, "", 0, "x at which the bump begins"},
   {"track_bump_length", number, "m", "", positive, "", 0, "length of the bump"},
@@ -210,7 +211,7 @@ constexpr Row later_rows[] = {
   {"uic774_direction", choice, "", "right", any, "right left both", 0, "travel direction of the train"},
 
   {"screen_stock", file, "", "", any, "", 0, "scene_analysis screen: the table of bridges, with the columns name, spans, mass, EI or f1, damping or type, and others"},
-  {"screen_fleet", text, "", "", any, "", 0, "the trains: a table of axles with the columns name, load_kN or load_t, position or spacing, and speed, or a folder of such tables"},
+  {"screen_fleet", text, "", "", any, "", 0, "the trains: a table of axles with the columns name, load_kN or load_t, position or spacing, and speed, a table of weighed vehicles (doc/guide/tables.md), or a folder of such tables"},
   {"screen_speeds", numbers, "m/s", "(10 to 250 km/h, every km/h)", positive, "", 3, "speeds of the screen: from, to, step; each may be in km/h; a train runs up to its own speed and that of the bridge"},
   {"screen_modes", integer, "", "3", {1, 8}, "", 0, "number of bending modes of each bridge; frequencies above them are left out of the deck acceleration, without any other filter"},
   {"screen_stations", integer, "", "10", {2, 50}, "", 0, "least number of equal parts of each span, between which the response is sampled; peaks along the bridge are searched for exactly"},
@@ -295,6 +296,13 @@ constexpr Row later_rows[] = {
   {"skip_petscrc", flag, "", "false", any, "", 0, "only on the command line: the files .petscrc and petscrc are not read"},
 };
 
+constexpr Row beside_tables[] = {
+  {"columns", texts, "", "(all)", any, "", 0, "columns to be read, by their names or numbers: the first one, x or time, and those of the values; or only that of the values"},
+  {"unit", texts, "", "(that of the column's name, or SI)", any, "", 0, "unit of the values, such as mm, kN or km/h, or the units of all columns"},
+  {"factor", number, "1", "1", any, "", 0, "number by which the values are multiplied"},
+  {"shift", number, "", "0", any, "", 0, "number that is added to the first column, in its SI unit"},
+  {"decimal", choice, "", "(found from the file)", any, "point comma", 0, "decimal sign of the file"},
+};
 constexpr Row vary[] = {
   {"from", text, "", "", any, "", 0, "first value"},
   {"to", text, "", "", any, "", 0, "last value"},
@@ -309,7 +317,7 @@ constexpr Row fit[] = {
   {"frequency", integer, "", "", {1, 100}, "", 0, "number of the measured natural frequency, 1: the lowest, as -scene_analysis modes lists them"},
   {"value", number, "Hz", "", positive, "", 0, "measured frequency"},
   {"sd", number, "", "(of series: from the residuals)", positive, "", 0, "standard deviation of the measured value, or of each value of a series after its factor"},
-  {"series", file, "", "", any, "", 0, "table of a measured series, the time in its first column (s)"},
+  {"series", table, "s", "", any, "", 0, "table of a measured series, the time in its first column (s)"},
   {"column", integer, "", "2", {2, 1000}, "", 0, "column of the measured values"},
   {"quantity", choice, "", "", any, "deflection velocity acceleration moment shear", 0, "measured quantity; deflection, velocity and acceleration upward, moment in sagging"},
   {"x", number, "m", "", not_negative, "", 0, "station of the measurement on the bridge"},
@@ -347,6 +355,8 @@ std::span<const Row> fixed_rows() {
   }();
   return rows;
 }
+
+std::span<const Row> table_rows() { return beside_tables; }
 
 std::span<const Row> vary_rows() { return vary; }
 const Row& vary_list_row() { return vary_list; }

@@ -60,11 +60,11 @@ constexpr Row spring[] = {
   {"damping", number, "Ns/m", "0", not_negative, "", 0, "damping"},
   {"free_length", number, "m", "(the distance at t = 0)", not_negative, "", 0, "length without force"},
   {"preload", number, "N", "0", any, "", 0, "force at t = 0, positive in tension; instead of free_length"},
-  {"table", file, "", "", any, "", 0, "a file elongation,force instead of stiffness: m beyond the free length, N in tension; linear between and beyond its rows"},
-  {"damper_table", file, "", "", any, "", 0, "a file rate,force instead of damping: m/s of elongation, N in tension; linear between and beyond its rows"},
+  {"table", table, "m, N", "", any, "", 0, "a file elongation,force instead of stiffness: m beyond the free length, N in tension; linear between and beyond its rows"},
+  {"damper_table", table, "m/s, N", "", any, "", 0, "a file rate,force instead of damping: m/s of elongation, N in tension; linear between and beyond its rows"},
   {"gap", number, "m", "0", not_negative, "", 0, "play: no force up to this change of length in either direction; stiffness or table begin there"},
   {"side", choice, "", "both", any, "both compression tension", 0, "compression: no tensile force (a bump stop); tension: no compressive force (a rope)"},
-  {"winding_table", file, "", "", any, "", 0, "a file t,length: m that a winch adds to the free length, negative where it hoists; cubic spline through its rows, which holds its end values"},
+  {"winding_table", table, "s, m", "", any, "", 0, "a file t,length: m that a winch adds to the free length, negative where it hoists; cubic spline through its rows, which holds its end values"},
 };
 
 constexpr Row torsion_spring[] = {
@@ -72,8 +72,8 @@ constexpr Row torsion_spring[] = {
   {"stiffness", number, "Nm/rad", "0", not_negative, "", 0, "stiffness"},
   {"damping", number, "Nms/rad", "0", not_negative, "", 0, "damping"},
   {"free_angle", number, "rad", "(the angle at t = 0)", any, "", 0, "angle of the second body relative to the first without moment"},
-  {"table", file, "", "", any, "", 0, "a file twist,moment instead of stiffness: rad beyond the free angle, Nm of the restoring moment; linear between and beyond its rows"},
-  {"damper_table", file, "", "", any, "", 0, "a file rate,moment instead of damping: rad/s, Nm; linear between and beyond its rows"},
+  {"table", table, "rad, N m", "", any, "", 0, "a file twist,moment instead of stiffness: rad beyond the free angle, Nm of the restoring moment; linear between and beyond its rows"},
+  {"damper_table", table, "rad/s, N m", "", any, "", 0, "a file rate,moment instead of damping: rad/s, Nm; linear between and beyond its rows"},
   {"gap", number, "rad", "0", not_negative, "", 0, "play: no moment up to this twist in either direction; stiffness or table begin there"},
   {"side", choice, "", "both", any, "both compression tension", 0, "compression: acts on negative twist only; tension: on positive twist only"},
 };
@@ -105,7 +105,7 @@ constexpr Row actuator[] = {
   {"bodies", texts, "", "", any, "", 2, "both of these bodies in one option"},
   {"force", numbers, "N", "0, 0", any, "", 2, "fx, fy at the centre of mass"},
   {"moment", number, "Nm", "0", any, "", 0, "moment, positive counter-clockwise"},
-  {"table", file, "", "", any, "", 0, "a file t,moment or t,fx,fy or t,fx,fy,moment instead; linear between its rows"},
+  {"table", table, "s, N, N, N m", "", any, "", 0, "a file t,moment or t,fx,fy or t,fx,fy,moment instead; linear between its rows"},
   {"delay", number, "s", "0", any, "", 0, "time by which the table is later"},
 };
 
@@ -114,7 +114,7 @@ constexpr Row driver[] = {
   {"coordinate", choice, "", "", any, "x y phi", 0, "prescribed coordinate; x is relative to the vehicle's origin"},
   {"value", number, "m or rad", "(the position at t = 0)", any, "", 0, "value at t = 0"},
   {"rate", number, "m/s or rad/s", "0", any, "", 0, "constant rate"},
-  {"table", file, "", "", any, "", 0, "a file t,value instead of value and rate; cubic spline through its rows, which holds its end values"},
+  {"table", table, "s", "", any, "", 0, "a file t,value instead of value and rate; cubic spline through its rows, which holds its end values"},
 };
 
 constexpr Row contact[] = {

@@ -16,7 +16,7 @@
 #include "base/digest.hpp"
 #include "hdf5.hpp"
 #include "isolated_read.hpp"
-#include "options/data_file.hpp"
+#include "options/parse_number.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "options/data_file.hpp"
+#include "options/parse_number.hpp"
 #include "options/input_texts.hpp"
 #include "results/origin.hpp"
 #include "results/stage.hpp"

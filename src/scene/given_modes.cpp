@@ -12,8 +12,8 @@
 #include <sstream>
 
 #include "base/text.hpp"
-#include "options/data_file.hpp"
 #include "options/input_texts.hpp"
+#include "options/parse_number.hpp"
 #include "results/origin.hpp"
 #include "traverse/base/error.hpp"
 

@@ -79,6 +79,12 @@ AxleList en15528(std::string_view line, int wagons) {
   return axles;
 }
 
+AxleList axles_of(const Formation& formation) {
+  AxleList axles{formation.loads, formation.distance};
+  for (double& offset : axles.offsets) offset = 0.0 - offset;
+  return axles;
+}
+
 AxleList axles_of(const std::vector<std::vector<double>>& columns, bool backward) {
   AxleList axles{columns[1], columns[0]};
   if (backward)

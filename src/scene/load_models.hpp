@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formations.hpp"
+
 namespace traverse::scene {
 
 /// Forces and their positions relative to the first axle.
@@ -21,6 +23,9 @@ AxleList hslm_b(int forces, double distance);
 
 /// A number of reference wagons of a line category of EN 15528, annex A: four axles, 9.81 m/s2.
 AxleList en15528(std::string_view line, int wagons);
+
+/// The axles of a formation, whose first one is in front.
+AxleList axles_of(const Formation& formation);
 
 /// The forces of two columns: x in m, growing in the travel direction or `backward`, and force in N.
 AxleList axles_of(const std::vector<std::vector<double>>& columns, bool backward);

@@ -244,6 +244,7 @@ Scene read_one_scene(Options o) {
   read_rail_loads(o, scene);
   read_screen(o, scene);
   check_scene(o, scene);
+  scene.notes.insert(scene.notes.end(), o.notes().begin(), o.notes().end());
   check_plausibility(o, vehicles, scene);
   record_start(scene);
   check_size(o, scene);

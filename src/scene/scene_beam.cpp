@@ -224,7 +224,7 @@ double place_on_beam(const Options& o, const std::string& name, double x, double
 
 beam::Distribution read_distribution(const Options& o, const std::string& name) {
   if (o.is_number(name)) return o.number(name);
-  beam::Distribution table = from_table(o, name, 2, 2, options::Order::unsorted, [&](const auto& columns) {
+  beam::Distribution table = from_table(o, name, {}, [&](const auto& columns) {
     return beam::Distribution(columns[0], columns[1], fmt::format("{} ({})", name, o.path(name)));
   });
   const options::Row& row = *o.find_known(name);

@@ -50,7 +50,9 @@ void declare_list(Options& o, const std::string& list, const std::string& kind) 
 /// What `make` returns for x or t, and v, of a block's speed_file.
 template <class Make>
 auto from_speeds(const Options& o, const Block& block, Make&& make) {
-  return from_table(o, block.option("speed_file"), 2, 2, options::Order::rising, make);
+  options::WantedColumns wanted = rising_pairs;
+  if (o.choice(block.option("speed_over")) == "position") wanted.units = "m, m/s";
+  return from_table(o, block.option("speed_file"), wanted, make);
 }
 
 std::string direction_text(double direction) { return direction < 0.0 ? "to the left" : "to the right"; }

@@ -48,6 +48,13 @@ std::string name_of(const std::string& target, std::string_view row) {
   return std::string(fit_to) + target + "_" + std::string(row);
 }
 
+/// Whether it is an option beside the table of a given fit_to_NAME_series.
+bool is_beside_series(const Options& o, const std::string& option) {
+  const auto beside = options::beside_table(option);
+  return beside && beside->first.starts_with(fit_to) && beside->first.ends_with("_series") &&
+         o.entries().has(beside->first);
+}
+
 [[noreturn]] void refuse_target(const Options& o, const std::string& option) {
   std::string rows;
   for (const Row& row : options::fit_rows()) rows += (rows.empty() ? "" : ", ") + std::string(row.name);
@@ -60,7 +67,7 @@ void declare_fit(Options& o) {
     if (name.starts_with(fit_vary)) {
       o.check_known(name, name.substr(fit_vary.size()));
       o.declare(name, options::fit_bounds_row());
-    } else if (name.starts_with(fit_to)) {
+    } else if (name.starts_with(fit_to) && !is_beside_series(o, name)) {
       const std::optional<Target> target = target_of(name);
       if (!target) refuse_target(o, name);
       o.declare(name, *target->row);
@@ -117,13 +124,25 @@ options::MeasuredFrequency read_frequency(const Options& o, const std::string& t
           o.number(name_of(target, "sd"))};
 }
 
+/// The SI unit of a measured quantity.
+std::string_view unit_of(std::string_view quantity) {
+  return quantity == "velocity"       ? "m/s"
+         : quantity == "acceleration" ? "m/s2"
+         : quantity == "moment"       ? "N m"
+         : quantity == "shear"        ? "N"
+                                      : "m";
+}
+
 /// Reads the rows of a series between fit_to_NAME_from and fit_to_NAME_to.
 void read_values(const Options& o, const std::string& target, options::MeasuredSeries& series) {
   const std::string option = name_of(target, "series");
   const auto column =
       static_cast<std::size_t>(o.has(name_of(target, "column")) ? o.integer(name_of(target, "column")) : 2);
-  const auto table =
-      from_table(o, option, 2, most_columns, options::Order::rising, [](auto columns) { return columns; });
+  const std::string quantity = o.has(name_of(target, "quantity")) ? o.choice(name_of(target, "quantity")) : "";
+  const std::string units = fmt::format("s, {}", quantity.empty() ? "" : unit_of(quantity));
+  const bool own_factor = o.has(name_of(target, "factor"));  // which converts units, too
+  const auto table = from_table(o, option, {2, most_columns, options::Order::rising, units, !own_factor},
+                                [](auto columns) { return columns; });
   if (table.size() < column)
     o.refuse(option, fmt::format("the table has {} columns; allowed: at least {} ({})", table.size(), column,
                                  name_of(target, "column")));
@@ -195,6 +214,7 @@ Fit read_measurements(const Options& o) {
   Fit fit;
   std::set<std::string> names;
   for (const Entry& entry : o.entries()) {
+    if (is_beside_series(o, entry.name)) continue;
     if (entry.name.starts_with(fit_vary)) fit.parameters.push_back(read_parameter(o, entry.name));
     const std::optional<Target> target = target_of(entry.name);
     if (!target || !names.insert(target->name).second) continue;
@@ -280,6 +300,7 @@ Scene read_fit(const Options& given) {
   Scene scene = read_scene_of_fit(given, fit, start, fit.series.empty());
   scene.fit = fit;
   scene.notes.insert(scene.notes.begin(), start_note(fit));
+  scene.notes.insert(scene.notes.end(), o.notes().begin(), o.notes().end());
   scene.options = o.all();
   check_fit(o, scene);
   return scene;

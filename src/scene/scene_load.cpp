@@ -2,10 +2,12 @@
 // of forces that varies over time.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "formations.hpp"
 #include "load_models.hpp"
 #include "scene_parts.hpp"
 
@@ -52,12 +54,35 @@ void spread(double spacing, bool from_zero, double direction, MovingLoad& load) 
   load.positions = parts.positions;
 }
 
+/// The formation or vehicle of a block's table of axles.
+Formation formation_of(const Options& o, const Block& block) {
+  constexpr std::size_t most_listed = 10;
+  const std::string file = block.option("file"), option = block.option("formation");
+  std::string note, names;
+  std::vector<Formation> all;
+  try {
+    all = read_formations(o.path(file), note);
+  } catch (const InputError& error) {
+    o.refuse(file, error.what());
+  }
+  if (!note.empty()) o.note(note);
+  if (all.size() == 1 && !o.has(option)) return all.front();
+  for (const Formation& one : all)
+    if (o.has(option) && one.name == o.text(option)) return one;
+  for (std::size_t i = 0; i < std::min(all.size(), most_listed); ++i) names += (i > 0 ? ", " : "") + all[i].name;
+  const std::string which = fmt::format("{}{}", names, all.size() > most_listed ? ", ..." : "");
+  if (o.has(option))
+    o.refuse(option, fmt::format("there is no such formation in {}; allowed: {}", o.path(file), which));
+  o.refuse(file, fmt::format("has {} formations; {} names one of them: {}", all.size(), option, which));
+}
+
 /// The train that an option of the block selects, other than forces and sweep_hslm_a.
 AxleList named_train(const Options& o, const Block& block, const std::string& option) {
   if (option == block.option("hslm_a")) return hslm_a(o.integer(option));
   if (option == block.option("en15528")) return en15528(o.text(option), o.integer(block.option("wagons")));
+  if (option == block.option("file") && has_formations(o, option)) return axles_of(formation_of(o, block));
   if (option == block.option("file"))
-    return from_table(o, option, 2, 2, options::Order::unsorted, [&](const auto& columns) {
+    return from_table(o, option, {}, [&](const auto& columns) {
       return axles_of(columns, o.text(block.option("file_x")) == "backward");
     });
   const std::vector<double> given = o.numbers(option);  // load_hslm_b
@@ -137,6 +162,14 @@ std::string load_option(const Options& o, const std::string& load) {
   return "";
 }
 
+bool has_formations(const Options& o, const std::string& option) {
+  try {
+    return !o.has(option + "_columns") && !o.has(option + "_decimal") && has_formations(o.path(option));
+  } catch (const InputError& error) {
+    o.refuse(option, error.what());
+  }
+}
+
 bool forces_move(const Options& o) { return o.has("loads") || !load_option(o).empty(); }
 
 void read_load(const Options& o, Scene& scene) {
@@ -209,7 +242,7 @@ void add_line_loads(const Options& o, const Block& block, MovingLoad& load) {
 train::ForceVariation read_variation(const Options& o, const Block& block) {
   train::ForceVariation variation;
   if (const std::string table = block.option("table"); o.has(table))
-    variation.table = from_table(o, table, 2, 2, options::Order::rising, [](auto columns) {
+    variation.table = from_table(o, table, rising_pairs, [](auto columns) {
       return base::TimeFunction::piecewise_linear(std::move(columns[0]), std::move(columns[1]));
     });
   const std::string frequency = block.option("frequency"), amplitude = block.option("amplitude"),

@@ -87,7 +87,7 @@ void VehicleReader::joint_numbers(multibody::Joint& j) const {
 }
 
 base::Polyline VehicleReader::polyline(std::string_view field) const {
-  return from_table(o_, key(field), 2, 2, options::Order::rising,
+  return from_table(o_, key(field), rising_pairs,
                     [](const auto& columns) { return base::Polyline(columns[0], columns[1]); });
 }
 
@@ -143,7 +143,7 @@ void VehicleReader::spring(const std::string& name) {
 
 /// Reads the length that a winch adds to a spring.
 void VehicleReader::winding(multibody::Spring& s) const {
-  s.winding = from_table(o_, key("winding_table"), 2, 2, options::Order::rising, [&](const auto& columns) {
+  s.winding = from_table(o_, key("winding_table"), rising_pairs, [&](const auto& columns) {
     const double length = s.free_length.value_or((s.to - s.from).norm());
     for (const double change : columns[1])
       if (!(length + change > 0.0))
@@ -167,7 +167,7 @@ void VehicleReader::torsion_spring(const std::string& name) {
 }
 
 void VehicleReader::actuator_table(multibody::Actuator& a) const {
-  a.action = from_table(o_, key("table"), 2, 4, options::Order::rising, [](const auto& columns) {
+  a.action = from_table(o_, key("table"), {2, 4, options::Order::rising}, [](const auto& columns) {
     auto action = multibody::Actuator().action;
     const std::size_t first = columns.size() == 2 ? 2 : 0;  // t,moment or t,fx,fy[,moment]
     for (std::size_t i = 1; i < columns.size(); ++i)
@@ -206,7 +206,9 @@ void VehicleReader::driver(const std::string& name) {
   const std::string coordinate = o_.choice(key("coordinate"));
   d.coordinate = coordinate == "x" ? 0 : coordinate == "y" ? 1 : 2;
   if (has("table")) {
-    d.value = from_table(o_, key("table"), 2, 2, options::Order::rising,
+    options::WantedColumns wanted = rising_pairs;
+    wanted.units = coordinate == "phi" ? "s, rad" : "s, m";
+    d.value = from_table(o_, key("table"), wanted,
                          [](const auto& columns) { return base::TimeFunction(columns[0], columns[1]); });
   } else {
     const double initial = vehicle_.mechanism.bodies[static_cast<std::size_t>(d.body)].position[d.coordinate];

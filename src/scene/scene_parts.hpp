@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "options/data_file.hpp"
+#include "options/parse_number.hpp"
+#include "options/read_table.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
@@ -24,15 +25,19 @@ struct Block {
 /// What `make` returns for the columns of the file that an option names (options::read_columns). The message of an
 /// InputError names the option.
 template <class Make>
-auto from_table(const options::Options& o, const std::string& name, std::size_t least, std::size_t most,
-                options::Order order, Make&& make) {
+auto from_table(const options::Options& o, const std::string& name, const options::WantedColumns& wanted, Make&& make) {
   try {
-    return make(options::read_columns(o.path(name), least, most, order));
+    return make(options::read_columns(o, name, wanted));
   } catch (const InputError& error) {
     if (std::string_view(error.what()).starts_with(name)) throw;  // it names the option already
     o.refuse(name, error.what());
   }
 }
+
+/// Two columns whose first one must increase.
+inline constexpr options::WantedColumns rising_pairs = {2, 2, options::Order::rising};
+/// x and height of the running surface, also of the left and the right rail.
+inline constexpr options::WantedColumns profile_columns = {2, 2, options::Order::unsorted, {}, true, true};
 
 /// The names of all vehicles.
 struct NamedVehicles {
@@ -150,6 +155,8 @@ bool describes_fit(const options::Options& options);
 Scene read_fit(const options::Options& options);
 /// The one given option that selects the forces of a load; empty if there is none.
 std::string load_option(const options::Options& options, const std::string& load = "load");
+/// Whether the file that the option names is a table of formations, not of two columns.
+bool has_formations(const options::Options& options, const std::string& option);
 /// Whether there are any moving forces.
 bool forces_move(const options::Options& options);
 /// Reads model_modes and its damping, after trains and loads, on which it depends.

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "norm/en1991.hpp"
-#include "options/data_file.hpp"
+#include "options/parse_number.hpp"
 #include "scene_parts.hpp"
 
 namespace traverse::scene {
@@ -260,7 +260,8 @@ void record_axles(const Options& o, Scene& scene) {
   for (const Block& block : blocks_of(o, "loads")) {
     const std::string file = block.option("file");
     if (!o.has(file) || o.has(block.option("file_x")) || load_option(o, block.name) != file) continue;
-    const std::vector<std::vector<double>> rows = options::read_columns(o.path(file), 2, 2);
+    if (has_formations(o, file)) continue;
+    const std::vector<std::vector<double>> rows = options::read_columns(o, file, {});
     if (!(rows[0].front() >= 0.0 && rows[0].back() > rows[0].front())) continue;
     scene.notes.push_back(fmt::format(
         "{}: x grows from row to row, so the force of {:g} kN in the last row is in front; if x are distances "
@@ -344,8 +345,8 @@ void record_profiles(const Options& o, Scene& scene) {
   std::vector<std::string> names = {"track_profile"};
   for (const train::Course& course : scene.train.courses) names.push_back(course.name + "_profile");
   for (const std::string& option : names) {
-    if (!o.has(option) || o.text(option).find_first_of("./") == std::string::npos) continue;
-    const std::vector<std::vector<double>> columns = options::read_columns(o.path(option), 2, 2);
+    if (!o.has(option) || !o.is_table(option)) continue;
+    const std::vector<std::vector<double>> columns = options::read_columns(o, option, profile_columns);
     record_heights(option, columns[0], columns[1], scene);
     if (scene.beam && !wheels_at_start(scene).empty()) record_extent(option, columns[0], columns[1], scene);
   }

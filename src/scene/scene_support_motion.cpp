@@ -12,7 +12,8 @@ namespace {
 std::vector<base::TimeFunction> displacements(const options::Options& o, const std::string& file,
                                               std::size_t supports) {
   const bool integrated = o.choice("support_motion_values") == "acceleration";
-  return from_table(o, file, 2, supports + 1, options::Order::rising, [&](const auto& columns) {
+  const options::WantedColumns wanted = {2, supports + 1, options::Order::rising, integrated ? "s, m/s2" : "s, m"};
+  return from_table(o, file, wanted, [&](const auto& columns) {
     if (columns.size() != 2 && columns.size() != supports + 1)
       throw InputError("allowed: a time and one column, or one for each span end");
     std::vector<base::TimeFunction> all;

@@ -59,7 +59,7 @@ void read_dips(const Options& o, Scene& scene) {
 ReadProfile read_profile(const Options& o, const std::string& prefix, double start, bool to_the_left, Scene& scene) {
   const auto key = [&](const char* word) { return prefix + "_" + word; };
   const std::string option = key("profile"), profile = o.text(option);
-  const bool is_file = profile.find_first_of("./") != std::string::npos;
+  const bool is_file = o.is_table(option);
   if (!is_file && o.has(key("profile_shape")))
     scene.notes.push_back(key("profile_shape") + " has no effect: " + option + " is " + profile);
   const options::Entry* bump = o.first_with_prefix(key("bump"));
@@ -81,7 +81,7 @@ ReadProfile read_profile(const Options& o, const std::string& prefix, double sta
                                  static_cast<std::string_view>(track::names_of_spectra)));
   }
   const auto profile_of = o.text(key("profile_shape")) == "spline" ? track::Profile::spline : track::Profile::lines;
-  return {from_table(o, option, 2, 2, options::Order::unsorted,
+  return {from_table(o, option, profile_columns,
                      [&](auto columns) {
                        return profile_of(std::move(columns[0]), std::move(columns[1]),
                                          fmt::format("{} ({})", option, o.path(option)));

@@ -106,12 +106,14 @@ void print_results(const Problem& problem, const Totals& totals, double seconds)
 std::vector<std::string> description(const Problem& problem) {
   const options::Screen& screen = *problem.scene.screen;
   const double kmh = 3.6;
-  return {
+  std::vector<std::string> lines = {
       fmt::format("{} bridges under {} formations at up to {} speeds from {:g} to {:g} km/h", problem.stock.size(),
                   problem.fleet.size(), screen.speeds.size(), kmh * screen.speeds.front(), kmh * screen.speeds.back()),
       fmt::format("moving forces on {} modes of each bridge, exact in time; deck accelerations have no other filter "
                   "than these modes",
                   screen.modes)};
+  lines.insert(lines.end(), problem.notes.begin(), problem.notes.end());
+  return lines;
 }
 
 double memory_of(const Problem& problem) {

@@ -85,7 +85,9 @@ std::map<std::size_t, std::vector<double>> rows_in(const Problem& problem, std::
 
 Problem read_problem(const scene::Scene& scene) {
   const options::Screen& screen = *scene.screen;
-  Problem problem{scene, read_stock(screen.stock, scene.limits), read_fleet(screen.fleet), {}};
+  Problem problem{scene, {}, {}, {}, {}};
+  problem.stock = read_stock(screen.stock, scene.limits, problem.notes);
+  problem.fleet = read_fleet(screen.fleet, problem.notes);
   problem.digest =
       problem_digest(problem.stock, problem.fleet, screen.speeds, screen.modes, screen.parts, screen.samples);
   return problem;

@@ -23,6 +23,7 @@ struct Problem {
   std::vector<Bridge> stock;
   std::vector<Formation> fleet;
   std::string digest;
+  std::vector<std::string> notes;  // on how the tables are written
 };
 
 /// Reads and checks stock and fleet. InputError.

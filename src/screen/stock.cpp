@@ -8,36 +8,42 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <sstream>
 #include <string_view>
 #include <unordered_set>
 
 #include "norm/en1991.hpp"
-#include "options/data_file.hpp"
+#include "options/named_table.hpp"
 #include "screen/beam_modes.hpp"
-#include "screen/header_table.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/norm_rules.hpp"
 
 namespace traverse::screen {
 namespace {
 
+using options::NamedTable;
+
+constexpr options::KnownColumn bridge_columns[] = {{"name"},
+                                                   {"spans", "m"},
+                                                   {"mass", "kg/m"},
+                                                   {"EI", "N m2"},
+                                                   {"f1", "Hz"},
+                                                   {"damping"},
+                                                   {"type"},
+                                                   {"speed", "m/s"},
+                                                   {"deck_acceleration", "m/s2"},
+                                                   {"deflection_over_span"}};
 constexpr std::size_t most_spans = 20, most_bridges = 100'000;
 constexpr double shortest_span = 1.0, longest_span = 1000.0;          // m
 constexpr double largest_ratio = 10.0;                                // of two spans
 constexpr double lowest_frequency = 0.05, highest_frequency = 200.0;  // Hz
 constexpr double least_damping = 1e-4, greatest_damping = 0.2;
 
-std::vector<double> spans_of(const HeaderTable& table, std::size_t row) {
-  std::vector<double> spans;
-  std::istringstream words(table.text(row, "spans"));
-  for (std::string word; words >> word;) {
-    double span = 0.0;
-    if (!options::parse_number(word, span) || !(span >= shortest_span && span <= longest_span))
-      table.refuse(row, fmt::format("spans: '{}'; allowed: lengths from {:g} to {:g} m, separated by blanks", word,
+std::vector<double> spans_of(const NamedTable& table, std::size_t row) {
+  const std::vector<double> spans = table.numbers(row, "spans");
+  for (const double span : spans)
+    if (!(span >= shortest_span && span <= longest_span))
+      table.refuse(row, fmt::format("spans: '{:g}'; allowed: lengths from {:g} to {:g} m, separated by blanks", span,
                                     shortest_span, longest_span));
-    spans.push_back(span);
-  }
   if (spans.empty() || spans.size() > most_spans)
     table.refuse(row, fmt::format("spans: {} of them; allowed: 1 to {}", spans.size(), most_spans));
   const auto [least, greatest] = std::minmax_element(spans.begin(), spans.end());
@@ -47,7 +53,7 @@ std::vector<double> spans_of(const HeaderTable& table, std::size_t row) {
 }
 
 /// EI in N m2, given or from the first frequency.
-double stiffness_of(const HeaderTable& table, std::size_t row, const Bridge& bridge) {
+double stiffness_of(const NamedTable& table, std::size_t row, const Bridge& bridge) {
   const double beta = beam_modes(bridge.spans, 1).front().beta;
   const double of_frequency = bridge.mass * std::pow(2.0 * std::numbers::pi, 2) / std::pow(beta, 4);
   const double EI = table.has("f1") ? of_frequency * std::pow(table.positive(row, "f1"), 2) : table.positive(row, "EI");
@@ -58,7 +64,7 @@ double stiffness_of(const HeaderTable& table, std::size_t row, const Bridge& bri
   return EI;
 }
 
-double damping_of(const HeaderTable& table, std::size_t row, double longest) {
+double damping_of(const NamedTable& table, std::size_t row, double longest) {
   if (table.has("damping")) {
     const double ratio = table.positive(row, "damping");
     if (!(ratio >= least_damping && ratio <= greatest_damping))
@@ -66,7 +72,7 @@ double damping_of(const HeaderTable& table, std::size_t row, double longest) {
                                     greatest_damping));
     return ratio;
   }
-  const std::string name = table.text(row, "type");
+  const std::string_view name = table.text(row, "type");
   const auto* found = std::find_if(std::begin(options::damping_bounds), std::end(options::damping_bounds),
                                    [&](const options::DampingBound& bound) { return bound.name == name; });
   if (found == std::end(options::damping_bounds))
@@ -76,7 +82,7 @@ double damping_of(const HeaderTable& table, std::size_t row, double longest) {
 }
 
 /// The factor that makes a response a fraction of the strictest limit of its quantity.
-double factor_of(const HeaderTable& table, std::size_t row, const char* quantity,
+double factor_of(const NamedTable& table, std::size_t row, const char* quantity,
                  const std::vector<options::VerdictLimit>& limits) {
   double factor = 0.0;
   for (const options::VerdictLimit& limit : limits) {
@@ -87,7 +93,7 @@ double factor_of(const HeaderTable& table, std::size_t row, const char* quantity
   return factor;
 }
 
-void check_columns(const HeaderTable& table, const std::vector<options::VerdictLimit>& limits) {
+void check_columns(const NamedTable& table, const std::vector<options::VerdictLimit>& limits) {
   for (const char* name : {"name", "spans", "mass"})
     if (!table.has(name)) table.refuse_columns(fmt::format("the column {} is missing", name));
   for (const auto& [one, other] : {std::pair{"EI", "f1"}, std::pair{"damping", "type"}})
@@ -107,9 +113,11 @@ double first_frequency(const Bridge& bridge) {
   return beta * beta * std::sqrt(bridge.EI / bridge.mass) / (2.0 * std::numbers::pi);
 }
 
-std::vector<Bridge> read_stock(const std::string& path, const std::vector<options::VerdictLimit>& limits) {
-  const HeaderTable table(path, {"name", "spans", "mass", "EI", "f1", "damping", "type", "speed", "deck_acceleration",
-                                 "deflection_over_span"});
+std::vector<Bridge> read_stock(const std::string& path, const std::vector<options::VerdictLimit>& limits,
+                               std::vector<std::string>& notes) {
+  const NamedTable table(path, bridge_columns);
+  table.check_names();
+  if (!table.note().empty()) notes.push_back(table.note());
   check_columns(table, limits);
   if (table.rows() > most_bridges) table.refuse(most_bridges, fmt::format("allowed: {} bridges", most_bridges));
   std::vector<Bridge> stock;

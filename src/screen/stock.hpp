@@ -31,7 +31,9 @@ double first_frequency(const Bridge& bridge);
 ///   damping or type    ratio, or steel, composite, prestressed, reinforced or filler_beam: EN 1991-2, table 6.6
 ///   speed              m/s or km/h of the line; not required
 ///   deck_acceleration  m/s2, deflection_over_span: instead of the values of `limits`; not required
-/// InputError with file and line.
-std::vector<Bridge> read_stock(const std::string& path, const std::vector<options::VerdictLimit>& limits);
+/// notes: receives a line on how the file is written, if it does not have decimal points. InputError with file and
+/// line.
+std::vector<Bridge> read_stock(const std::string& path, const std::vector<options::VerdictLimit>& limits,
+                               std::vector<std::string>& notes);
 
 }  // namespace traverse::screen

@@ -81,7 +81,7 @@ TEST(FitInput, IsRefusedInOneLine) {
     workplace.write("uneven.csv", "0 0\n0.02 1\n0.03 0\n0.06 0\n");
     workplace.write("falling.csv", "1 0\n0 1\n");
     workplace.write("word.csv", "1 0\n2 x\n");
-    workplace.write("comma.csv", "0,00;0,25\n0,02;0,50\n0,04;0,75\n");
+    workplace.write("comma.csv", "0,00;0.25\n0,02;0.50\n0,04;0.75\n");
     expect_refusal(workplace, workplace.run(), one.parts);
   }
 }

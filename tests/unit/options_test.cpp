@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <petscsys.h>
 
-#include "options/data_file.hpp"
 #include "options/read_file.hpp"
 #include "support/message.hpp"
 #include "support/temporary_folder.hpp"
@@ -311,39 +310,6 @@ TEST(Names, EveryDefaultIsAllowed) {
   }
 }
 
-TEST(DataFile, ColumnsAndComments) {
-  const test::TemporaryFolder folder;
-  const std::string good = folder.write("a.csv", "# x, value\n0, 1e9\n\n10;2e9 # step\n10 3e9\n");
-  const auto columns = read_columns(good, 2, 2);
-  EXPECT_EQ(columns[0], (std::vector<double>{0.0, 10.0, 10.0}));
-  EXPECT_EQ(columns[1], (std::vector<double>{1e9, 2e9, 3e9}));
-  const auto refused = [&](const std::string& text) {
-    const std::string file = folder.write("b.csv", text);
-    return message_of([&] { read_columns(file, 2, 2); });
-  };
-  EXPECT_PRED2(contains, refused("0 1\n1 2 3\n"), "b.csv:2: has 3 numbers, expected 2");
-  EXPECT_PRED2(contains, refused("0 1\n1 x\n"), "b.csv:2: 'x'");
-  EXPECT_PRED2(contains, refused("0 nan\n"), "b.csv:1: 'nan'");
-  EXPECT_PRED2(contains, refused("# nothing\n"), "contains no numbers");
-}
-
-TEST(DataFile, DecimalCommas) {
-  const test::TemporaryFolder folder;
-  const auto read = [&](const std::string& text) { return read_columns(folder.write("a.csv", text), 2, 9); };
-  for (const char* text : {"0;0,25\n1;0,50\n", "0 0,25\n", "0\t-0,25\n", "0,0; 0,25\n", "1; 2; 0,5 # row\n"}) {
-    SCOPED_TRACE(text);
-    EXPECT_PRED2(contains, message_of([&] { read(text); }), "a.csv:1: ");
-    EXPECT_PRED2(contains, message_of([&] { read(text); }), "decimals need a point");
-  }
-  for (const char* text :
-       {"0,0.25\n", " 0, 0.25 \n", "0 , 0.25 # a, b 0,5\n", "0; 0.25\n", "1,2,3\n", "0,\t0.25\r\n"}) {
-    SCOPED_TRACE(text);
-    EXPECT_NO_THROW(read(text));
-  }
-  const std::string three = message_of([&] { read_columns(folder.write("b.csv", "0,0,25\n"), 2, 2); });
-  EXPECT_PRED2(contains, three, "has 3 numbers, expected 2; a comma separates numbers, decimals need a point");
-}
-
 TEST(DataFile, FoundBesideTheFileThatNamesIt) {
   const test::TemporaryFolder folder;
   folder.write("data/ei.csv", "0 1\n1 2\n");
@@ -364,29 +330,6 @@ TEST(DataFile, BesideComesBeforeTheWorkingDirectory) {
   EXPECT_EQ(find_file(above, "sub/scene.yml"), above);
   EXPECT_EQ(find_file("none.csv", "sub/scene.yml"), "");
   std::filesystem::current_path(here);
-}
-
-TEST(DataFile, RowsInOrder) {
-  const test::TemporaryFolder folder;
-  const std::string file = folder.write("t.csv", "# time, force\n0 1\n\n2 1\n1 1\n");
-  EXPECT_EQ(read_columns(file, 2, 2).front().size(), 3u);
-  const std::string message = message_of([&] { read_columns(file, 2, 2, Order::rising); });
-  EXPECT_PRED2(contains, message, "t.csv:5: the first column must increase strictly: row 3 has 1 after 2");
-}
-
-// Such as the fourth power of sin(pi) in a computed table.
-TEST(DataFile, RoundingErrorsAreZero) {
-  const test::TemporaryFolder folder;
-  const auto columns = read_columns(folder.write("t.csv", "0 2.2e-66\n1 -1e-300\n2 1e-400\n3 1e-49\n"), 2, 2);
-  EXPECT_EQ(columns[1], (std::vector<double>{0.0, 0.0, 0.0, 1e-49}));
-}
-
-TEST(DataFile, NumbersBeyondAnyQuantity) {
-  const test::TemporaryFolder folder;
-  for (const char* number : {"1e300", "-1e51"}) {
-    const std::string file = folder.write("t.csv", std::string("0 1\n1 ") + number + "\n");
-    EXPECT_PRED2(contains, message_of([&] { read_columns(file, 2, 2); }), "t.csv:2: '" + std::string(number));
-  }
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "options/data_file.hpp"
 #include "options/read_file.hpp"
+#include "options/read_table.hpp"
 #include "options/read_verdict_limits.hpp"
 #include "scene/given_modes.hpp"
 #include "support/message.hpp"
@@ -25,7 +25,11 @@ struct Kind {
   std::function<void(const std::string&)> read;
 };
 const std::vector<Kind> kinds = {
-    {"t.csv", "0, 5e9\n20, 5e9\n", [](const std::string& path) { read_columns(path, 2, 2); }},
+    {"t.csv", "0, 5e9\n20, 5e9\n",
+     [](const std::string& path) {
+       std::string note;
+       read_columns(path, {}, {}, note);
+     }},
     {"s.yml", "gravity: 9.81\nscene: {tail: 1}\n", [](const std::string& path) { read_options_file(path); }},
     {"s.opts", "-gravity 9.81\n-scene_tail 1\n", [](const std::string& path) { read_options_file(path); }},
     {"l.yml", limits + limits, [](const std::string& path) { read_verdict_limits(path); }},
@@ -70,13 +74,6 @@ TEST(TextFiles, ThatCannotBeReadAreNoInternalError) {
   for (const Kind& kind : kinds)
     EXPECT_PRED2(contains, message_of([&] { kind.read("/proc/self/mem"); }),
                  "the file cannot be read: Input/output error");
-}
-
-TEST(TextFiles, ALineOfNamesIsCalledOne) {
-  const test::TemporaryFolder folder;
-  const std::string file = folder.write("t.csv", "x,EI\n0,1e9\n20,2e9\n");
-  EXPECT_PRED2(contains, message_of([&] { read_columns(file, 2, 2); }),
-               "t.csv:1: 'x' is not a finite number; a line of column names must begin with #");
 }
 
 TEST(YamlFiles, AreOneDocument) {

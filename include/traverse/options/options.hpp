@@ -2,6 +2,7 @@
 // its value, its source and the permitted values.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,7 +38,7 @@ class Options {
   bool declare(const std::string& name, const Row& row);
   /// Whether an option has this name.
   bool knows(std::string_view name) const { return find_known(name) != nullptr; }
-  /// The row of a name; null for an unknown name.
+  /// The row of a name, also of an option beside one that names a table (table_rows); null for an unknown name.
   const Row* find_known(std::string_view name) const;
   /// The known name that is most similar to `name`; empty if none is similar.
   std::string nearest_known(const std::string& name) const;
@@ -72,10 +73,18 @@ class Options {
   double to_quantity(std::string_view name, const std::string& word, const Row& row) const;
   /// Whether the value of a number_or_file option is a number.
   bool is_number(std::string_view name) const;
+  /// Whether the value of an option that may name a table does so; a word does with a point or a slash in it.
+  bool is_table(std::string_view name) const;
   /// The path of the file that an option names, relative to the file that names it or to the working directory.
   std::string path(std::string_view name) const;
   /// The same for an option that may name a folder, too.
   std::string path_or_folder(std::string_view name) const;
+
+  /// Keeps a note on what was read, once; it is for the notes of the scene.
+  void note(const std::string& text) const {
+    if (std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
+  }
+  const std::vector<std::string>& notes() const { return notes_; }
 
   /// Throws InputError "NAME = value (where): why", or "NAME: why" if the option is not given.
   [[noreturn]] void refuse(std::string_view name, const std::string& why) const;
@@ -97,6 +106,7 @@ class Options {
 
   Entries entries_;
   std::unordered_map<std::string, const Row*> declared_;
+  mutable std::vector<std::string> notes_;
 };
 
 }  // namespace traverse::options

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace traverse::options {
@@ -21,7 +23,9 @@ enum class Kind {
   integers,
   texts,
   choice_list,
-  number_or_file,  // a number, or a file with two columns
+  number_or_file,  // a number, or a table with the columns x (m) and value (Row::unit)
+  table,           // the name of an existing file with columns of numbers, whose units are Row::unit
+  word_or_table,   // the same, or a word
 };
 
 struct Range {
@@ -76,6 +80,13 @@ const Row& vary_list_row();
 /// The options fit_to_<name>_<row>, and the row of fit_vary_<option>.
 std::span<const Row> fit_rows();
 const Row& fit_bounds_row();
+
+/// Whether an option may name a table of numbers.
+bool names_table(const Row& row);
+/// The options NAME_<row> beside an option NAME that may name a table of numbers.
+std::span<const Row> table_rows();
+/// A name NAME_<row> of such an option as its two parts; none for other names.
+std::optional<std::pair<std::string, const Row*>> beside_table(std::string_view name);
 
 /// The row of a name; null for an unknown name.
 const Row* find_row(std::span<const Row> rows, std::string_view name);
