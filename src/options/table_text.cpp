@@ -130,14 +130,14 @@ TableText::Survey TableText::survey() const {
 }
 
 void TableText::choose_separators(const Survey& found, Decimal decimal) {
-  const bool inner =
-      decimal == Decimal::comma || (decimal == Decimal::found && found.inner_comma > 0 && !found.loose_comma);
-  const std::size_t lines = found.lines, commas = inner ? 0 : found.commas;
+  const bool inner = found.inner_comma > 0 && !found.loose_comma;  // a decimal sign, unless decimals have points
+  const std::size_t lines = found.lines;
+  const std::size_t commas = decimal == Decimal::comma || (decimal == Decimal::found && inner) ? 0 : found.commas;
   if (found.semicolons == lines)
     separators_ = ";";
   else if (found.tabs == lines && !found.comma_before_tab && found.single_tabs)
     separators_ = "\t";
-  else if (commas == lines)
+  else if (commas == lines && !inner)
     separators_ = ",";
   else
     separators_ = commas > 0 ? ",; \t\r" : found.semicolons > 0 ? "; \t\r" : " \t\r";

@@ -58,6 +58,9 @@ void spread(double spacing, bool from_zero, double direction, MovingLoad& load) 
 Formation formation_of(const Options& o, const Block& block) {
   constexpr std::size_t most_listed = 10;
   const std::string file = block.option("file"), option = block.option("formation");
+  for (const options::Row& row : options::table_rows())
+    if (const std::string beside = file + "_" + std::string(row.name); o.has(beside))
+      o.refuse(beside, "is for a file of two columns, but " + o.path(file) + " has formations");
   std::string note, names;
   std::vector<Formation> all;
   try {

@@ -1,6 +1,8 @@
 // Tables of numbers as people write them: separators, decimal signs, names, units, chosen columns; and what is refused.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <random>
 
 #include "options/named_table.hpp"
