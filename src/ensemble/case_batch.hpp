@@ -46,8 +46,8 @@ class CaseBatch {
     bool trial = false;    // all runs have the same distance, whose end is sampled exactly; a batch may have one run
     /// Responses that are stored at positions at the distance `spacing`, at which time steps end too.
     std::vector<engine::Response> stored = {};
-    bool stores_wheels = false;  // normal forces of the wheels too
-    long stored_each = 1;        // `spacing` in steps
+    bool stores_wheels = false;                            // normal forces of the wheels too
+    long stored_each = 1;                                  // `spacing` in steps
     double last_change = engine::BatchPlan().last_change;  // BatchPlan
   };
   /// The steps that the scene defines.
@@ -114,7 +114,7 @@ class CaseBatch {
   std::vector<double> state_;    // initial state of the bridge, v and w
   std::shared_ptr<const engine::BatchStructure> structure_;
   engine::BatchPlan plan_;
-  std::vector<double> kinks_;                  // m: stations at which the surface has a kink
+  std::vector<double> kinks_;                // m: stations at which the surface has a kink
   std::vector<engine::BodyOfVehicle> cars_;  // whose accelerations have a limit
 };
 
