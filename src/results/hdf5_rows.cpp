@@ -242,9 +242,11 @@ void File::attach_scales(const std::string& dataset, const std::vector<std::stri
     const Scale& scale = scale_of(dimensions[i], shape[i]);
     if (scale.length != shape[i] && scale.path != "/time") return;
     const std::string folder = folder_of(dataset), here = folder + last_of(scale.path), of_scale = folder_of(scale.path);
-    if (!folder.starts_with(of_scale) || (folder != of_scale && last_of(scale.path) == "time"))
+    const bool in_parent = folder.starts_with(of_scale);
+    if (!in_parent || (folder != of_scale && last_of(scale.path) == "time"))
       if (linked_.insert(here).second && check(H5Lexists(id(), here.c_str(), H5P_DEFAULT)) == 0)
-        check(H5Lcreate_soft(scale.path.c_str(), id(), here.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+        check(in_parent ? H5Lcreate_soft(scale.path.c_str(), id(), here.c_str(), H5P_DEFAULT, H5P_DEFAULT)
+                        : H5Lcreate_hard(id(), scale.path.c_str(), id(), here.c_str(), H5P_DEFAULT, H5P_DEFAULT));
     references[i] = scale.reference;
     lists.push_back({1, &references[i]});
   }
