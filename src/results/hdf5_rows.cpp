@@ -241,7 +241,8 @@ void File::attach_scales(const std::string& dataset, const std::vector<std::stri
   for (std::size_t i = 0; i < dimensions.size(); ++i) {
     const Scale& scale = scale_of(dimensions[i], shape[i]);
     if (scale.length != shape[i] && scale.path != "/time") return;
-    const std::string folder = folder_of(dataset), here = folder + last_of(scale.path), of_scale = folder_of(scale.path);
+    const std::string folder = folder_of(dataset), here = folder + last_of(scale.path),
+                      of_scale = folder_of(scale.path);
     const bool in_parent = folder.starts_with(of_scale);
     if (!in_parent || (folder != of_scale && last_of(scale.path) == "time"))
       if (linked_.insert(here).second && check(H5Lexists(id(), here.c_str(), H5P_DEFAULT)) == 0)
