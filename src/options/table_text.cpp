@@ -70,7 +70,7 @@ struct TableText::Survey {
   int inner_comma = 0;      // the first line with a comma between two digits, and another separator
 };
 
-TableText::TableText(std::string path, Decimal decimal, std::string decider)
+TableText::TableText(std::string path, Decimal decimal, const std::string& decider)
     : path_(std::move(path)), text_(read_text(path_, {"", "a table", most_table_characters, true})) {
   quotes_ = text_.find('"') != std::string::npos;
   const Survey found = survey();
@@ -275,7 +275,7 @@ std::string_view TableText::quoted(std::string_view record, std::size_t& at) {
     cell = text;
   }
   ++at;
-  if (!runs_) at = std::min(record.find_first_not_of(" ", at), record.size());
+  if (!runs_) at = std::min(record.find_first_not_of(' ', at), record.size());
   if (at < record.size() && separators_.find(record[at]) == separators_.npos)
     throw InputError(where() + "text after a closing quotation mark; allowed: a separator");
   ++at;

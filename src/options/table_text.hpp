@@ -19,7 +19,7 @@ class TableText {
  public:
   /// Reads the file and finds how it is written. decider: the name of the option that gives the decimal sign; empty if
   /// there is none. InputError with file and line for a text that is no table or could be read in two ways.
-  TableText(std::string path, Decimal decimal, std::string decider);
+  TableText(std::string path, Decimal decimal, const std::string& decider);
 
   /// The cells of the line of names. A line of numbers has none; a comment directly above the first row has them if it
   /// has one name for each cell of that row, each a word or words with or without a unit in brackets.
