@@ -71,9 +71,10 @@ std::vector<DamperPlace> places_of_dampers(const Line& line, const Layout& layou
     };
     const auto node = std::find_if(nodes.begin(), nodes.end(), is_free);
     if (node == nodes.end())
-      throw InputError(fmt::format("beam_{}_x: too many dampers near x = {:g} m; allowed: three at a node of the mesh, "
-                                   "two within an element; equal ones may be one",
-                                   damper.name, damper.x));
+      throw InputError(
+          fmt::format("beam_{}_x: too many dampers near x = {:g} m; allowed: three at a node of the mesh, "
+                      "two within an element; equal ones may be one",
+                      damper.name, damper.x));
     places.push_back({&damper, shape_at(line, Direction::vertical, at), unknown_at(*node)});
   }
   return places;

@@ -99,7 +99,7 @@ struct BatchRun {
   // Displacements v and velocities w of the structure at t = 0; w belongs to the fleet's speed and is scaled to
   // `speed`.
   const std::vector<double>* state = nullptr;
-  double speed = 0.0, end_time = 0.0;  // m/s; s: end of the peaks' interval
+  double speed = 0.0, end_time = 0.0;        // m/s; s: end of the peaks' interval
   std::span<const BodyOfVehicle> cars = {};  // bodies whose vertical accelerations are observed, as many in all runs
 };
 
@@ -117,9 +117,9 @@ struct BatchPlan {
 struct BatchResult : base::PassagePeaks {
   RunFailure failure = none;
   std::vector<double> samples;  // [instant][stored response][probe]; deflections relative to the line of the supports
-  std::vector<double> wheel_samples;                      // [instant][wheel], N
+  std::vector<double> wheel_samples;                        // [instant][wheel], N
   std::vector<base::Extreme> rotations, car_accelerations;  // largest magnitudes: rad; m/s2
-  base::Extreme unloading;                                // largest loss of a wheel's force, relative to its start
+  base::Extreme unloading;                                  // largest loss of a wheel's force, relative to its start
   std::vector<double> coordinates_at_largest;  // for each vehicle the coordinates at its largest linearisation residual
 };
 

@@ -113,17 +113,17 @@ inline constexpr int kept_samples = base::samples_kept;
 
 /// The observed motion of the runs: rows of the latest samples, peaks.
 struct PeakState {
-  long samples_since_kink = 0, samples = 0;      // number since the last kink of moments, and since the start
-  double distance[kept_samples] = {};            // m
-  double* response[kept_samples] = {};           // [deflections, accelerations, moments, rates of moments]
-  double* force[kept_samples] = {};              // normal, of all wheels
-  double* peak = nullptr;                        // [deflections, accelerations, moments]: magnitudes
-  double* peak_time = nullptr;                   // s
-  double* greatest = nullptr;                    // N: a row, of all wheels
+  long samples_since_kink = 0, samples = 0;  // number since the last kink of moments, and since the start
+  double distance[kept_samples] = {};        // m
+  double* response[kept_samples] = {};       // [deflections, accelerations, moments, rates of moments]
+  double* force[kept_samples] = {};          // normal, of all wheels
+  double* peak = nullptr;                    // [deflections, accelerations, moments]: magnitudes
+  double* peak_time = nullptr;               // s
+  double* greatest = nullptr;                // N: a row, of all wheels
   double *at_start = nullptr, *least = nullptr, *least_time = nullptr;  // N, N, s: a row for each wheel
   // m/s2 or rad, s: rows for each of BatchTask::rotation, and for each of BatchTask::car.
   double *rotation = nullptr, *rotation_time = nullptr, *car = nullptr, *car_time = nullptr;
-  double* contact_lost_time = nullptr;           // s: for each wheel; negative: in contact
+  double* contact_lost_time = nullptr;                                    // s: for each wheel; negative: in contact
   double *contact_loss_count = nullptr, *longest_contact_loss = nullptr;  // rows: 1; s
   // N m, for each probe: moment from loads and inertia inside the element, before and after the lag of b M' damping
   // (recovery/load_movement.hpp).
@@ -152,8 +152,8 @@ struct BatchTask {
   int probes = 0, kinks = 0, rotations = 0, cars = 0;
   const ProbeForms* probe = nullptr;
   const LinearForm *rotation = nullptr, *car = nullptr;  // of BeamTask::v; of TrainTask::a[0], whose entries are rows
-  const double* kink = nullptr;   // m: stations with a kink of the surface, ascending
-  const double* roots = nullptr;  // a row for each coordinate: train::residual_roots
+  const double* kink = nullptr;                          // m: stations with a kink of the surface, ascending
+  const double* roots = nullptr;                         // a row for each coordinate: train::residual_roots
   PeakState* peaks = nullptr;
 };
 

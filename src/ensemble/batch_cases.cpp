@@ -51,8 +51,7 @@ std::vector<CaseResult> BatchEngine::run(std::size_t train, std::span<const Memb
   }
   std::vector<CaseResult> results;
   const CaseBatch::Steps steps = static_cast<const BatchEngine&>(*members.front().engine).steps();
-  for (const engine::BatchResult& batched :
-       CaseBatch::ready(std::span<const CaseBatch::Member>(batch), steps).run()) {
+  for (const engine::BatchResult& batched : CaseBatch::ready(std::span<const CaseBatch::Member>(batch), steps).run()) {
     if (run::caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const Member& member = members[results.size()];
     auto& own = static_cast<BatchEngine&>(*member.engine);
@@ -78,8 +77,7 @@ std::vector<CaseResult> BatchEngine::run(std::size_t train, std::span<const Memb
 
 std::unique_ptr<Engine> batch_engine_for(CaseSet& cases, std::string& why) {
   const scene::Scene& scene = cases.of(0, {cases.speeds().front(), {}});
-  if (scene.sweep->lanes == 0)
-    why = "sweep_lanes is 0";
+  if (scene.sweep->lanes == 0) why = "sweep_lanes is 0";
   if (!why.empty()) return nullptr;
   double distance = 0.0;
   for (const double speed : cases.speeds())

@@ -200,9 +200,8 @@ CaseBatch::Ready CaseBatch::ready(std::span<const Member> members, const Steps& 
   ready.add_equal_steps(first.events(distance), stored_every, distance, steps);
   for (const auto& [lanes, run] : members) {
     ready.tracks_.push_back(lanes->track(run.seed, distance + ds));
-    ready.runs_.push_back(
-        {lanes->structure_.get(), &lanes->fleet_, ready.tracks_.back().get(), &lanes->state_, run.speed, run.end,
-         lanes->cars_});
+    ready.runs_.push_back({lanes->structure_.get(), &lanes->fleet_, ready.tracks_.back().get(), &lanes->state_,
+                           run.speed, run.end, lanes->cars_});
   }
   return ready;
 }

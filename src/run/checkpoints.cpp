@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string_view>
 
-#include "options/parse_number.hpp"
 #include "options/input_texts.hpp"
+#include "options/parse_number.hpp"
 #include "results/origin.hpp"
 #include "results/stage.hpp"
 #include "run/model_record.hpp"

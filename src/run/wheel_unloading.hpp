@@ -35,8 +35,8 @@ class FilteredWheels {
   bool is_due(double t) const;
   void add(double force) { rows_.push_back(force); }
 
-  /// After the last instant, once. The end of the series, in which the filter lacks the later forces (unsettled_end), is
-  /// not evaluated.
+  /// After the last instant, once. The end of the series, in which the filter lacks the later forces (unsettled_end),
+  /// is not evaluated.
   results::FilteredUnloading finish(const train::Fleet& fleet);
   void keep(base::Bytes& bytes) { bytes(rows_); }
 
