@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "error_control/accuracy.hpp"
 #include "error_control/initial_guess.hpp"
@@ -13,15 +12,13 @@
 #include "error_control/multibody_step_search.hpp"
 #include "error_control/sweep_model.hpp"
 #include "error_control/trial_runs.hpp"
-#include "modes/modes.hpp"
+#include "run/deck_acceleration.hpp"
 #include "scene_at_rest.hpp"
 #include "study/study_scenes.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::check {
 namespace {
-
-constexpr std::size_t frequency_count = 3;
 
 /// Checks all input of a study.
 scene::Scene checked_scene(const scene::Scene& given) {
@@ -102,19 +99,6 @@ void FirstRun::choose_mesh_and_step() {
   scene.model.step_probes = scene.model.local_compliance = true;  // as the chosen model
 }
 
-void FirstRun::find_frequencies() {
-  const beam::Beam& beam = *shared->beam;
-  if (beam.model().given) {
-    for (const double one : beam.model().given->omega)
-      if (frequencies.size() < frequency_count) frequencies.push_back(one / (2.0 * std::numbers::pi));
-    return;
-  }
-  const bool linear = beam.rail() == nullptr && beam.model().dampers.empty() && !beam.model().nonlinear();
-  const std::vector<double> omega =
-      linear ? modes::distinct_frequencies(beam, frequency_count)
-             : modes::distinct_frequencies(beam::Beam(PETSC_COMM_SELF, linearised(bridge_alone(beam.model()))),
-                                           frequency_count);
-  for (const double one : omega) frequencies.push_back(one / (2.0 * std::numbers::pi));
-}
+void FirstRun::find_frequencies() { frequencies = run::first_frequencies(*shared); }
 
 }  // namespace traverse::check
