@@ -155,9 +155,15 @@ def part_name(vehicle, count, name):
     return spaced(name) if count == 1 else f"{ordinal(vehicle, count, 'vehicle')}, {spaced(name)}"
 
 
+def listed_names(results, model, kind, parts):
+    """The names of the `parts` (springs, ropes) of a vehicle type."""
+    names = results.options.get(f"vehicle_{model.type_name(kind)}_{parts}", "").split(",")
+    return [name.strip() for name in names if name.strip()]
+
+
 def spring_names(results, model, kind):
     """The names of the springs of a vehicle type, in the order of its rows; empty if they are unknown."""
-    names = [name.strip() for name in results.options.get(f"vehicle_{model.type_name(kind)}_springs", "").split(",")]
+    names = listed_names(results, model, kind, "springs")
     return names if len(names) == len(model.rows(kind, "springs", 6)) else []
 
 

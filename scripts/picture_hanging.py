@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from engineering_units import shown
 from picture_axes import COLOURS, GREY, PALE, time_panel
-from picture_data import MOST_CURVES, choose, part_name, spring_names
+from picture_data import MOST_CURVES, choose, listed_names, part_name, spring_names
 from picture_model import Model
 from picture_table import draw_curve
 
@@ -30,7 +30,8 @@ class Hanging(NamedTuple):
 def swinging(model, kind):
     """Yields (joint, body, end on the supporting body, supporting body or -1) of a vehicle type."""
     ends, names, bodies = model.joint_ends(kind), model.joint_names(kind), model.rows(kind, "bodies", 3)
-    held = [int(body) for joint in [*ends, *model.rows(kind, "springs", 6)] for body in joint[4:] if body >= 0]
+    held = [int(body) for joint in [*ends, *model.rows(kind, "springs", 6), *model.falls(kind)[0]]
+            for body in joint[4:] if body >= 0]
     wheels = {int(np.argmin(np.hypot(*(bodies[:, :2] - wheel[:2]).T))) for wheel in model.rows(kind, "wheels", 3)}
     for joint, (_, type_name) in enumerate(names):
         for own, end, other in ((5, ends[joint, :2], 4), (4, ends[joint, 2:4], 5)):
@@ -41,11 +42,15 @@ def swinging(model, kind):
 
 
 def on_ropes(results, model, kind):
-    """Yields (names, body, end on it, supporting body, end on that): bodies that hang on springs in tension only, with
-    the means of their ends."""
+    """Yields (names, body, end on it, supporting body, end on that): bodies that hang on ropes and on springs in
+    tension only, with the means of their ends. A rope has its name once for each of its falls."""
     names, springs = spring_names(results, model, kind), model.rows(kind, "springs", 6)
     bodies = model.rows(kind, "bodies", 3)
     tense = [results.options.get(f"vehicle_{model.type_name(kind)}_{name}_side") == "tension" for name in names]
+    (falls, of_rope), ropes = model.falls(kind), listed_names(results, model, kind, "ropes")
+    if len(names) == len(springs) and (len(of_rope) == 0 or of_rope.max() < len(ropes)):
+        names, springs = names + [ropes[i] for i in of_rope], np.concatenate([springs, falls])
+        tense += [True] * len(falls)
     jointed = {int(body) for joint in model.joint_ends(kind) for body in joint[4:]}
     for body in range(len(bodies)):
         own = [i for i, spring in enumerate(springs) if body in spring[4:].astype(int)]
@@ -85,7 +90,7 @@ def hanging_of(results):
             place = carried(position(body), centres[body], end)
             top = carried(position(other), centres[other], above) if other >= 0 else np.array([above])
             force = sum(results.over_time(group[name]["force"]) for name in ropes)
-            found.append(Hanging(k, names[body], " and ".join(ropes), place[:, 0] - top[:, 0], force, top, place, True,
+            found.append(Hanging(k, names[body], " and ".join(dict.fromkeys(ropes)), place[:, 0] - top[:, 0], force, top, place, True,
                                  other >= 0))
     return found
 

@@ -64,6 +64,14 @@ class Model:
         ends = self.rows(index, "joint_ends", 4)
         return np.column_stack([ends if len(ends) else at[:, [0, 1, 0, 1]], at[:, 2:]])
 
+    def falls(self, index):
+        """[r, 6]: the straight parts of all ropes over several points, as the rows of springs; and [r], the numbers
+        of their ropes."""
+        rope, x, y, body = self.rows(index, "ropes", 4).T
+        inside = rope[1:] == rope[:-1]
+        rows = np.column_stack([x[:-1], y[:-1], x[1:], y[1:], body[:-1], body[1:]])
+        return rows[inside], rope[1:][inside].astype(int)
+
     def joint_names(self, index):
         """(name, type) of each joint, if the file contains them."""
         group = self.group[f"vehicles/{int(index)}"]
@@ -175,7 +183,8 @@ def body_boxes(model, index):
     the density of concrete."""
     bodies, wheels = model.rows(index, "bodies", 3), model.rows(index, "wheels", 3)
     points = [[(x, y)] for x, y, _ in bodies]
-    for x1, y1, x2, y2, first, second in [*model.rows(index, "springs", 6), *model.joint_ends(index)]:
+    for x1, y1, x2, y2, first, second in [*model.rows(index, "springs", 6), *model.falls(index)[0],
+                                          *model.joint_ends(index)]:
         for body, at in ((first, (x1, y1)), (second, (x2, y2))):
             if body >= 0:
                 points[int(body)].append(at)
@@ -200,7 +209,7 @@ def body_boxes(model, index):
 
 
 def rods(model, index):
-    """[r, 6]: joints with a distance between their ends, such as rods and ropes."""
+    """[r, 6]: joints with a distance between their ends."""
     ends = model.joint_ends(index)
     return ends[np.hypot(ends[:, 2] - ends[:, 0], ends[:, 3] - ends[:, 1]) > 1e-6]
 
@@ -214,7 +223,7 @@ def vertical_reach(model, index):
 
 def draw_vehicle(ax, model, index, x, springs=False):
     """Draws a vehicle in the scale of the axes, with its origin at x."""
-    for x1, y1, x2, y2, _, _ in rods(model, index):
+    for x1, y1, x2, y2, _, _ in [*rods(model, index), *model.falls(index)[0]]:
         ax.plot([x + x1, x + x2], [y1, y2], color=DARK, lw=1.0, zorder=2.5)
     for left, low, width, height in body_boxes(model, index).values():
         ax.add_patch(FancyBboxPatch((x + left, low), width, height, fc=BODY, ec=DARK, lw=0.6,

@@ -4,13 +4,14 @@ import numpy as np
 from engineering_units import shown
 from picture_axes import COLOURS, time_panel
 from picture_data import (
-    CALLED_CAR, MOST_CURVES, MOST_WHEELS, bodies_of, car_body, choose, envelope, natural, ordinal, part_name, spaced,
-    spring_names)
+    CALLED_CAR, MOST_CURVES, MOST_WHEELS, bodies_of, car_body, choose, envelope, listed_names, natural, ordinal,
+    part_name, spaced, spring_names)
 from picture_model import Model
 from picture_table import keep
 from picture_track import draw_losses
 
 FEWEST_LINKS = 8  # joints of the type distance with numbered names that make a chain
+DRIVES = "Force of ropes and of springs with a prescribed free length, tension positive"
 
 # Signals of sensors: the dataset, its title and unit. The first is drawn by default, the others on request.
 SIGNALS = {"acceleration_y": ("Vertical acceleration at the sensors", "m/s²"),
@@ -121,18 +122,19 @@ def draw_chains(ax, results, links):
 
 
 def drives_of(results, others):
-    """(name, force) of springs whose free length is prescribed over time, except for the others."""
+    """(name, force) of ropes and of springs whose free length is prescribed over time, except for the others."""
     model, found = Model(results), []
     for k, (kind, _) in enumerate(model.train[:len(results.vehicles)]):
         option = f"vehicle_{model.type_name(kind)}_{{}}_winding_table"
-        found += [(name, results.vehicles[k][name]["force"]) for name in spring_names(results, model, kind)
-                  if results.options.get(option.format(name)) and name not in others]
+        names = [name for name in spring_names(results, model, kind) if results.options.get(option.format(name))]
+        found += [(name, results.vehicles[k][name]["force"])
+                  for name in names + listed_names(results, model, kind, "ropes") if name not in others]
     return found[:MOST_CURVES]
 
 
 def draw_drives(ax, results, drives):
     unit, factor = shown("force")
-    time_panel(ax, results, "Force of the spring with a prescribed free length, tension positive", unit,
+    time_panel(ax, results, DRIVES, unit,
                [(spaced(name), factor * results.over_time(force)) for name, force in drives])
 
 

@@ -117,6 +117,11 @@ def check_outputs(asked, cases, words):
         output_files.check(asked.folder / f"{name}.{ending}", kind, inputs)
 
 
+def tell(text):
+    """Tells what the check is doing, which does not belong in its summary."""
+    print(f"  {text}", file=sys.stderr, flush=True)
+
+
 def run_all(asked, cases, factor, needed, traverse):
     """Writes and runs the scenes of all cases; the names of the results files, with the words of their cases. factor:
     of the limits of effects of trains; None without a dynamic analysis."""
@@ -133,12 +138,16 @@ def run_all(asked, cases, factor, needed, traverse):
             words = ", ".join(filter(None, [case.words, f"HSLM-{train}" if train else "load models with Φ"]))
             done.append((f"{names[-1]}.h5", words, case))
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
-        printed = pool.map(lambda name: runs.compute(traverse, asked.folder, f"{name}.yml", f"{name}.h5"), names)
+        def compute(name):
+            tell(f"{name}.yml is being computed")
+            return runs.compute(traverse, asked.folder, f"{name}.yml", f"{name}.h5")
+
+        printed = pool.map(compute, names)
         said = []
         for name, text in zip(names, printed):
             write(asked.folder / f"{name}.txt", text)
             said += runs.unusual_input(text)
-            print(f"  {name}.yml is computed", flush=True)
+            tell(f"{name}.yml is computed")
     for line in dict.fromkeys(said):
         print(textwrap.fill(f"Unusual input: {line}", WIDTH, subsequent_indent="  "))
     return done
@@ -217,6 +226,8 @@ def status_of(asked, traverse, words):
     print_remarks(asked, judged, dynamic)
     print(outcome.conclusion(judged), flush=True)
     names = [name for name, *_ in done]
+    if asked.report:
+        tell("the report, the pictures and the pages of results are being made")
     made = runs.documents(traverse, asked, names) if asked.report else []
     scenes = [pathlib.Path(name).with_suffix(".yml").name for name in names]
     print(f"Files in {printable(asked.folder)}: {', '.join([*made, *names, *scenes, 'limits.yml', 'summary.txt'])}")

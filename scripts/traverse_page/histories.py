@@ -6,7 +6,7 @@ from picture_axes import legible
 from picture_data import (
     CALLED_CAR, MOST_CURVES, MOST_WHEELS, bodies_of, choose, choose_probes, envelope, spaced)
 from picture_hanging import hanging_of
-from picture_vehicles import SIGNALS, cars_of, chains_of, drives_of, sensors_of, wheels_of
+from picture_vehicles import DRIVES, SIGNALS, cars_of, chains_of, drives_of, sensors_of, wheels_of
 from traverse_report.language import known, num, place_in_words, t
 
 from .packing import Chart, Curve
@@ -167,7 +167,7 @@ def charts(results):
     drives = [(spaced(name), results.over_time(force)) for name, force in
               drives_of(results, [part for one in hanging for part in one.joint.split(" and ")])]
     for title, curves in (("Force in the links of the chain", links),
-                          ("Force of the spring with a prescribed free length, tension positive", drives)):
+                          (DRIVES, drives)):
         found += [some(title, "force", curves)] if curves else []
     if results.vehicles and results.probes is None and not wheels_of(results):
         found += mechanism_charts(results)

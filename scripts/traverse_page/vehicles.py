@@ -21,7 +21,8 @@ def numbers(model, kind):
 def attached(model, kind):
     """For each body its centre and the points of its springs, joints and wheels."""
     points = [[(x, y)] for x, y, _ in model.rows(kind, "bodies", 3)]
-    for x1, y1, x2, y2, first, second in [*model.rows(kind, "springs", 6), *model.joint_ends(kind)]:
+    for x1, y1, x2, y2, first, second in [*model.rows(kind, "springs", 6), *model.falls(kind)[0],
+                                          *model.joint_ends(kind)]:
         for body, at in ((int(first), (x1, y1)), (int(second), (x2, y2))):
             if body >= 0 and min(np.hypot(*(np.array(points[body]) - at).T)) > 1e-9:
                 points[body].append(at)
@@ -82,6 +83,8 @@ def parts_of(results, model, kind, on_bridge):
     for i, (x1, y1, x2, y2, first, second) in enumerate(model.rows(kind, "springs", 6)):
         rope = len(names) > i and results.options.get(f"{of_type}_{names[i]}_side") == "tension"
         parts.append({"is": "rope" if rope else "spring", "points": [point(first, x1, y1), point(second, x2, y2)]})
+    for x1, y1, x2, y2, first, second in model.falls(kind)[0]:
+        parts.append({"is": "rope", "points": [point(first, x1, y1), point(second, x2, y2)]})
     for (x, y, *_, first, second), (_, joint) in zip(model.joint_ends(kind), model.joint_names(kind)):
         if joint == "revolute":
             parts.append({"is": "pin", "ground": bool(min(first, second) < 0),

@@ -100,21 +100,26 @@ std::optional<double> ForceLaw::elongation_at(double tension) const {
 }
 
 Tension tension(const ForceLaw& law, double elongation, double rate) {
-  const bool can_disengage = law.can_disengage();
-  const double x = can_disengage ? engaged(law, elongation) : elongation;
-  if (can_disengage && x == 0.0) return {};
-  const double share = can_disengage ? std::min(1.0, std::abs(x) / engagement) : 1.0;
-  const double spring = law.elastic.value(x), full_damper = law.damper.value(rate), damper = share * full_damper;
+  const double x = law.can_disengage() ? engaged(law, elongation) : elongation;
+  if (law.can_disengage() && x == 0.0) return {};
+  const ForceWithSlope spring{law.elastic.value(x), law.elastic.slope(x)},
+      damper{law.damper.value(rate), law.damper.slope(rate)};
+  if (law.can_disengage()) return one_sided_tension(x, rate, spring, damper);
+  return {spring.force + damper.force, spring.slope, damper.slope, damper.force * rate};
+}
+
+Tension one_sided_tension(double engaged, double rate, ForceWithSlope spring, ForceWithSlope damper) {
+  const double share = std::min(1.0, std::abs(engaged) / engagement), damping = share * damper.force;
   Tension t;
-  if (can_disengage && !((spring + damper) * x > 0.0)) {
-    t.dissipation = -spring * rate;
+  if (!((spring.force + damping) * engaged > 0.0)) {
+    t.dissipation = -spring.force * rate;
     return t;
   }
-  t.tension = spring + damper;
-  t.by_elongation = law.elastic.slope(x);
-  if (share < 1.0) t.by_elongation += (x > 0.0 ? full_damper : -full_damper) / engagement;
-  t.by_rate = share * law.damper.slope(rate);
-  t.dissipation = damper * rate;
+  t.tension = spring.force + damping;
+  t.by_elongation = spring.slope;
+  if (share < 1.0) t.by_elongation += (engaged > 0.0 ? damper.force : -damper.force) / engagement;
+  t.by_rate = share * damper.slope;
+  t.dissipation = damping * rate;
   return t;
 }
 

@@ -84,6 +84,48 @@ SpeedLaw SpeedLaw::over_place(std::vector<double> places, std::vector<double> sp
   return law;
 }
 
+// The speed at a row is that of the parabola through the row and its neighbours, at most twice that of either interval,
+// so that the speed in the middle of an interval, which its distance determines, has the same sign.
+SpeedLaw SpeedLaw::through(const std::vector<double>& times, const std::vector<double>& places) {
+  check_rows(times, places, "a table of positions");
+  const std::size_t last = times.size() - 1;
+  std::vector<double> mean;  // speed of each interval
+  for (std::size_t i = 0; i < last; ++i) mean.push_back((places[i + 1] - places[i]) / (times[i + 1] - times[i]));
+  const auto [least, greatest] = std::minmax_element(mean.begin(), mean.end());
+  if (*least < 0.0 && *greatest > 0.0)
+    throw InputError("positions that go back; a train runs to one side, and x only increases or only decreases");
+  if (*least == 0.0 && *greatest == 0.0) throw InputError("the same position in all rows; wanted: one that changes");
+
+  const auto length = [&](std::size_t i) { return times[i + 1] - times[i]; };
+  std::vector<double> moments, speeds;
+  const auto limited = [&](double speed, double before, double after) {
+    const double most = 2.0 * std::min(std::abs(before), std::abs(after));
+    const double sign = *greatest > 0.0 ? 1.0 : -1.0;
+    return sign * std::clamp(sign * speed, 0.0, most);
+  };
+  const auto at_row = [&](std::size_t i) {
+    if (last == 1) return mean[0];
+    if (i == 0) {
+      const double slope = (mean[1] - mean[0]) / (length(0) + length(1));
+      return limited(mean[0] - slope * length(0), mean[0], mean[0]);
+    }
+    if (i == last) {
+      const double slope = (mean[i - 1] - mean[i - 2]) / (length(i - 1) + length(i - 2));
+      return limited(mean[i - 1] + slope * length(i - 1), mean[i - 1], mean[i - 1]);
+    }
+    const double share = length(i - 1) / (length(i - 1) + length(i));
+    return limited(mean[i - 1] + share * (mean[i] - mean[i - 1]), mean[i - 1], mean[i]);
+  };
+  for (std::size_t i = 0; i <= last; ++i) {
+    moments.push_back(times[i]);
+    speeds.push_back(at_row(i));
+    if (i == last) break;
+    moments.push_back(times[i] + 0.5 * length(i));
+    speeds.push_back(2.0 * mean[i] - 0.5 * (speeds.back() + at_row(i + 1)));
+  }
+  return over_time(std::move(moments), std::move(speeds));
+}
+
 TimeFunction SpeedLaw::from(double x) const {
   TimeFunction place = distance_;
   place.shift(x);

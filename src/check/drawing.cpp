@@ -22,9 +22,10 @@ constexpr double height_of_row = 2.0;  // ratio to the width of a column
 constexpr int number_gap = 2;          // columns between the numbers of the ruler
 
 constexpr Symbol body_symbol{'#', "█", "body"}, wheel_symbol{'o', "●", "wheel"}, force_symbol{'v', "↓", "force"},
-    joint{'+', "◆", "joint"}, spring_symbol{'z', "≈", "spring"}, link{'.', "·", ""}, ground{'_', "▁", "ground"},
-    front{'[', "▐", ""}, rear{']', "▌", ""}, car{'=', "█", "vehicle"}, deck{'=', "━", "beam"}, rail{'-', "─", "rail"},
-    sleeper{':', "┴", "sleepers"}, hinge{'+', "◦", "hinge"}, span_end{'|', "┃", "spans end"}, bed{'~', "≋", "bed"};
+    joint{'+', "◆", "joint"}, spring_symbol{'z', "≈", "spring"}, rope_symbol{'!', "│", "rope"}, link{'.', "·", ""},
+    ground{'_', "▁", "ground"}, front{'[', "▐", ""}, rear{']', "▌", ""}, car{'=', "█", "vehicle"},
+    deck{'=', "━", "beam"}, rail{'-', "─", "rail"}, sleeper{':', "┴", "sleepers"}, hinge{'+', "◦", "hinge"},
+    span_end{'|', "┃", "spans end"}, bed{'~', "≋", "bed"};
 constexpr Symbol supports[] = {{' ', " ", ""},        {'O', "○", "roller"}, {'^', "▲", "pinned"},
                                {'#', "█", "clamped"}, {'H', "╫", "guided"}, {' ', " ", ""}};
 
@@ -172,6 +173,8 @@ class Plane {
         include(one.from);
         include(one.to);
       }
+      for (const multibody::Rope& one : vehicle.mechanism.ropes)
+        for (const Eigen::Vector2d& point : one.points) include(point);
       if (!vehicle.wheels.empty()) y_.include(0.0);
     });
     column_width_ = std::max(x_.size() / (columns_ - 1), y_.size() / (max_drawing_rows - 1) / height_of_row);
@@ -232,6 +235,9 @@ class Plane {
       if (ends) line(origin, one.from, one.to, link, canvas);
     }
     for (const multibody::Spring& one : m.springs) line(origin, one.from, one.to, spring_symbol, canvas);
+    for (const multibody::Rope& one : m.ropes)
+      for (std::size_t i = 0; i + 1 < one.points.size(); ++i)
+        line(origin, one.points[i], one.points[i + 1], rope_symbol, canvas);
     for (const multibody::Joint& one : m.joints) put(one.type->needs.ends ? one.from : one.point, joint);
     for (const multibody::Body& one : m.bodies) put(one.position.head<2>(), body_symbol);
     for (const train::Wheel& one : vehicle.wheels)

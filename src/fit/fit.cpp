@@ -38,7 +38,7 @@ Eigen::VectorXd start_of(const Residuals& residuals, const options::Fit& fit, in
   if (i == 0) return u;
   const auto others = static_cast<std::size_t>(fit.starts - 1);
   for (std::size_t j = 0; j < residuals.options(); ++j) {
-    const base::RandomStream stream(fit.seed, fit.parameters[j].option);
+    const base::RandomStream stream(fit.seed, fit.parameters[j].name());
     std::vector<std::size_t> parts(others);
     std::iota(parts.begin(), parts.end(), std::size_t{0});
     for (std::size_t k = others; k-- > 1;)
@@ -116,13 +116,14 @@ void align_clocks(ForwardModel& model, const options::Fit& fit, Residuals& resid
 
 void describe(const options::Fit& fit, const ForwardModel& model, std::vector<std::string>& notes) {
   for (const options::MeasuredFrequency& f : fit.frequencies)
-    notes.push_back(
-        fmt::format("{}: frequency {}, {:g} Hz, standard deviation {:g} Hz", f.name, f.number, f.value, f.sd));
+    notes.push_back(fmt::format("{}: frequency {}, {:g} Hz, standard deviation {:g} Hz{}", f.name, f.number, f.value,
+                                f.sd, f.x.empty() ? "" : fmt::format(", with its shape at {} places", f.x.size())));
   for (const options::MeasuredSeries& s : fit.series)
-    notes.push_back(fmt::format("{}: {} values of {}{}{}{}{}", s.name, s.value.size(), s.dataset.substr(1),
+    notes.push_back(fmt::format("{}: {} values of {}{}{}{}{}{}", s.name, s.value.size(), s.dataset.substr(1),
                                 s.x ? fmt::format(" at x = {:g} m", *s.x) : fmt::format(", number {}", s.component),
                                 s.low_pass ? fmt::format(", low-passed at {:g} Hz", *s.low_pass) : "",
-                                s.align ? ", with a clock of its own" : "", s.offset ? ", with an offset" : ""));
+                                s.align ? ", with a clock of its own" : "", s.offset ? ", with an offset" : "",
+                                s.gain ? ", with a factor" : ""));
   if (!fit.series.empty())
     notes.push_back(
         base::detail(fmt::format("every run has {} samples every {:g} s", model.instants(), model.interval())));

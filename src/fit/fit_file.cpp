@@ -64,6 +64,22 @@ void add_minima(const options::Fit& fit, const Residuals& residuals, const std::
   sets.push_back(std::move(reached));
 }
 
+void add_shapes(const options::Fit& fit, const Residuals& residuals, const FitCourse& course,
+                std::vector<Dataset>& sets) {
+  const bool known = !course.minima.empty();
+  Dataset mac{"/fit/frequencies/mac", {fit.frequencies.size()}, {}, "1"};
+  for (std::size_t f = 0; f < fit.frequencies.size(); ++f) {
+    const std::size_t count = fit.frequencies[f].x.size();
+    mac.values.push_back(known && count > 0 ? residuals.shape(f, course.response).mac : unknown);
+    if (count == 0) continue;
+    Dataset computed{
+        "/fit/shapes/" + fit.frequencies[f].name + "/computed", {count}, std::vector<double>(count, unknown), "1"};
+    if (known) computed.values = residuals.shape(f, course.response).computed;
+    sets.push_back(std::move(computed));
+  }
+  if (fit.modal_size() > fit.frequencies.size()) sets.push_back(std::move(mac));
+}
+
 void add_computed(const options::Fit& fit, const Residuals& residuals, const FitCourse& course,
                   std::vector<Dataset>& sets) {
   const bool known = !course.minima.empty();
@@ -71,6 +87,7 @@ void add_computed(const options::Fit& fit, const Residuals& residuals, const Fit
     Dataset computed{"/fit/frequencies/computed", {count}, std::vector<double>(count, unknown), "Hz"};
     if (known) std::copy_n(course.response.begin(), count, computed.values.begin());
     sets.push_back(std::move(computed));
+    add_shapes(fit, residuals, course, sets);
   }
   Dataset sd{"/fit/series_sd", {fit.series.size()}, {}, ""};
   for (std::size_t s = 0; s < fit.series.size(); ++s) {
@@ -110,6 +127,11 @@ std::vector<Dataset> constant(const options::Fit& fit, const Residuals& residual
     }
     sets.push_back(std::move(measured));
     sets.push_back(std::move(sd));
+  }
+  for (const options::MeasuredFrequency& f : fit.frequencies) {
+    if (f.x.empty()) continue;
+    sets.push_back({"/fit/shapes/" + f.name + "/x", {f.x.size()}, f.x, "m"});
+    sets.push_back({"/fit/shapes/" + f.name + "/measured", {f.x.size()}, f.shape, "1"});
   }
   for (std::size_t s = 0; s < fit.series.size(); ++s) {
     const options::MeasuredSeries& series = fit.series[s];

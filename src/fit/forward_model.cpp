@@ -195,7 +195,7 @@ void ForwardModel::naming(const std::vector<double>& values, const std::function
   } catch (const Error& error) {
     std::string point;
     for (std::size_t j = 0; j < values.size(); ++j)
-      point += fmt::format("{}{} = {:g}", j == 0 ? "" : ", ", fit_.parameters[j].option, values[j]);
+      point += fmt::format("{}{} = {:g}", j == 0 ? "" : ", ", fit_.parameters[j].name(), values[j]);
     throw Error(fmt::format("the run of the fit with {}: {}", point, error.what()), error.status());
   }
 }
@@ -204,7 +204,13 @@ void ForwardModel::add_frequencies(const std::vector<double>& values, std::vecto
   const Scene modal = scene(values, true);
   std::vector<std::string> ignored;
   const run::SharedBeam shared(PETSC_COMM_SELF, modal, ignored);
-  const std::vector<double> omega = modes::natural_modes(*shared.beam, modal.mode_count, false).omega;
+  std::vector<double> places;
+  for (const options::MeasuredFrequency& frequency : fit_.frequencies)
+    places.insert(places.end(), frequency.x.begin(), frequency.x.end());
+  const beam::ShapePoints points(shared.beam->mesh(), places);
+  const modes::Modes found = places.empty() ? modes::natural_modes(*shared.beam, modal.mode_count, false)
+                                            : modes::natural_modes(*shared.beam, modal.mode_count, points);
+  const std::vector<double>& omega = found.omega;
   for (const options::MeasuredFrequency& frequency : fit_.frequencies) {
     const auto i = static_cast<std::size_t>(frequency.number - 1);
     if (i >= omega.size())
@@ -212,6 +218,13 @@ void ForwardModel::add_frequencies(const std::vector<double>& values, std::vecto
                                    frequency.number, omega.size()));
     response.push_back(omega[i] / (2.0 * std::numbers::pi));
   }
+  for (const options::MeasuredFrequency& frequency : fit_.frequencies)
+    for (const double place : frequency.x) {
+      const auto distance = [&](double x) { return std::abs(x - place); };
+      const auto nearest = std::ranges::min_element(found.x, {}, distance) - found.x.begin();
+      const auto i = static_cast<std::size_t>(frequency.number - 1);
+      response.push_back(found.axial[i] != 0 ? 0.0 : found.shape[i][static_cast<std::size_t>(nearest)]);
+    }
 }
 
 void ForwardModel::add_series(const std::vector<double>& values, std::vector<double>& response) const {

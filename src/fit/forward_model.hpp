@@ -32,12 +32,12 @@ class ForwardModel {
   const std::vector<std::string>& units() const { return units_; }  // of the series
   std::size_t instants() const { return instants_; }
 
-  /// For each point, one after another: the frequencies (Hz) of all measured frequencies, then the samples of each
-  /// series. Throws the error of the first run that fails or ends early, with its values.
+  /// For each point, one after another: the frequencies (Hz) of all measured frequencies, then the shapes of those that
+  /// have one, at their places, and the samples of each series. Throws the error of the first run that fails or ends early, with its values.
   std::vector<std::vector<double>> run(const std::vector<std::vector<double>>& points) const;
   /// The number of points that are computed together.
   std::size_t width() const;
-  std::size_t size() const { return fit_.frequencies.size() + fit_.series.size() * instants_; }
+  std::size_t size() const { return fit_.modal_size() + fit_.series.size() * instants_; }
 
   /// The scene of the run or of the modes at these values, with the chosen model.
   scene::Scene scene(const std::vector<double>& values, bool modes) const;

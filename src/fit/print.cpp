@@ -37,9 +37,11 @@ void print_correlations(const Residuals& residuals, const Eigen::MatrixXd& corre
 
 void print_measurements(const options::Fit& fit, const Residuals& residuals, const FitCourse& course) {
   const Minimum& best = course.minima[course.best];
-  for (std::size_t f = 0; f < fit.frequencies.size(); ++f)
-    fmt::print("  {:<30}measured {:.6g} Hz, computed {:.6g} Hz\n", fit.frequencies[f].name, fit.frequencies[f].value,
-               course.response[f]);
+  for (std::size_t f = 0; f < fit.frequencies.size(); ++f) {
+    const options::MeasuredFrequency& mode = fit.frequencies[f];
+    fmt::print("  {:<30}measured {:.6g} Hz, computed {:.6g} Hz{}\n", mode.name, mode.value, course.response[f],
+               mode.x.empty() ? "" : fmt::format(", MAC {:.4f}", residuals.shape(f, course.response).mac));
+  }
   for (std::size_t s = 0; s < fit.series.size(); ++s) {
     const ComparedSeries both = residuals.compared(s, course.response, best.u);
     double sum = 0.0, largest = 0.0;

@@ -65,7 +65,7 @@ class RecordCheck {
     const Alignment best = best_alignment();
     const Statistics aligned = best.correlation > related ? statistics_of(compared(response_, best.shift)) : now_;
     if (is_another_clock(best)) refuse_clock(best.shift);
-    if (is_doubtful(now_.ratio()) && !can_be_explained()) refuse_unit(aligned.ratio());
+    if (!series_.gain && is_doubtful(now_.ratio()) && !can_be_explained()) refuse_unit(aligned.ratio());
   }
 
   void add_to(std::vector<std::string>& doubts) const {

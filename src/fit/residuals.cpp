@@ -9,14 +9,14 @@
 #include <span>
 #include <utility>
 
-#include "fit/spline.hpp"
 #include "run/low_pass.hpp"
 
 namespace traverse::fit {
 namespace {
 
-constexpr double first_sd = 0.005;                               // relative to the variation of a series
-constexpr double logarithmic_from = 10.0;                        // ratio of the bounds from which u is logarithmic
+constexpr double first_sd = 0.005;         // relative to the variation of a series
+constexpr double logarithmic_from = 10.0;  // ratio of the bounds from which u is logarithmic
+constexpr double largest_gain = 1e3;
 constexpr std::size_t most_shifts = 4000, most_compared = 2000;  // of the search for the difference of the clocks
 constexpr double least_sd = 1e-12;  // relative to the variation of a series, for measurements without noise
 
@@ -47,9 +47,9 @@ double Unknown::u(double value) const {
 double Unknown::slope(double u) const { return logarithmic ? value(u) * std::log(high / low) : high - low; }
 
 Residuals::Residuals(const options::Fit& fit, std::vector<std::string> units)
-    : fit_(fit), units_(std::move(units)), size_(fit.frequencies.size()) {
+    : fit_(fit), units_(std::move(units)), size_(fit.modal_size()) {
   for (const options::FitParameter& p : fit.parameters)
-    unknowns_.push_back({Unknown::Kind::option, p.option, p.unit, p.low, p.high, p.start, 0,
+    unknowns_.push_back({Unknown::Kind::option, p.name(), p.unit, p.low, p.high, p.start, 0,
                          p.low > 0.0 && p.high >= logarithmic_from * p.low});
   for (const options::MeasuredSeries& series : fit.series) {
     measured_.push_back(series.value);
@@ -64,7 +64,7 @@ void Residuals::align(const std::vector<double>& response, double interval, doub
   for (std::size_t s = 0; s < fit_.series.size(); ++s) {
     const options::MeasuredSeries& series = fit_.series[s];
     if (!series.align) continue;
-    const std::size_t instants = (response.size() - fit_.frequencies.size()) / fit_.series.size();
+    const std::size_t instants = (response.size() - fit_.modal_size()) / fit_.series.size();
     const double half = 0.5 * interval * static_cast<double>(instants - 1);
     const double first = best_alignment(s, response, series.time.front() - half, series.time.back() - half).shift;
     unknowns_.push_back({Unknown::Kind::shift, series.name + "_shift", "s", first - range, first + range, first, s});
@@ -75,6 +75,10 @@ void Residuals::align(const std::vector<double>& response, double interval, doub
     const double bound = 2.0 * std::max({std::abs(*least), std::abs(*greatest), *greatest - *least, sd_[s]});
     unknowns_.push_back({Unknown::Kind::offset, fit_.series[s].name + "_offset", units_[s], -bound, bound, 0.0, s});
   }
+  for (std::size_t s = 0; s < fit_.series.size(); ++s)
+    if (fit_.series[s].gain)
+      unknowns_.push_back(
+          {Unknown::Kind::gain, fit_.series[s].name + "_gain", "1", 1.0 / largest_gain, largest_gain, 1.0, s, true});
 }
 
 double Residuals::end() const {
@@ -101,11 +105,29 @@ std::vector<double> Residuals::values(const Eigen::VectorXd& u) const {
   return values;
 }
 
+Spline Residuals::spline_of(std::size_t s, const std::vector<double>& response) const {
+  const std::size_t first = fit_.modal_size(), count = (response.size() - first) / fit_.series.size();
+  return {std::span<const double>(response).subspan(first + s * count, count), interval_};
+}
+
+ComparedShape Residuals::shape(std::size_t frequency, const std::vector<double>& response) const {
+  std::size_t first = fit_.frequencies.size();
+  for (std::size_t f = 0; f < frequency; ++f) first += fit_.frequencies[f].x.size();
+  const std::vector<double>& measured = fit_.frequencies[frequency].shape;
+  const auto count = static_cast<Eigen::Index>(measured.size());
+  const Eigen::Map<const Eigen::VectorXd> m(measured.data(), count), c(response.data() + first, count);
+  ComparedShape both{measured, std::vector<double>(measured.size(), 0.0)};
+  const double square = c.squaredNorm(), product = c.dot(m);
+  if (!(square > 0.0)) return both;
+  Eigen::Map<Eigen::VectorXd>(both.computed.data(), count) = product / square * c;
+  both.mac = product * product / (square * m.squaredNorm());
+  return both;
+}
+
 /// The computed samples at the measured times, filtered.
 std::vector<double> Residuals::computed(std::size_t s, const std::vector<double>& response, double shift) const {
   const options::MeasuredSeries& series = fit_.series[s];
-  const std::size_t count = (response.size() - fit_.frequencies.size()) / fit_.series.size();
-  const Spline spline(std::span<const double>(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
+  const Spline spline = spline_of(s, response);
   std::vector<double> values;
   values.reserve(series.time.size());
   for (const double t : series.time) values.push_back(spline(t - shift));
@@ -114,13 +136,16 @@ std::vector<double> Residuals::computed(std::size_t s, const std::vector<double>
 }
 
 ComparedSeries Residuals::compared(std::size_t s, const std::vector<double>& response, const Eigen::VectorXd& u) const {
-  double shift = 0.0, offset = 0.0;
+  double shift = 0.0, offset = 0.0, gain = 1.0;
   for (std::size_t j = options(); j < unknowns_.size(); ++j) {
     if (unknowns_[j].series != s) continue;
-    (unknowns_[j].kind == Unknown::Kind::shift ? shift : offset) = unknowns_[j].value(u[static_cast<Eigen::Index>(j)]);
+    const Unknown::Kind kind = unknowns_[j].kind;
+    (kind == Unknown::Kind::shift    ? shift
+     : kind == Unknown::Kind::offset ? offset
+                                     : gain) = unknowns_[j].value(u[static_cast<Eigen::Index>(j)]);
   }
   ComparedSeries both = compared(s, response, shift);
-  for (double& value : both.computed) value += offset;
+  for (double& value : both.computed) value = gain * value + offset;
   return both;
 }
 
@@ -133,6 +158,14 @@ Eigen::VectorXd Residuals::evaluate(const std::vector<double>& response, const E
   Eigen::Index i = 0;
   for (std::size_t f = 0; f < fit_.frequencies.size(); ++f)
     r[i++] = (response[f] - fit_.frequencies[f].value) / fit_.frequencies[f].sd;
+  for (std::size_t f = 0; f < fit_.frequencies.size(); ++f) {
+    if (fit_.frequencies[f].x.empty()) continue;
+    const ComparedShape both = shape(f, response);
+    double largest = 0.0;
+    for (const double value : both.measured) largest = std::max(largest, std::abs(value));
+    for (std::size_t k = 0; k < both.measured.size(); ++k)
+      r[i++] = (both.computed[k] - both.measured[k]) / (fit_.frequencies[f].shape_sd * largest);
+  }
   for (std::size_t s = 0; s < fit_.series.size(); ++s) {
     const ComparedSeries both = compared(s, response, u);
     for (std::size_t k = 0; k < both.measured.size(); ++k) r[i++] = (both.computed[k] - both.measured[k]) / sd_[s];
@@ -143,8 +176,7 @@ Eigen::VectorXd Residuals::evaluate(const std::vector<double>& response, const E
 /// At most most_shifts shifts are compared, by most_compared values each.
 Alignment Residuals::best_alignment(std::size_t s, const std::vector<double>& response, double low, double high) const {
   const options::MeasuredSeries& series = fit_.series[s];
-  const std::size_t count = (response.size() - fit_.frequencies.size()) / fit_.series.size();
-  const Spline spline(std::span<const double>(response).subspan(fit_.frequencies.size() + s * count, count), interval_);
+  const Spline spline = spline_of(s, response);
   const std::size_t stride = series.time.size() / most_compared + 1;
   const auto shifts = static_cast<std::size_t>(
       std::clamp((high - low) / interval_of(series.time), 1.0, static_cast<double>(most_shifts)));
@@ -167,15 +199,23 @@ void Residuals::set_starts(const std::vector<double>& response, Eigen::VectorXd&
   for (std::size_t j = options(); j < unknowns_.size(); ++j) {
     const Unknown& unknown = unknowns_[j];
     double& own = u[static_cast<Eigen::Index>(j)];
-    if (unknown.kind == Unknown::Kind::shift) {
+    if (unknown.kind == Unknown::Kind::shift)
       own = unknown.u(best_alignment(unknown.series, response, unknown.low, unknown.high).shift);
-    } else {
-      own = unknown.u(0.0);
-      const ComparedSeries both = compared(unknown.series, response, u);
-      double sum = 0.0;
-      for (std::size_t k = 0; k < both.measured.size(); ++k) sum += both.measured[k] - both.computed[k];
-      own = unknown.u(sum / static_cast<double>(both.measured.size()));
-    }
+    else
+      own = unknown.u(unknown.kind == Unknown::Kind::gain ? 1.0 : 0.0);
+  }
+  for (std::size_t j = options(); j < unknowns_.size(); ++j) {
+    const Unknown& unknown = unknowns_[j];
+    if (unknown.kind == Unknown::Kind::shift) continue;
+    const ComparedSeries both = compared(unknown.series, response, u);  // a gain comes after the offset of its series
+    const auto count = static_cast<Eigen::Index>(both.measured.size());
+    const Eigen::Map<const Eigen::ArrayXd> m(both.measured.data(), count), c(both.computed.data(), count);
+    const bool offset = fit_.series[unknown.series].offset;
+    const Eigen::ArrayXd deviation = c - (offset ? c.mean() : 0.0);
+    const double square = deviation.square().sum();
+    const double gain = fit_.series[unknown.series].gain && square > 0.0 ? (deviation * m).sum() / square : 1.0;
+    u[static_cast<Eigen::Index>(j)] =
+        unknown.u(unknown.kind == Unknown::Kind::gain ? gain : m.mean() - gain * c.mean());
   }
 }
 
@@ -186,13 +226,13 @@ double Residuals::independent(std::size_t s) const {
 }
 
 double Residuals::independent() const {
-  auto sum = static_cast<double>(fit_.frequencies.size());
+  auto sum = static_cast<double>(fit_.modal_size());
   for (std::size_t s = 0; s < fit_.series.size(); ++s) sum += independent(s);
   return sum;
 }
 
 Eigen::VectorXd Residuals::of_series(std::size_t s, const Eigen::VectorXd& residuals) const {
-  std::size_t first = fit_.frequencies.size();
+  std::size_t first = fit_.modal_size();
   for (std::size_t i = 0; i < s; ++i) first += fit_.series[i].time.size();
   return residuals.segment(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(fit_.series[s].time.size()));
 }
@@ -201,7 +241,7 @@ Eigen::VectorXd Residuals::estimate_sd(const Eigen::VectorXd& residuals) {
   const double all = independent();
   const double free = std::max(1.0 - static_cast<double>(unknowns_.size()) / all, 1.0 / all);
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(residuals.size());
-  auto first = static_cast<Eigen::Index>(fit_.frequencies.size());
+  auto first = static_cast<Eigen::Index>(fit_.modal_size());
   for (std::size_t s = 0; s < fit_.series.size(); ++s) {
     const auto count = static_cast<Eigen::Index>(fit_.series[s].time.size());
     if (!fit_.series[s].sd) {

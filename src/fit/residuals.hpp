@@ -8,17 +8,18 @@
 #include <vector>
 
 #include "fit/forward_model.hpp"
+#include "fit/spline.hpp"
 #include "traverse/options/fit.hpp"
 
 namespace traverse::fit {
 
-/// A quantity that the fit estimates: an option, the difference of two clocks, or the offset of a series.
+/// A quantity that the fit estimates: an option, the difference of two clocks, or the offset or factor of a series.
 struct Unknown {
-  enum class Kind { option, shift, offset };
+  enum class Kind { option, shift, offset, gain };
   Kind kind = Kind::option;
   std::string name, unit;
   double low = 0.0, high = 0.0, start = 0.0;
-  std::size_t series = 0;    // of a shift or an offset
+  std::size_t series = 0;    // of a shift, an offset or a gain
   bool logarithmic = false;  // u is linear in the logarithm
 
   /// The value at u, and u at a value: u is 0 at the lowest and 1 at the highest value.
@@ -31,6 +32,12 @@ struct Unknown {
 /// A measured series and its computed counterpart, with the filter of both.
 struct ComparedSeries {
   std::vector<double> time, measured, computed;
+};
+
+/// A measured shape of a mode, and the computed one in the scale that is closest to it.
+struct ComparedShape {
+  std::vector<double> measured, computed;
+  double mac = 0.0;  // modal assurance criterion, 1
 };
 
 /// A shift of a series' clock with the correlation of its measured and its computed values; -1 if one of
@@ -51,7 +58,8 @@ class Residuals {
   void align(const std::vector<double>& response, double interval, double range);
   /// The latest time by the scene's clock of any measured value, s.
   double end() const;
-  /// The shifts with the least misfit, within their bounds, and the mean offsets, for these computed samples.
+  /// The shifts with the least misfit, within their bounds, and the offsets and gains of the line that is closest to
+  /// the measured over the computed values, for these computed samples.
   void set_starts(const std::vector<double>& response, Eigen::VectorXd& u) const;
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
@@ -64,9 +72,11 @@ class Residuals {
   Alignment best_alignment(std::size_t series, const std::vector<double>& response, double low, double high) const;
   /// All residuals; response: see ForwardModel::run.
   Eigen::VectorXd evaluate(const std::vector<double>& response, const Eigen::VectorXd& u) const;
+  /// The shape of a measured frequency that has one.
+  ComparedShape shape(std::size_t frequency, const std::vector<double>& response) const;
   /// A series and its computed counterpart.
   ComparedSeries compared(std::size_t series, const std::vector<double>& response, const Eigen::VectorXd& u) const;
-  /// The same with a given shift (s) and without an offset.
+  /// The same with a given shift (s), without an offset and a gain.
   ComparedSeries compared(std::size_t series, const std::vector<double>& response, double shift) const;
 
   /// The number of independent values of a series: a filter makes neighbours depend on each other.
@@ -86,6 +96,7 @@ class Residuals {
   Eigen::VectorXd estimate_sd(const Eigen::VectorXd& residuals);
 
  private:
+  Spline spline_of(std::size_t series, const std::vector<double>& response) const;
   std::vector<double> computed(std::size_t series, const std::vector<double>& response, double shift) const;
 
   const options::Fit& fit_;

@@ -118,6 +118,10 @@ PairForce spring_force(const SpringGeometry& spring, const Frame& first, const F
   return g;
 }
 
+double spring_length(const SpringGeometry& spring, const Frame& first, const Frame& second) {
+  return Line(spring, first, second).length;
+}
+
 double spring_tension(const SpringGeometry& spring, const Frame& first, const Frame& second) {
   const Line line(spring, first, second);
   return line.force_per_length * line.length;

@@ -55,6 +55,7 @@ TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second);
 /// Like the function above; it also adds the power dissipated in the damper, W, to `dissipation`.
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second, double& dissipation);
+double spring_length(const SpringGeometry& spring, const Frame& first, const Frame& second);  // m
 /// Tension along the spring, N, including the damper.
 double spring_tension(const SpringGeometry& spring, const Frame& first, const Frame& second);
 /// Derivatives of spring_force with respect to the coordinates and to the velocities.

@@ -33,6 +33,12 @@ void Mechanism::compute_forces(MechanismState& s) const {
     if (spring.first != ground) s.g[3 * spring.first + 2] -= moment;
     if (spring.second != ground) s.g[3 * spring.second + 2] += moment;
   }
+  for (const RopeGeometry& rope : ropes_) {
+    const RopeState at = rope.state(s.frames, s.time);
+    s.dissipation += at.tension.dissipation;
+    for (std::size_t i = 0; i < rope.bodies().size(); ++i)
+      s.g.segment<3>(3 * rope.bodies()[i]) -= at.tension.tension * at.by_q.segment<3>(3 * static_cast<int>(i));
+  }
   for (const Actuator& actuator : model_.actuators) {
     for (int c = 0; c < 3; ++c) {
       const double action = actuator.action[c].value(s.time);
@@ -83,6 +89,10 @@ void Mechanism::each_tangent(const MechanismState& s, double by_q, double by_qd,
     K(2, 5) = K(5, 2) = k;
     add(spring.first, spring.second, K);
   }
+  for (const RopeGeometry& rope : ropes_) {
+    const RopeMatrix all = rope.tangent(s.frames, rope.state(s.frames, s.time), by_q, by_qd);
+    rope.each_pair(all, add);
+  }
   if (by_lambda == 0.0) return;
   for (const JointGeometry& joint : joints_) {
     joint_curvature(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row, K);
@@ -104,6 +114,10 @@ AugmentedPattern Mechanism::augmented_pattern() const {
   pattern.bodies = static_cast<int>(model_.bodies.size());
   for (const SpringGeometry& spring : springs_) pattern.pairs.push_back({spring.first, spring.second});
   for (const TorsionGeometry& spring : torsion_springs_) pattern.pairs.push_back({spring.first, spring.second});
+  for (const RopeGeometry& rope : ropes_)
+    rope.each_pair(rope.no_tangent(), [&](int first, int second, const PairMatrix&) {
+      pattern.pairs.push_back({first, second});
+    });
   for (const JointGeometry& joint : joints_) pattern.pairs.push_back({joint.first, joint.second});
   const auto rows = static_cast<std::size_t>(constraints());
   for (const int row : partition_.rows) {
@@ -132,6 +146,10 @@ double Mechanism::spring_tension(const MechanismState& s, int k) const {
   });
 }
 
+double Mechanism::rope_tension(const MechanismState& s, int k) const {
+  return ropes_[k].state(s.frames, s.time).tension.tension;
+}
+
 double Mechanism::torsion_spring_moment(const MechanismState& s, int k) const {
   const TorsionGeometry& spring = torsion_springs_[k];
   return torsion_moment(spring, frame(s, spring.first), frame(s, spring.second));
@@ -150,6 +168,7 @@ MechanismEnergy Mechanism::energy(const MechanismState& s) const {
   for (const TorsionGeometry& spring : torsion_springs_) {
     e.strain += torsion_strain_energy(spring, frame(s, spring.first), frame(s, spring.second));
   }
+  for (const RopeGeometry& rope : ropes_) e.strain += rope.strain_energy(rope.state(s.frames, s.time));
   return e;
 }
 
@@ -166,6 +185,7 @@ base::Powers Mechanism::powers(const MechanismState& s) const {
   for (std::size_t k = 0; k < springs_.size(); ++k)
     if (springs_[k].winding != nullptr)
       e.work -= spring_tension(s, static_cast<int>(k)) * springs_[k].winding->rate(s.time);
+  for (const RopeGeometry& rope : ropes_) e.work += rope.work(rope.state(s.frames, s.time));
   if (applied_.size() > 0) e.work += applied_.dot(s.qd);
   for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
     e.work += driver_force(s, static_cast<int>(k)) * model_.drivers[k].value.rate(s.time);

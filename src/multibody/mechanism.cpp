@@ -136,6 +136,33 @@ void check_torsion_spring(const Part& part, const TorsionSpring& spring) {
   if (spring.law) check_law(part, *spring.law, spring.stiffness, spring.damping);
 }
 
+void check_rope(const Part& part, const Rope& rope) {
+  if (rope.points.size() < 2 || rope.bodies.size() != rope.points.size())
+    part.fail("needs at least two points, and a body for each");
+  for (const Eigen::Vector2d& point : rope.points) part.finite_vector("points", point);
+  std::vector<int> moved = rope.bodies;
+  for (const int body : moved) part.body(body, true);
+  part.body(rope.drum, true);
+  moved.push_back(rope.drum);
+  std::sort(moved.begin(), moved.end());
+  moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+  const auto count = std::count_if(moved.begin(), moved.end(), [](int body) { return body != ground; });
+  if (count == 0) part.fail("moves no body");
+  if (count > most_bodies_of_a_rope)
+    part.fail("runs over " + std::to_string(count) + " bodies, at most " + std::to_string(most_bodies_of_a_rope) +
+              " are allowed");
+  part.not_negative("stiffness", rope.stiffness);
+  part.not_negative("axial_rigidity", rope.axial_rigidity);
+  if ((rope.stiffness > 0.0) == (rope.axial_rigidity > 0.0)) part.fail("give either a stiffness or an axial rigidity");
+  part.not_negative("damping", rope.damping);
+  part.finite("drum_radius", rope.drum_radius);
+  if (rope.drum != ground && rope.drum == rope.bodies.back())
+    part.fail("the last point must be on the body that carries the drum, not on the drum");
+  if (rope.free_length && rope.preload) part.fail("give free_length or preload, not both");
+  if (rope.preload) part.not_negative("preload", *rope.preload);
+  part.positive("unstretched length", unstretched_length(rope));
+}
+
 void check_actuator(const Part& part, const Actuator& actuator) {
   part.body(actuator.body, false);
   part.body(actuator.reaction_body, true);
@@ -156,6 +183,7 @@ void check_model(const MechanismModel& model) {
   for (const TorsionSpring& spring : model.torsion_springs) {
     check_torsion_spring(Part(model, "torsion spring", spring.name), spring);
   }
+  for (const Rope& rope : model.ropes) check_rope(Part(model, "rope", rope.name), rope);
   for (const Actuator& actuator : model.actuators) check_actuator(Part(model, "actuator", actuator.name), actuator);
 }
 
@@ -203,6 +231,9 @@ Mechanism::Mechanism(MechanismModel model) : model_(std::move(model)) {
     torsion_springs_.push_back(
         torsion_geometry(spring, start_frame(model_, spring.bodies[0]), start_frame(model_, spring.bodies[1])));
   }
+  std::vector<Frame> frames = {Frame()};
+  for (int i = 0; i < static_cast<int>(model_.bodies.size()); ++i) frames.push_back(start_frame(model_, i));
+  for (const Rope& rope : model_.ropes) ropes_.emplace_back(rope, frames);
   find_scaling();
   find_pattern();
   if (constraints() == 0) {  // all coordinates are independent
@@ -217,6 +248,7 @@ bool Mechanism::select_sides(double t) {
   for (Driver& driver : model_.drivers) changed = driver.value.select_side(t) || changed;
   for (SpringGeometry& spring : springs_)
     if (spring.winding) changed = spring.winding->select_side(t) || changed;
+  for (RopeGeometry& rope : ropes_) changed = rope.select_side(t) || changed;
   return changed;
 }
 

@@ -18,6 +18,7 @@
 #include "multibody/force_element.hpp"
 #include "multibody/joint.hpp"
 #include "multibody/reduction.hpp"
+#include "multibody/rope.hpp"
 #include "traverse/multibody/frame.hpp"
 #include "traverse/multibody/model.hpp"
 
@@ -69,7 +70,7 @@ struct MechanismState {
   Eigen::VectorXd b;                  // n: q' = B p' + b
   Eigen::VectorXd d;                  // n: q'' = B p'' + d
   Eigen::VectorXd g;                  // n: gravity, springs, actuators
-  double dissipation = 0.0;           // W, in dampers of springs
+  double dissipation = 0.0;           // W, in dampers of springs and in ropes
   Eigen::VectorXd qdd;                // n
   Eigen::VectorXd lambda;             // one per row of Phi; 0 for dropped rows
   Eigen::MatrixXd Phi_q;              // rows of Phi x n, redundant rows included
@@ -107,7 +108,7 @@ struct MechanismState {
 /// Powers and stored energies, J.
 struct MechanismEnergy : base::Powers {
   double kinetic = 0.0;
-  double strain = 0.0;     // springs, torsion springs: 1/2 k e^2, or the integral of a law
+  double strain = 0.0;     // springs, torsion springs, ropes: 1/2 k e^2, or the integral of a law
   double potential = 0.0;  // gravity
 };
 
@@ -210,6 +211,8 @@ class Mechanism {
   double driver_force(const MechanismState& s, int k) const;
   /// Tension of spring k, N, including the damper.
   double spring_tension(const MechanismState& s, int k) const;
+  /// Tension of rope k, N, including the damping.
+  double rope_tension(const MechanismState& s, int k) const;
   /// Moment of torsion spring k on its second body, N m.
   double torsion_spring_moment(const MechanismState& s, int k) const;
 
@@ -297,6 +300,7 @@ class Mechanism {
   bool has_normal_friction_ = false;  // whether one of these joints has friction in proportion to its normal force
   std::vector<SpringGeometry> springs_;
   std::vector<TorsionGeometry> torsion_springs_;
+  std::vector<RopeGeometry> ropes_;
   int joint_row_count_ = 0;    // rows of Phi of the joints; one row per driver follows
   std::vector<char> pattern_;  // non-zero for entries of Phi_q that can be non-zero, by columns
   Scaling scaling_;

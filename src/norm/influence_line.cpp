@@ -218,12 +218,13 @@ Placed greatest(const InfluenceLine& line, const LoadModel& model) {
     }
     double bound = c[0], power = h;
     for (std::size_t k = 1; k < c.size(); ++k, power *= h) bound += std::max(0.0, c[k] * power);
-    if (bound > best.value) {
+    const double low = std::max(0.0, model.first - from), high = std::min(h, model.last - from);
+    if (bound > best.value && low <= high) {
       const Quartic slope = {c[1], 2.0 * c[2], 3.0 * c[3], 4.0 * c[4]};
       std::vector<double> candidates = sign_changes(std::span(slope).first(4), h);
-      candidates.insert(candidates.end(), {0.0, h});
+      candidates.insert(candidates.end(), {low, high});
       for (const double x : candidates)
-        if (const double value = at(c, x); value > best.value) best = {value, from + x};
+        if (const double value = at(c, x); x >= low && x <= high && value > best.value) best = {value, from + x};
     }
     c = shifted(c, h);
   }

@@ -6,6 +6,7 @@
 // train is a polynomial of its position. Therefore its greatest value is computed exactly.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,8 @@ struct LoadModel {
   std::vector<Uniform> uniform;
   /// A uniform load outside [free_from, free_to], only where it is unfavourable, N/m.
   double free_load = 0.0, free_from = 0.0, free_to = 0.0;
+  /// The range of positions of x = 0, m.
+  double first = -std::numeric_limits<double>::infinity(), last = std::numeric_limits<double>::infinity();
 };
 
 /// The greatest effect of a load, not below 0, because it may be outside the bridge.

@@ -84,7 +84,8 @@ constexpr Relation relations[] = {
   {Related::study, "find_keep", excludes, "find_quantity", ""},
 
   {Related::course, "speed_file", excludes, "speed", ""},
-  {Related::course, "times", excludes, "positions speed_file", ""},
+  {Related::course, "position_file", excludes, "speed speed_file", ""},
+  {Related::course, "times", excludes, "positions speed_file position_file", ""},
   {Related::course, "speed_over", needs, "speed_file", "needs a table of speeds: ~speed_file"},
 
   {Related::load, "hslm_a hslm_b en15528 file", excludes, "forces hslm_a hslm_b en15528 file", ""},
@@ -98,6 +99,11 @@ constexpr Relation relations[] = {
   {Related::part, "damper_table", excludes, "damping", ""},
   {Related::part, "preload", excludes, "free_length", ""},
   {Related::part, "preload", excludes, "winding_table", "with a winding_table give ~free_length"},
+  {Related::part, "EA", excludes, "stiffness", ""},
+  {Related::part, "drum", needs, "drum_radius", ""},
+  {Related::part, "drum_radius", needs, "drum", ""},
+  {Related::part, "length", needs, "lifts", ""},
+  {Related::part, "lifts", needs, "length", ""},
   {Related::part, "bodies", excludes, "body reaction_body", ""},
   {Related::part, "delay", needs, "table", ""},
   {Related::part, "young poisson rail_young rail_poisson other_young other_poisson", excludes, "stiffness", ""},
@@ -118,7 +124,9 @@ constexpr Relation relations[] = {
 
   {Related::measurement, "series", excludes, "frequency", ""},
   {Related::measurement, "frequency", needs_all, "value sd", ""},
-  {Related::measurement, "column quantity x dataset component factor from to align offset lowpass", excludes, "frequency", "is not allowed with ~frequency"},
+  {Related::measurement, "column quantity x dataset component factor from to align offset gain lowpass", excludes, "frequency", "is not allowed with ~frequency"},
+  {Related::measurement, "shape", needs, "frequency", "belongs to a mode: ~frequency"},
+  {Related::measurement, "shape_sd", needs, "shape", ""},
   {Related::measurement, "value", excludes, "series", "is not allowed with ~series"},
   {Related::measurement, "quantity x", excludes, "dataset", "is not allowed with ~dataset"},
   {Related::measurement, "component", excludes, "quantity", "is not allowed with ~quantity"},

@@ -97,6 +97,7 @@ constexpr Row run_rows[] = {
   {"trains_from", number, "s", "0", any, "", 0, "the time of the timetable (train_times) at which the run begins"},
   {"train_speed", number, "m/s", "", {-1e4, 1e4}, "", 0, "speed at t = 0, in m/s or as 100 km/h; positive: to the right; negative: to the left, vehicles mirrored"},
   {"train_speed_file", table, "s, m/s", "", any, "", 0, "table t,v (s, m/s) instead of a speed, linear between its rows"},
+  {"train_position_file", table, "s, m", "", any, "", 0, "table t,x (s, m) instead of a speed: x of the front wheel of the train, which begins there; its speed is linear between the rows and their middles"},
   {"train_speed_over", choice, "", "time", any, "time position", 0, "position: the table is x,v over the position of the front wheel, with constant acceleration between its rows"},
   {"train_profile", word_or_table, "m, m", "(track_profile)", any, "", 0, "running surface of the wheels of this train only, values as of track_profile"},
   {"train_profile_shape", choice, "", "linear", any, "linear spline", 0, "as track_profile_shape, for the profile of this train"},
@@ -113,6 +114,7 @@ constexpr Row run_rows[] = {
   {"loads", texts, "", "(one load: the options of load)", any, "", 0, "names of several groups of forces; each has its own block with the options of load: NAME_forces, NAME_speed, ..."},
   {"load_speed", number, "m/s", "(train_speed)", {-1e4, 1e4}, "", 0, "speed of the forces, in m/s or as 100 km/h; positive: to the right; negative: to the left"},
   {"load_speed_file", table, "s, m/s", "", any, "", 0, "table t,v (s, m/s) instead of a speed, linear between its rows"},
+  {"load_position_file", table, "s, m", "", any, "", 0, "table t,x (s, m) instead of a speed: x of the first force, which begins there; its speed is linear between the rows and their middles"},
   {"load_speed_over", choice, "", "time", any, "time position", 0, "position: the table is x,v over the position of the first force, with constant acceleration between its rows"},
   {"load_hslm_a", integer, "", "", {1, 10}, "", 0, "instead of load_forces: train A1 to A10 of EN 1991-2"},
   {"load_hslm_b", numbers, "1, m", "", positive, "", 2, "instead of load_forces: HSLM-B of EN 1991-2, the number of forces of 170 kN and their distance"},
@@ -198,6 +200,7 @@ constexpr Row later_rows[] = {
   {"norm_track", choice, "", "standard", any, "standard careful", 0, "maintenance of the track; standard: Phi3; careful: Phi2 of EN 1991-2 6.4.5.2"},
   {"norm_length", number, "m", "(from the spans)", positive, "", 0, "determinant length L_Phi of EN 1991-2 6.4.5.3"},
   {"norm_lane_load", number, "N/m", "0", not_negative, "", 0, "uniform load that accompanies the scene's train or forces in static effects, on all unfavourable parts of the bridge"},
+  {"norm_range", numbers, "m", "(everywhere)", any, "", 2, "from, to: x between which the foremost force of the scene's train or forces stands in static effects; a trolley or crane that reaches a part of the beam only"},
   {"norm_lane_gap", numbers, "m", "0,0", any, "", 2, "from, to: range without norm_lane_load, relative to the foremost force; behind it is below 0"},
   {"norm_spacing", number, "m", "(a twentieth of each span)", positive, "", 0, "largest distance between the sections at which static effects are computed"},
 
@@ -316,6 +319,8 @@ constexpr Row vary[] = {
 constexpr Row fit[] = {
   {"frequency", integer, "", "", {1, 100}, "", 0, "number of the measured natural frequency, 1: the lowest, as -scene_analysis modes lists them"},
   {"value", number, "Hz", "", positive, "", 0, "measured frequency"},
+  {"shape", table, "m", "", any, "", 0, "with frequency: table of the mode's shape, x and the deflection there in any scale"},
+  {"shape_sd", number, "1", "0.05", positive, "", 0, "standard deviation of the values of the shape, relative to the largest of them"},
   {"sd", number, "", "(of series: from the residuals)", positive, "", 0, "standard deviation of the measured value, or of each value of a series after its factor"},
   {"series", table, "s", "", any, "", 0, "table of a measured series, the time in its first column (s)"},
   {"column", integer, "", "2", {2, 1000}, "", 0, "column of the measured values"},
@@ -328,6 +333,7 @@ constexpr Row fit[] = {
   {"to", number, "s", "(the last row)", any, "", 0, "time of the last row that is used"},
   {"align", flag, "", "false", any, "", 0, "the difference of the clocks of measurement and scene is estimated; false: they are the same"},
   {"offset", flag, "", "false", any, "", 0, "a constant in the measured values is estimated, such as the zero of a gauge"},
+  {"gain", flag, "", "false", any, "", 0, "a factor of the measured values is estimated, such as an unknown gauge factor"},
   {"lowpass", number, "Hz", "(no filter)", positive, "", 0, "cut-off frequency of a low-pass for measured and computed values"},
 };
 constexpr Row fit_bounds = {"", texts, "", "", any, "", 2, "lowest and highest value of the option; speeds may be in km/h"};

@@ -33,6 +33,7 @@ constexpr Row vehicle[] = {
   {"joints", texts, "", "", any, "", 0, "names of the joints"},
   {"springs", texts, "", "", any, "", 0, "names of the springs with dampers"},
   {"torsion_springs", texts, "", "", any, "", 0, "names of the torsion springs with dampers"},
+  {"ropes", texts, "", "", any, "", 0, "names of the ropes over several points"},
   {"wheels", texts, "", "", any, "", 0, "names of the wheels"},
   {"actuators", texts, "", "", any, "", 0, "names of the prescribed forces and moments"},
   {"drivers", texts, "", "", any, "", 0, "names of the prescribed motions"},
@@ -76,6 +77,21 @@ constexpr Row torsion_spring[] = {
   {"damper_table", table, "rad/s, N m", "", any, "", 0, "a file rate,moment instead of damping: rad/s, Nm; linear between and beyond its rows"},
   {"gap", number, "rad", "0", not_negative, "", 0, "play: no moment up to this twist in either direction; stiffness or table begin there"},
   {"side", choice, "", "both", any, "both compression tension", 0, "compression: acts on negative twist only; tension: on positive twist only"},
+};
+
+constexpr Row rope[] = {
+  {"bodies", texts, "", "", any, "", 0, "the body of each point, in the order of the rope; ground is the fixed frame"},
+  {"points", numbers, "m", "", any, "", 0, "x, y of each point at t = 0: the ends of the rope and its pulleys, which have no friction"},
+  {"stiffness", number, "N/m", "", positive, "", 0, "stiffness of the whole rope"},
+  {"EA", number, "N", "", positive, "", 0, "instead of stiffness: EA over the unstretched length, which grows as the rope shortens"},
+  {"damping", number, "Ns/m", "0", not_negative, "", 0, "damping of the whole rope"},
+  {"free_length", number, "m", "(the length at t = 0)", positive, "", 0, "length without force"},
+  {"preload", number, "N", "0", not_negative, "", 0, "tension at t = 0; instead of free_length"},
+  {"winding_table", table, "s, m", "", any, "", 0, "a file t,length: m that a winch adds to the free length, negative where it hoists; cubic spline through its rows, which holds its end values"},
+  {"drum", text, "", "", any, "", 0, "body that takes the rope up as it turns; the last point is where the rope meets it, on the body that carries it"},
+  {"drum_radius", number, "m", "", any, "", 0, "radius of the drum, positive if it takes rope up as it turns counter-clockwise"},
+  {"length", number, "m", "", positive, "", 0, "length of the path at t = 0: the bodies of lifts are moved up or down to it"},
+  {"lifts", texts, "", "", any, "", 0, "the bodies that hang on the rope"},
 };
 
 constexpr Row wheel[] = {
@@ -150,6 +166,7 @@ constexpr std::array<PartTable, part_kinds> parts = {{{"bodies", "body", body},
                                                       {"joints", "joint", {}},
                                                       {"springs", "spring", spring},
                                                       {"torsion_springs", "torsion spring", torsion_spring},
+                                                      {"ropes", "rope", rope},
                                                       {"wheels", "wheel", wheel},
                                                       {"actuators", "actuator", actuator},
                                                       {"drivers", "driver", driver},

@@ -103,7 +103,7 @@ void record_bridge(const beam::BeamModel& beam, Recorder& recorder) {
 
 void record_type(const train::Vehicle& vehicle, const std::string& group, Recorder& recorder) {
   Pairs names, joint_names;
-  std::vector<double> bodies, wheels, springs, joints, joint_ends;
+  std::vector<double> bodies, wheels, springs, ropes, joints, joint_ends;
   for (const multibody::Body& b : vehicle.mechanism.bodies) {
     names.emplace_back(vehicle.name, b.name);
     bodies.insert(bodies.end(), {b.position.x(), b.position.y(), b.mass});
@@ -115,6 +115,12 @@ void record_type(const train::Vehicle& vehicle, const std::string& group, Record
   for (const multibody::Spring& s : vehicle.mechanism.springs)
     springs.insert(springs.end(), {s.from.x(), s.from.y(), s.to.x(), s.to.y(), static_cast<double>(s.bodies[0]),
                                    static_cast<double>(s.bodies[1])});
+  for (std::size_t i = 0; i < vehicle.mechanism.ropes.size(); ++i) {
+    const multibody::Rope& rope = vehicle.mechanism.ropes[i];
+    for (std::size_t p = 0; p < rope.points.size(); ++p)
+      ropes.insert(ropes.end(), {static_cast<double>(i), rope.points[p].x(), rope.points[p].y(),
+                                 static_cast<double>(rope.bodies[p])});
+  }
   for (const multibody::Joint& j : vehicle.mechanism.joints) {
     const Eigen::Vector2d from = j.type->needs.ends ? j.from : j.point, to = j.type->needs.ends ? j.to : j.point;
     joint_names.emplace_back(j.name, j.type->name);
@@ -127,6 +133,7 @@ void record_type(const train::Vehicle& vehicle, const std::string& group, Record
   add_rows(recorder, group + "/bodies", 3, std::move(bodies), "m, m, kg");
   add_rows(recorder, group + "/wheels", 3, std::move(wheels), "m, m, m");
   add_rows(recorder, group + "/springs", 6, std::move(springs), "m, m, m, m, 1, 1");
+  add_rows(recorder, group + "/ropes", 4, std::move(ropes), "1, m, m, 1");
   add_rows(recorder, group + "/joints", 4, std::move(joints), "m, m, 1, 1");
   add_rows(recorder, group + "/joint_ends", 4, std::move(joint_ends), "m, m, m, m");
 }

@@ -48,9 +48,14 @@ std::vector<norm::LoadModel> static_trains(const scene::Scene& given, const Shar
 norm::NormCheck norm_check(const scene::Scene& scene, std::vector<norm::LoadModel> trains) {
   const results::Stage stage("static effects of trains and load models");
   for (norm::LoadModel& train : trains) {
-    if (scene.norm->lane_load == 0.0 || train.forces.empty()) continue;
+    if (train.forces.empty()) continue;
     const auto is_behind = [](const norm::LoadModel::Force& a, const norm::LoadModel::Force& b) { return a.x < b.x; };
     const double front = std::max_element(train.forces.begin(), train.forces.end(), is_behind)->x;
+    if (scene.norm->range) {
+      train.first = (*scene.norm->range)[0] - front;
+      train.last = (*scene.norm->range)[1] - front;
+    }
+    if (scene.norm->lane_load == 0.0) continue;
     train.free_load = scene.norm->lane_load;
     train.free_from = front + scene.norm->lane_gap_from;
     train.free_to = front + scene.norm->lane_gap_to;

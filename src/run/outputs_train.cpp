@@ -42,7 +42,7 @@ constexpr Row<SensorMotion> sensor_rows[] = {
 
 // The reaction of a joint on its second body.
 constexpr Row<Triple> joint_rows[] = {{"reaction", "N, N, N m", identity}};
-constexpr Row<double> spring_rows[] = {{"force", "N", identity}};  // positive in tension
+constexpr Row<double> spring_rows[] = {{"force", "N", identity}};  // positive in tension; also of ropes
 constexpr Row<double> torsion_spring_rows[] = {{"moment", "N m", identity}};
 
 // The reaction of a joint on the rear vehicle.
@@ -126,7 +126,8 @@ class VehicleOutputs {
 
   void add_joints() {
     const multibody::MechanismModel& model = member_.type->mechanism;
-    int joint = member_.first_joint, spring = member_.first_spring, torsion = member_.first_torsion_spring;
+    int joint = member_.first_joint, spring = member_.first_spring, torsion = member_.first_torsion_spring,
+        rope = member_.first_rope;
     for (const multibody::Joint& j : model.joints)
       outputs_.add(group(j.name), joint_rows, [&fleet = fleet_, unit = unit_, i = joint++](const Observed&) {
         return reaction(fleet.vehicles[unit], i);
@@ -139,6 +140,11 @@ class VehicleOutputs {
       outputs_.add(group(s.name), torsion_spring_rows, [&fleet = fleet_, unit = unit_, i = torsion++](const Observed&) {
         const train::MovingVehicle& now = fleet.vehicles[unit];
         return now.mechanism.torsion_spring_moment(now.state, i);
+      });
+    for (const multibody::Rope& r : model.ropes)
+      outputs_.add(group(r.name), spring_rows, [&fleet = fleet_, unit = unit_, i = rope++](const Observed&) {
+        const train::MovingVehicle& now = fleet.vehicles[unit];
+        return now.mechanism.rope_tension(now.state, i);
       });
   }
 

@@ -37,6 +37,8 @@ void of_vehicles(const scene::Scene& scene, const Use& use) {
       use(option(d.name, "table"), d.value, Table::displacement);
     for (const multibody::Spring& s : vehicle.mechanism.springs)
       if (s.winding) use(option(s.name, "winding_table"), *s.winding, Table::length);
+    for (const multibody::Rope& r : vehicle.mechanism.ropes)
+      if (r.winding) use(option(r.name, "winding_table"), *r.winding, Table::length);
     for (const multibody::Actuator& a : vehicle.mechanism.actuators)
       for (const base::TimeFunction& action : a.action) use(option(a.name, "table"), action, Table::force);
   }
@@ -89,7 +91,7 @@ void check_table_ends(const scene::Scene& scene, double end, std::vector<std::st
       const std::vector<double> rows = course.speed.kinks();
       if (rows.size() < 2 || !(rows.back() < end) || course.speed.standstill() <= rows.back()) continue;
       if (course.speed.speed(rows[rows.size() - 2]) == course.speed.speed(rows.back())) continue;
-      add_note(fmt::format("{}_speed_file: the table ends at {:g} s, the run at {:g} s; the last speed holds",
+      add_note(fmt::format("{}: the table of its motion ends at {:g} s, the run at {:g} s; the last speed holds",
                            course.name, rows.back(), end),
                notes);
     }

@@ -65,10 +65,11 @@ class Repeat {
 
  private:
   static bool refers_to_bodies(const Row& row) {
-    return row.name == "bodies" || row.name == "body" || row.name == "reaction_body";
+    constexpr std::string_view references[] = {"bodies", "body", "reaction_body", "drum", "lifts"};
+    return std::find(std::begin(references), std::end(references), row.name) != std::end(references);
   }
   static bool is_place(const Row& row) {
-    constexpr std::string_view places[] = {"position", "point", "from", "to", "centres", "line"};
+    constexpr std::string_view places[] = {"position", "point", "points", "from", "to", "centres", "line"};
     return std::find(std::begin(places), std::end(places), row.name) != std::end(places);
   }
 

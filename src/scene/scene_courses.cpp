@@ -55,6 +55,14 @@ auto from_speeds(const Options& o, const Block& block, Make&& make) {
   return from_table(o, block.option("speed_file"), wanted, make);
 }
 
+/// What `make` returns for t and x of a block's position_file.
+template <class Make>
+auto from_positions(const Options& o, const Block& block, Make&& make) {
+  options::WantedColumns wanted = rising_pairs;
+  wanted.units = "s, m";
+  return from_table(o, block.option("position_file"), wanted, make);
+}
+
 std::string direction_text(double direction) { return direction < 0.0 ? "to the left" : "to the right"; }
 
 std::string course_text(const train::Course& course) {
@@ -81,7 +89,15 @@ std::vector<Block> blocks_of(const Options& o, const char* list) {
   return blocks;
 }
 
+std::string table_of_motion(const Options& o, const Block& block) {
+  for (const char* name : {"speed_file", "position_file"})
+    if (const std::string option = block.option(name); o.knows(option) && o.has(option)) return option;
+  return {};
+}
+
 double direction_of(const Options& o, const Block& block) {
+  if (o.has(block.option("position_file")))
+    return from_positions(o, block, [](const auto& table) { return table[1].back() < table[1].front() ? -1.0 : 1.0; });
   if (o.has(block.option("speed_file")))
     return from_speeds(o, block, [](const auto& table) { return std::ranges::min(table[1]) < 0.0 ? -1.0 : 1.0; });
   const std::string speed = block.option("speed");
@@ -97,7 +113,16 @@ double entrance(const Scene& scene, double direction) {
   return direction < 0.0 && scene.beam ? scene.beam->length() : 0.0;
 }
 
-base::SpeedLaw read_speed_file(const Options& o, const Block& block, double front) {
+std::optional<double> start_by_table(const Options& o, const Block& block) {
+  if (!o.has(block.option("position_file"))) return {};
+  return from_positions(o, block, [](const auto& table) {
+    return table[1].front() - base::SpeedLaw::through(table[0], table[1]).distance(table[0].front());
+  });
+}
+
+base::SpeedLaw read_motion(const Options& o, const Block& block, double front) {
+  if (o.has(block.option("position_file")))
+    return from_positions(o, block, [](const auto& table) { return base::SpeedLaw::through(table[0], table[1]); });
   const bool over_place = o.choice(block.option("speed_over")) == "position";
   return from_speeds(o, block, [&](const auto& table) {
     return over_place ? base::SpeedLaw::over_place(table[0], table[1], front)
@@ -109,7 +134,7 @@ bool needs_courses(const Options& o, const std::vector<Block>& blocks) {
   const auto own = [&](const Block& block) {
     const std::string profile = block.option("profile");
     const std::string times = block.option("times");
-    return o.has(block.option("speed_file")) || direction_of(o, block) < 0.0 || (o.knows(profile) && o.has(profile)) ||
+    return !table_of_motion(o, block).empty() || direction_of(o, block) < 0.0 || (o.knows(profile) && o.has(profile)) ||
            (o.knows(times) && o.has(times)) || has_line_loads_or_variation(o, block);
   };
   return blocks.size() > 1 || std::any_of(blocks.begin(), blocks.end(), own);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -22,6 +23,7 @@ using options::Options;
 using options::Row;
 
 constexpr std::string_view fit_vary = "fit_vary_", fit_to = "fit_to_";
+constexpr double default_shape_sd = 0.05;  // of the largest value of a shape
 constexpr std::size_t most_parameters = 50, most_targets = 200, most_columns = 1000, fewest_values = 3;
 constexpr double most_values = 1e6;     // of a series
 constexpr double even_interval = 1e-3;  // largest relative difference of intervals of a filtered series
@@ -48,11 +50,30 @@ std::string name_of(const std::string& target, std::string_view row) {
   return std::string(fit_to) + target + "_" + std::string(row);
 }
 
-/// Whether it is an option beside the table of a given fit_to_NAME_series.
-bool is_beside_series(const Options& o, const std::string& option) {
+/// Whether it is an option beside the table of a given fit_to_NAME_series or fit_to_NAME_shape.
+bool is_beside_table(const Options& o, const std::string& option) {
   const auto beside = options::beside_table(option);
-  return beside && beside->first.starts_with(fit_to) && beside->first.ends_with("_series") &&
-         o.entries().has(beside->first);
+  return beside && beside->first.starts_with(fit_to) &&
+         (beside->first.ends_with("_series") || beside->first.ends_with("_shape")) && o.entries().has(beside->first);
+}
+
+/// An estimated option, or the entry of one that is a list: load_forces_2.
+struct Varied {
+  std::string option;
+  int entry = 0;  // from 1; 0: the whole option
+};
+
+Varied varied(const Options& o, const std::string& given) {
+  const std::string name = given.substr(fit_vary.size());
+  const std::size_t end = name.find_last_of('_');
+  double entry = 0.0;
+  if (o.find_known(name) != nullptr || end == std::string::npos ||
+      !options::parse_number(name.substr(end + 1), entry) || !(entry >= 1.0 && entry <= most_values) ||
+      entry != std::floor(entry))
+    return {name, 0};
+  const Row* const list = o.find_known(name.substr(0, end));
+  if (list == nullptr || list->kind != Kind::numbers) return {name, 0};
+  return {name.substr(0, end), static_cast<int>(entry)};
 }
 
 [[noreturn]] void refuse_target(const Options& o, const std::string& option) {
@@ -65,9 +86,9 @@ void declare_fit(Options& o) {
   for (const Entry& entry : o.entries()) {
     const std::string& name = entry.name;
     if (name.starts_with(fit_vary)) {
-      o.check_known(name, name.substr(fit_vary.size()));
+      o.check_known(name, varied(o, name).option);
       o.declare(name, options::fit_bounds_row());
-    } else if (name.starts_with(fit_to) && !is_beside_series(o, name)) {
+    } else if (name.starts_with(fit_to) && !is_beside_table(o, name)) {
       const std::optional<Target> target = target_of(name);
       if (!target) refuse_target(o, name);
       o.declare(name, *target->row);
@@ -85,6 +106,16 @@ std::string why_not_fitted(const Options& o, const std::string& option) {
   return why_not_varied(o, option);
 }
 
+/// Sets the list of a parameter that is an entry of one.
+void read_list(const Options& o, const std::string& given, int entry, FitParameter& parameter) {
+  parameter.entry = entry;
+  if (!o.entries().has(parameter.option))
+    o.refuse(given, fmt::format("missing: {}, of which this is an entry", parameter.option));
+  parameter.list = o.numbers(parameter.option);
+  if (const auto count = static_cast<int>(parameter.list.size()); entry > count)
+    o.refuse(given, fmt::format("{} has {} entries only", parameter.option, count));
+}
+
 /// The scene's own value of an option; none if it is not given or is no single number.
 std::optional<double> own_value(const Options& o, const std::string& option, const Row& row) {
   if (!o.entries().has(option) && (row.fallback.empty() || row.fallback.front() == '(')) return {};
@@ -95,33 +126,54 @@ std::optional<double> own_value(const Options& o, const std::string& option, con
 }
 
 FitParameter read_parameter(const Options& o, const std::string& given) {
-  const std::string option = given.substr(fit_vary.size());
+  const auto [option, entry] = varied(o, given);
   const Row& row = *o.find_known(option);
   if (const std::string why = why_not_fitted(o, option); !why.empty())
     o.refuse(given, fmt::format("{} cannot be estimated: {}", option, why));
   const std::vector<std::string> words = o.texts(given);
-  FitParameter parameter{option, std::string(row.unit.empty() ? "1" : row.unit)};
+  FitParameter parameter;
+  parameter.option = option;
+  parameter.unit = row.unit.empty() ? "1" : row.unit;
   const VaryReader reader(o, option);
   for (const auto& [bound, word] : {std::pair(&parameter.low, words[0]), std::pair(&parameter.high, words[1])}) {
     *bound = reader.number(given, word);
     reader.check(given, *bound);
   }
-  parameter.copies = std::max(row.count, 1);
+  if (entry > 0)
+    read_list(o, given, entry, parameter);
+  else
+    parameter.copies = std::max(row.count, 1);
   if (!(parameter.low < parameter.high))
     o.refuse(given, "the lowest value must be below the highest; allowed: lowest, highest");
   const double low = parameter.low, high = parameter.high;
   const double middle = low > 0.0 ? std::sqrt(low) * std::sqrt(high) : 0.5 * (low + high);
-  parameter.start = own_value(o, option, row).value_or(middle);
+  parameter.start =
+      entry > 0 ? parameter.list[static_cast<std::size_t>(entry - 1)] : own_value(o, option, row).value_or(middle);
   if (parameter.start < low || parameter.start > high)
     o.refuse(given,
              fmt::format("the scene's value {} = {:g} is outside these bounds; a fit starts at the scene's value",
-                         option, parameter.start));
+                         parameter.name(), parameter.start));
   return parameter;
 }
 
 options::MeasuredFrequency read_frequency(const Options& o, const std::string& target) {
-  return {target, o.integer(name_of(target, "frequency")), o.number(name_of(target, "value")),
-          o.number(name_of(target, "sd"))};
+  options::MeasuredFrequency mode{target,
+                                  o.integer(name_of(target, "frequency")),
+                                  o.number(name_of(target, "value")),
+                                  o.number(name_of(target, "sd")),
+                                  {},
+                                  {}};
+  const std::string option = name_of(target, "shape");
+  if (!o.has(option)) return mode;
+  const auto table =
+      from_table(o, option, {2, 2, options::Order::rising, "m, ", false}, [](const auto& columns) { return columns; });
+  mode.x = table[0];
+  mode.shape = table[1];
+  mode.shape_sd = o.has(name_of(target, "shape_sd")) ? o.number(name_of(target, "shape_sd")) : default_shape_sd;
+  if (mode.x.size() < 2) o.refuse(option, "allowed: at least two rows, whose ratios are the shape");
+  if (std::ranges::all_of(mode.shape, [](double value) { return value == 0.0; }))
+    o.refuse(option, "every value is 0; wanted: at least one that is not");
+  return mode;
 }
 
 /// The SI unit of a measured quantity.
@@ -200,6 +252,7 @@ options::MeasuredSeries read_series(const Options& o, const std::string& target)
   if (o.has(name_of(target, "sd"))) series.sd = o.number(name_of(target, "sd"));
   series.align = o.has(name_of(target, "align")) && o.flag(name_of(target, "align"));
   series.offset = o.has(name_of(target, "offset")) && o.flag(name_of(target, "offset"));
+  series.gain = o.has(name_of(target, "gain")) && o.flag(name_of(target, "gain"));
   series.low_pass = o.optional_number(name_of(target, "lowpass"));
   read_values(o, target, series);
   check_filter(o, target, series);
@@ -214,7 +267,7 @@ Fit read_measurements(const Options& o) {
   Fit fit;
   std::set<std::string> names;
   for (const Entry& entry : o.entries()) {
-    if (is_beside_series(o, entry.name)) continue;
+    if (is_beside_table(o, entry.name)) continue;
     if (entry.name.starts_with(fit_vary)) fit.parameters.push_back(read_parameter(o, entry.name));
     const std::optional<Target> target = target_of(entry.name);
     if (!target || !names.insert(target->name).second) continue;
@@ -257,7 +310,7 @@ void check_fit(const Options& o, const Scene& scene) {
 std::string start_note(const Fit& fit) {
   std::string text;
   for (const FitParameter& p : fit.parameters)
-    text += fmt::format("{}{} from {:g} to {:g}", text.empty() ? "" : ", ", p.option, p.low, p.high);
+    text += fmt::format("{}{} from {:g} to {:g}", text.empty() ? "" : ", ", p.name(), p.low, p.high);
   return fmt::format("fit of {}; the values of the scene are those of its start", text);
 }
 
@@ -268,6 +321,8 @@ void check_stations(const Options& o, const Fit& fit) {
   for (const double span : o.numbers("beam_spans")) length += span;
   for (const options::MeasuredSeries& series : fit.series)
     if (series.x) (void)place_on_beam(o, name_of(series.name, "x"), *series.x, length);
+  for (const options::MeasuredFrequency& mode : fit.frequencies)
+    for (const double x : mode.x) (void)place_on_beam(o, name_of(mode.name, "shape"), x, length);
 }
 
 /// The stations of the series in place of the scene's probes.
@@ -310,8 +365,15 @@ Scene read_scene_of_fit(const Options& given, const Fit& fit, const std::vector<
   options::Entries entries;
   for (const Entry& entry : given.entries())
     if (!entry.name.starts_with("fit_")) entries.set(entry);
+  std::map<std::string, std::vector<double>> lists;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const FitParameter& parameter = fit.parameters[i];
+    if (parameter.entry > 0) {
+      std::vector<double>& list = lists.try_emplace(parameter.option, parameter.list).first->second;
+      list[static_cast<std::size_t>(parameter.entry - 1)] = values[i];
+      entries.set({parameter.option, fmt::format("{}", fmt::join(list, ",")), "a value of the fit", 0});
+      continue;
+    }
     const std::string copies = parameter.copies > 1 ? fmt::format("*{}", parameter.copies) : "";
     entries.set({parameter.option, fmt::format("{}{}", values[i], copies), "a value of the fit", 0});
   }

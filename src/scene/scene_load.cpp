@@ -185,9 +185,9 @@ void read_load(const Options& o, Scene& scene) {
     if (option.empty() && o.has("loads")) o.refuse(block.option("forces"), "missing: the forces of this load");
     if (option.empty()) return;
     if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
-    const bool file = o.has(block.option("speed_file"));
-    const double speed = file ? 0.0 : read_load_speed(o, block, scene);
-    const LoadBlock from{block, file ? direction_of(o, block) : speed < 0.0 ? -1.0 : 1.0};
+    const bool table = !table_of_motion(o, block).empty();
+    const double speed = table ? 0.0 : read_load_speed(o, block, scene);
+    const LoadBlock from{block, table ? direction_of(o, block) : speed < 0.0 ? -1.0 : 1.0};
     MovingLoad load = read_one_load(o, from, option, scene);
     if (!courses) {
       scene.load = std::move(load);
@@ -197,9 +197,12 @@ void read_load(const Options& o, Scene& scene) {
     train::Course course;
     course.name = block.name;
     course.first = scene.load.forces.size();
-    const double front = load.positions.front() +
-                         (option == block.option("distributed") ? 0.5 * from.direction * load.lengths.front() : 0.0);
-    course.speed = file ? read_speed_file(o, block, front) : base::SpeedLaw(speed);
+    const double ahead = option == block.option("distributed") ? 0.5 * from.direction * load.lengths.front() : 0.0;
+    if (const std::optional<double> start = start_by_table(o, block)) {
+      const double shift = *start - load.positions.front() - ahead;
+      for (double& x : load.positions) x += shift;
+    }
+    course.speed = table ? read_motion(o, block, load.positions.front() + ahead) : base::SpeedLaw(speed);
     course.variation = read_variation(o, block);
     scene.load.speed = std::max(scene.load.speed, course.speed.fastest());
     scene.load.courses.push_back(std::move(course));

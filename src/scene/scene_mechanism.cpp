@@ -137,14 +137,13 @@ void VehicleReader::spring(const std::string& name) {
     o_.refuse(key("preload"),
               "allowed: a force that the spring has at exactly one elongation, or " + key("free_length"));
   }
-  if (has("winding_table")) winding(s);
+  if (has("winding_table")) s.winding = winding(s.free_length.value_or((s.to - s.from).norm()));
   vehicle_.mechanism.springs.push_back(s);
 }
 
-/// Reads the length that a winch adds to a spring.
-void VehicleReader::winding(multibody::Spring& s) const {
-  s.winding = from_table(o_, key("winding_table"), rising_pairs, [&](const auto& columns) {
-    const double length = s.free_length.value_or((s.to - s.from).norm());
+/// Reads the length that a winch adds to a free length, m.
+base::TimeFunction VehicleReader::winding(double length) const {
+  return from_table(o_, key("winding_table"), rising_pairs, [&](const auto& columns) {
     for (const double change : columns[1])
       if (!(length + change > 0.0))
         throw InputError(fmt::format("the free length {:g} m would not be positive", length + change));

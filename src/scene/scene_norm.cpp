@@ -69,7 +69,7 @@ void read_damping_bound(const Options& o, Scene& scene) {
 void read_norm(const Options& o, Scene& scene) {
   const std::string asked = option_of_static_effects(o, scene);
   if (asked.empty()) {
-    for (const char* name : {"norm_alpha", "norm_track", "norm_length", "norm_spacing", "norm_lane_load"})
+    for (const char* name : {"norm_alpha", "norm_track", "norm_length", "norm_spacing", "norm_lane_load", "norm_range"})
       if (o.has(name))
         scene.notes.push_back(std::string(name) + " has no effect: norm_load_models names no load model");
     return;
@@ -107,6 +107,11 @@ void read_norm(const Options& o, Scene& scene) {
   rules.length = o.optional_number("norm_length");
   rules.spacing = o.optional_number("norm_spacing").value_or(0.0);
   rules.lane_load = o.number("norm_lane_load");
+  if (o.has("norm_range")) {
+    const std::vector<double> range = o.numbers("norm_range");
+    if (!(range[0] <= range[1])) o.refuse("norm_range", "allowed: from, to, with to not below from");
+    rules.range = {range[0], range[1]};
+  }
   const std::vector<double> gap = o.numbers("norm_lane_gap");
   rules.lane_gap_from = gap[0];
   rules.lane_gap_to = gap[1];

@@ -59,14 +59,18 @@ Vehicle read_vehicle(const options::Options& options, const std::string& name);
 void declare_blocks(options::Options& options);
 /// The blocks of `trains` or of `loads`; the block train or load if none are named.
 std::vector<Block> blocks_of(const options::Options& options, const char* list);
-/// The direction of a block's speed or speed_file: 1 to the right, -1 to the left.
+/// The option of a block that has a table of its motion, speed_file or position_file; empty without one.
+std::string table_of_motion(const options::Options& options, const Block& block);
+/// x of the first wheel or force at t = 0 by a block's position_file, m; none without one.
+std::optional<double> start_by_table(const options::Options& options, const Block& block);
+/// The direction of a block's speed or table of motion: 1 to the right, -1 to the left.
 double direction_of(const options::Options& options, const Block& block);
 /// Whether the speed 0 is given for a train or load.
 bool stands(const options::Options& options, const Block& block);
 /// x of the bridge end at which trains in this direction enter, m.
 double entrance(const Scene& scene, double direction);
-/// The speed law of a block's speed_file for a first wheel or force at `front` at t = 0.
-base::SpeedLaw read_speed_file(const options::Options& options, const Block& block, double front);
+/// The speed law of a block's table of motion for a first wheel or force at `front` at t = 0.
+base::SpeedLaw read_motion(const options::Options& options, const Block& block, double front);
 /// Whether a load has line loads, moments or a part that varies over time.
 bool has_line_loads_or_variation(const options::Options& options, const Block& block);
 /// Sets a load that consists of moments only (load_moments). Without given positions the first moment is at `entrance`.

@@ -158,15 +158,14 @@ double greatest_acceleration(const base::SpeedLaw& law) {
 }
 
 void record_speed(const Options& o, const std::string& block, const base::SpeedLaw& law, Scene& scene) {
-  const std::string file = block + "_speed_file";
-  const bool table = o.knows(file) && o.has(file);
-  if (const std::string line = norm::unusual_speed(table ? file : block + "_speed", law.fastest()); !line.empty())
-    scene.notes.push_back(line);
+  const std::string table = table_of_motion(o, {block, {}});
+  const std::string option = table.empty() ? block + "_speed" : table;
+  if (const std::string line = norm::unusual_speed(option, law.fastest()); !line.empty()) scene.notes.push_back(line);
   if (const double acceleration = greatest_acceleration(law); acceleration > greatest_by_friction)
     scene.notes.push_back(fmt::format(
         "{}: the speed changes by up to {:.4g} m/s2, more than the friction of wheels allows; speeds are in "
         "m/s, not km/h, and positions in m, not km",
-        file, acceleration));
+        option, acceleration));
 }
 
 void record_speeds(const Options& o, Scene& scene) {

@@ -163,11 +163,11 @@ bool rolls(const TrainBlock& train, const Scene& scene) {
 }
 
 Drive read_drive(const Options& o, const TrainBlock& train, const Scene& scene) {
-  const std::string option = train.block.option("drive"), file = train.block.option("speed_file");
+  const std::string option = train.block.option("drive"), table = table_of_motion(o, train.block);
   const std::string drive = o.has(option) ? o.choice(option) : rolls(train, scene) ? "constant" : "free";
-  if (drive == "free" && o.has(file))
-    o.refuse(file, o.has(option) ? "prescribes the speed, which is not possible with " + option + " free"
-                                 : "prescribes the speed of wheels, but the train has none");
+  if (drive == "free" && !table.empty())
+    o.refuse(table, o.has(option) ? "prescribes the speed, which is not possible with " + option + " free"
+                                  : "prescribes the speed of wheels, but the train has none");
   return drive == "free" ? Drive::free : Drive::constant;
 }
 
@@ -191,9 +191,14 @@ train::Course course_of_train(const Options& o, const TrainBlock& train, Scene& 
   course.name = train.name;
   course.first = scene.train.vehicles.size() - train.order.size();
   course.drive = read_drive(o, train, scene);
-  const double front = front_wheel(train, scene);
-  course.speed = o.has(train.block.option("speed_file")) ? read_speed_file(o, train.block, front)
-                                                         : base::SpeedLaw(read_speed(o, train, scene));
+  double front = front_wheel(train, scene);
+  if (const std::optional<double> start = start_by_table(o, train.block)) {
+    for (std::size_t i = course.first; i < scene.train.positions.size(); ++i)
+      scene.train.positions[i] += *start - front;
+    front = *start;
+  }
+  course.speed = !table_of_motion(o, train.block).empty() ? read_motion(o, train.block, front)
+                                                          : base::SpeedLaw(read_speed(o, train, scene));
   if (o.has(train.block.option("profile")))
     course.profile = std::make_shared<track::Profile>(
         read_profile(o, train.block.name, front, train.direction < 0.0, scene).profile);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -36,11 +37,13 @@ class VehicleReader {
     each(options::Part::joint, [this](const std::string& name) { joint(name); });
     each(options::Part::spring, [this](const std::string& name) { spring(name); });
     each(options::Part::torsion_spring, [this](const std::string& name) { torsion_spring(name); });
+    each(options::Part::rope, [this](const std::string& name) { rope(name); });
     each(options::Part::wheel, [this](const std::string& name) { wheel(name); });
     each(options::Part::actuator, [this](const std::string& name) { actuator(name); });
     each(options::Part::driver, [this](const std::string& name) { driver(name); });
     each(options::Part::contact, [this](const std::string& name) { body_contact(name); });
     each(options::Part::sensor, [this](const std::string& name) { sensor(name); });
+    lift_bodies();
     return std::move(vehicle_);
   }
 
@@ -98,7 +101,10 @@ class VehicleReader {
   std::optional<base::ForceLaw> force_law() const;
   void check_spring_given(std::string_view kind) const;
   void spring(const std::string& name);
-  void winding(multibody::Spring& s) const;
+  base::TimeFunction winding(double length) const;
+  void rope(const std::string& name);
+  void lift(multibody::Rope& rope);
+  void lift_bodies();
   void torsion_spring(const std::string& name);
   void wheel(const std::string& name);
   contact::Law law(double radius, const std::string& other) const;
@@ -116,6 +122,15 @@ class VehicleReader {
   std::vector<std::string> bodies_;
   Vehicle vehicle_;
   bool coupler_ = false;
+
+  /// Bodies that the length of a rope moves up at t = 0.
+  struct Lift {
+    std::string rope;
+    std::vector<int> bodies;
+    double up = 0.0;  // m
+    bool moves(int body) const { return std::find(bodies.begin(), bodies.end(), body) != bodies.end(); }
+  };
+  std::vector<Lift> lifts_;
 };
 
 }  // namespace traverse::scene

@@ -72,6 +72,12 @@ std::string Fleet::unsupported_body(const Fleet& start) const {
         if (attached && vehicle.mechanism.spring_tension(vehicle.state, static_cast<int>(s)) == 0.0)
           text += fmt::format(", its spring '{}' stays loose", spring.name);
       }
+      for (std::size_t r = 0; r < model.ropes.size(); ++r) {
+        const std::vector<int>& bodies = model.ropes[r].bodies;
+        const bool attached = std::find(bodies.begin(), bodies.end(), static_cast<int>(b)) != bodies.end();
+        if (attached && vehicle.mechanism.rope_tension(vehicle.state, static_cast<int>(r)) == 0.0)
+          text += fmt::format(", its rope '{}' stays slack", model.ropes[r].name);
+      }
     }
   }
   return text;
@@ -84,6 +90,8 @@ std::vector<double> Fleet::kinks_of_motions() const {
     for (const multibody::Driver& driver : vehicle.mechanism.model().drivers) add(driver.value);
     for (const multibody::Spring& spring : vehicle.mechanism.model().springs)
       if (spring.winding) add(*spring.winding);
+    for (const multibody::Rope& rope : vehicle.mechanism.model().ropes)
+      if (rope.winding) add(*rope.winding);
   }
   return kinks;
 }

@@ -57,6 +57,7 @@ std::string LinearDynamics::obstacle(const MovingVehicle& vehicle) {
   }
   for (const multibody::TorsionSpring& spring : model.torsion_springs)
     if (spring.law) return fmt::format("its torsion spring '{}' follows a law that is not linear", spring.name);
+  if (!model.ropes.empty()) return fmt::format("its rope '{}' only pulls", model.ropes.front().name);
   for (const multibody::Joint& joint : model.joints)
     if (joint.bodies[0] == multibody::ground || joint.bodies[1] == multibody::ground)
       return fmt::format("its joint '{}' is held by the ground", joint.name);

@@ -71,6 +71,13 @@ void add_vehicle(const Vehicle& type, const Placement& to, double speed, Unit& u
     to.bodies(s.bodies);
     all.torsion_springs.push_back(std::move(s));
   }
+  for (multibody::Rope r : type.mechanism.ropes) {
+    to.name(r.name);
+    to.bodies(r.bodies);
+    to.body(r.drum);
+    for (Eigen::Vector2d& p : r.points) to.point(p);
+    all.ropes.push_back(std::move(r));
+  }
   for (multibody::Actuator a : type.mechanism.actuators) {
     to.name(a.name);
     to.body(a.body);
@@ -118,6 +125,7 @@ Member next_member(const Vehicle& type, int number, const Unit& unit) {
           size(m.joints),
           size(m.springs),
           size(m.torsion_springs),
+          size(m.ropes),
           size(unit.wheels),
           size(unit.contacts)};
 }
@@ -164,6 +172,11 @@ void mirror(multibody::TorsionSpring& spring) {
   law.elastic = law.elastic.reversed();
   law.damper = law.damper.reversed();
   if (law.side != Side::both) law.side = law.side == Side::tension ? Side::compression : Side::tension;
+}
+
+void mirror(multibody::Rope& rope) {
+  for (Eigen::Vector2d& point : rope.points) mirror(point);
+  rope.drum_radius = -rope.drum_radius;
 }
 
 void mirror(Wheel& wheel) {
@@ -233,6 +246,8 @@ AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, d
     for (multibody::Driver& d : unit.mechanism.drivers) d.value = frozen_function(d.value);
     for (multibody::Spring& s : unit.mechanism.springs)
       if (s.winding) s.winding = frozen_function(*s.winding);
+    for (multibody::Rope& r : unit.mechanism.ropes)
+      if (r.winding) r.winding = frozen_function(*r.winding);
   }
   return all;
 }
@@ -246,6 +261,7 @@ Vehicle mirrored(Vehicle vehicle) {
   for (multibody::Joint& joint : model.joints) mirror(joint);
   for (multibody::Spring& spring : model.springs) mirror(spring);
   for (multibody::TorsionSpring& spring : model.torsion_springs) mirror(spring);
+  for (multibody::Rope& rope : model.ropes) mirror(rope);
   for (multibody::Actuator& actuator : model.actuators)
     for (const std::size_t along : {0, 2}) actuator.action[along].reverse();
   for (multibody::Driver& driver : model.drivers)

@@ -23,7 +23,8 @@ struct Unit {
 struct Member {
   const Vehicle* type = nullptr;
   int unit = 0;
-  int first_body = 0, first_joint = 0, first_spring = 0, first_torsion_spring = 0, first_wheel = 0, first_contact = 0;
+  int first_body = 0, first_joint = 0, first_spring = 0, first_torsion_spring = 0, first_rope = 0, first_wheel = 0,
+      first_contact = 0;
 };
 
 /// A coupler between two neighbours: a joint or a spring of their unit.

@@ -62,6 +62,30 @@ TEST(SpeedLaw, MirrorsPlaces) {
   EXPECT_GT(right.distance(1.0), 0.0) << "it starts from rest";
 }
 
+TEST(SpeedLaw, PassesEveryRowOfATableOfPositions) {
+  for (const double sign : {1.0, -1.0}) {
+    const std::vector<double> times = {-0.5, 0.0, 0.4, 1.5, 2.0, 3.5, 4.0, 6.0};
+    std::vector<double> even, stops = {0.0, 0.1, 0.5, 4.0, 4.0, 4.0, 7.0, 7.5};
+    for (const double t : times) even.push_back(sign * (3.0 * (t + 1.0) + 2.0 * t * t / 2.0));
+    for (double& x : stops) x *= sign;
+    const SpeedLaw uniform = SpeedLaw::through(times, even), halting = SpeedLaw::through(times, stops);
+    EXPECT_EQ(halting.direction(), sign);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      EXPECT_NEAR(uniform.distance(times[i]), even[i] - even[1], 1e-12) << i;
+      EXPECT_NEAR(halting.distance(times[i]), stops[i] - stops[1], 1e-12) << i;
+    }
+    for (double t = -0.5; t < 6.0; t += 0.01) {
+      EXPECT_GE(sign * halting.speed(t), 0.0) << t;
+      if (t > 0.0) EXPECT_NEAR(uniform.acceleration(t), sign * 2.0, 1e-11) << "a constant acceleration, at " << t;
+    }
+    EXPECT_EQ(halting.speed(2.8), 0.0) << "it stands between two equal rows";
+    EXPECT_DOUBLE_EQ(uniform.speed(9.0), uniform.speed(6.0));
+  }
+  EXPECT_THROW(SpeedLaw::through({0.0, 1.0, 2.0}, {0.0, 1.0, 0.5}), InputError);
+  EXPECT_THROW(SpeedLaw::through({0.0, 1.0}, {2.0, 2.0}), InputError);
+  EXPECT_THROW(SpeedLaw::through({0.0, 0.0}, {2.0, 3.0}), InputError);
+}
+
 TEST(SpeedLaw, RefusesWhatCannotRun) {
   EXPECT_THROW(SpeedLaw::over_time({0.0, 1.0}, {-1.0, 1.0}), InputError);
   EXPECT_THROW(SpeedLaw::over_time({0.0, 1.0}, {0.0, 0.0}), InputError);

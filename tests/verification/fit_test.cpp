@@ -125,6 +125,77 @@ TEST(Fit, AlignsTheClocksAndFindsTheOffset) {
   EXPECT_NEAR(exact("/fit/estimate")[3], 0.0, 1e-7);  // m
 }
 
+// The gauge gives 2.5 times what it should, in 1/m: shape and frequency of the record still determine the stiffness.
+TEST(Fit, EstimatesAnUnknownGaugeFactor) {
+  const TemporaryFolder folder;
+  folder.write("measured.csv", table(0.0));
+  Results results = fit(
+      folder, passage("beam_EI: [4.0e9, 2.0e10], model_damping_ratios: [0.001, 0.05]", ", gain: true, offset: true"),
+      {{"fit_to_midspan_factor", "-2.5e-3"}});
+  EXPECT_NEAR(results("/fit/estimate")[0] / EI, 1.0, 1e-4);
+  EXPECT_NEAR(results("/fit/estimate")[1] / ratio, 1.0, 1e-3);
+  EXPECT_NEAR(results("/fit/estimate")[2], 0.0, 1e-8) << "the offset";
+  EXPECT_NEAR(results("/fit/estimate")[3], 2.5, 1e-4);
+}
+
+// Two axles of unknown weight from the record of another scene's bending moment (weighing in motion).
+TEST(Fit, EstimatesTheEntriesOfAList) {
+  const TemporaryFolder folder;
+  const std::string bridge = "beam: {spans: 25.0, EI: 9.1e9, mass: 1.2e4}\nmodel: {modes: 20, damping_ratios: 0.015}\n";
+  Results truth = run_yaml(bridge +
+                           "load: {forces: [1.1e5, 0.7e5, 1.6e5], positions: [0, -4, -9], speed: 20}\n"
+                           "output: {probes: 10, interval: 0.02}\n");
+  std::string record;
+  const std::vector<double> time = truth.time(), moment = truth.column("/probes/moment");
+  for (std::size_t i = 0; i < time.size(); ++i)
+    record += std::to_string(time[i]) + "," + std::to_string(moment[i]) + "\n";
+  folder.write("measured.csv", record);
+  Results results =
+      fit(folder, bridge +
+                      "load: {forces: [1.0e5, 0.7e5, 1.0e5], positions: [0, -4, -9], speed: 20}\n"
+                      "fit: {vary: {load_forces_1: [2.0e4, 3.0e5], load_forces_3: [2.0e4, 3.0e5]}, to: {gauge: "
+                      "{series: measured.csv, quantity: moment, x: 10}}}\n");
+  EXPECT_NEAR(results("/fit/estimate")[0], 1.1e5, 1e-3 * 1.1e5);
+  EXPECT_NEAR(results("/fit/estimate")[1], 1.6e5, 1e-3 * 1.6e5);
+  EXPECT_PRED2(contains, message_of([&] {
+                 fit(folder, bridge +
+                                 "load: {forces: [1.0e5], speed: 20}\nfit: {vary: {load_forces_2: [1, 2e5]}, "
+                                 "to: {gauge: {series: measured.csv, quantity: moment, x: 10}}}\n");
+               }),
+               "load_forces has 1 entries only");
+}
+
+// A spring under one end: the frequency depends on EI and on the spring, the shape on their ratio.
+TEST(Fit, AShapeTellsApartWhatAFrequencyDoesNot) {
+  const TemporaryFolder folder;
+  const std::string bridge =
+      "beam: {spans: 25.0, EI: 9.1e9, mass: 1.2e4}\nsupport: {types: [pinned, free]}\n"
+      "foundation: {vertical: {x: 25.0, k: 2.0e7}}\n";
+  Results truth = run_yaml(bridge + "scene: {analysis: modes}\nmodes: {count: 3}\n");
+  const std::vector<double>&x = truth("/modes/x"), &shape = truth("/modes/shape");
+  std::string record;
+  for (const double place : {5.0, 10.0, 15.0, 20.0, 25.0}) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (std::abs(x[i] - place) < std::abs(x[nearest] - place)) nearest = i;
+    record += std::to_string(x[nearest]) + "," + std::to_string(-37.0 * shape[nearest]) + "\n";
+  }
+  folder.write("shape.csv", record);
+  const std::string first =
+      "first: {frequency: 1, value: " + std::to_string(truth("/modes/frequency")[0]) + ", sd: 0.001";
+  const auto estimate = [&](const std::string& more) {
+    return fit(folder, bridge + "fit: {vary: {beam_EI: [4.0e9, 2.0e10], foundation_vertical_k: [5.0e6, 8.0e7]}, to: {" +
+                           first + more + "}}}\naccuracy: 1e-5\n");
+  };
+  Results both = estimate(", shape: shape.csv, shape_sd: 1e-3");
+  EXPECT_NEAR(both("/fit/estimate")[0] / EI, 1.0, 1e-3);
+  EXPECT_NEAR(both("/fit/estimate")[1] / 2.0e7, 1.0, 1e-3);
+  EXPECT_NEAR(both("/fit/frequencies/mac")[0], 1.0, 1e-8);
+  EXPECT_NEAR(both("/fit/shapes/first/computed")[2], both("/fit/shapes/first/measured")[2], 0.02);
+  Results one = estimate("");
+  EXPECT_TRUE(std::isinf(one("/fit/standard_error")[0])) << "from the frequency alone";
+}
+
 TEST(Fit, SpeedOfThePassage) {
   const TemporaryFolder folder;
   folder.write("measured.csv", table(0.0));

@@ -130,6 +130,16 @@ TEST(NormVerdict, LaneLoadBesideTheTruck) {
               1e7 * 2.5, 1.0);
 }
 
+// A crab between 3 m and 8 m of a beam of 20 m: its first wheel leads the second one by 2 m.
+TEST(NormVerdict, OfATrolleyThatReachesAPartOfTheBeam) {
+  const Values crab = {{"load_forces", "1e5,1e5"}, {"load_positions", "0,-2"}, {"load_speed", "1"}};
+  const auto range = [&](const char* ends) { return crab + Values{{"norm_range", ends}}; };
+  EXPECT_NEAR(moments_at(10.0, "20", range("3,8")).second, 1e5 * (8.0 + 6.0) * 0.5, 1e-3);
+  EXPECT_NEAR(moments_at(10.0, "20", range("3,3")).second, 1e5 * (3.0 + 1.0) * 0.5, 1e-3);
+  EXPECT_NEAR(moments_at(2.0, "20", range("5,8")).second, 2e5 * 2.0 * (20.0 - 4.0) / 20.0, 1e-3);
+  EXPECT_NEAR(moments_at(10.0, "20", range("-50,50")).second, moments_at(10.0, "20", crab).second, 1e-6);
+}
+
 TEST(NormVerdict, LimitsAreJudged) {
   const TemporaryFolder folder;
   const std::string limits = folder.write("limits.yml",

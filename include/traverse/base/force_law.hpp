@@ -67,6 +67,14 @@ struct Tension {
   double dissipation = 0.0;    // W, >= 0
 };
 Tension tension(const ForceLaw& law, double elongation, double rate);
+/// A force, N, with its slope over its argument.
+struct ForceWithSlope {
+  double force = 0.0;
+  double slope = 0.0;
+};
+/// The tension of a spring that can disengage, `engaged` (m, not 0) beyond the end of its loose range: the damper does
+/// not reverse the force of the spring.
+Tension one_sided_tension(double engaged, double rate, ForceWithSlope spring, ForceWithSlope damper);
 /// Stored energy, J: the integral of the tension without the damper from 0 to the elongation.
 double stored_energy(const ForceLaw& law, double elongation);
 

@@ -21,6 +21,10 @@ class SpeedLaw {
   /// acceleration of the interval ahead of it. Throws InputError as above, if two neighbouring rows have the speed 0,
   /// and if the speed remains 0 at `start`.
   static SpeedLaw over_place(std::vector<double> places, std::vector<double> speeds, double start);
+  /// Rows t (s), x (m): the speed is linear in time between each row and the middle to the next one, and passes all
+  /// rows exactly, also those of a constant acceleration. Outside, the end speeds apply. Throws InputError if the times
+  /// do not increase, if x moves to both sides, or if it does not move.
+  static SpeedLaw through(const std::vector<double>& times, const std::vector<double>& places);
 
   /// Whether the speed is constant.
   bool constant() const { return distance_.straight(); }

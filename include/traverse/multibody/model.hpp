@@ -72,6 +72,32 @@ struct Spring {
   std::optional<base::TimeFunction> winding;       // m, added to the free length over time: a rope on a winch
 };
 
+inline constexpr int most_bodies_of_a_rope = 8;
+
+/// A rope through points on bodies, in their order: pulleys without friction, whose falls share one tension. It only
+/// pulls: tension = stiffness*(length - unstretched length) + damping*rate, with `axial_rigidity` EA instead of the
+/// stiffness EA over the unstretched length. At most one of free_length and preload may be set; without both, the rope
+/// has no force in the geometry at t = 0. A preload is the tension in the geometry at t = 0. The last point may be
+/// where the rope runs onto a drum, on the body that carries the drum: a turn of the drum relative to this body takes
+/// up drum_radius times its angle.
+struct Rope {
+  std::string name;
+  std::vector<int> bodies;              // of the points, at most most_bodies_of_a_rope different ones with the drum
+  std::vector<Eigen::Vector2d> points;  // at least two, m
+  double stiffness = 0.0;               // N/m
+  double axial_rigidity = 0.0;          // N
+  double damping = 0.0;                 // N s/m
+  std::optional<double> free_length;    // m, > 0
+  std::optional<double> preload;        // N, >= 0
+  std::optional<base::TimeFunction> winding;  // m, added to the free length over time: a rope on a winch
+  int drum = ground;                          // ground: no drum
+  double drum_radius = 0.0;                   // m, positive if the drum takes rope up as it turns counter-clockwise
+};
+
+/// The length of the path and the unstretched length at t = 0, m.
+double path_length(const Rope& rope);
+double unstretched_length(const Rope& rope);
+
 /// Moment on the second body = -stiffness*(phi_2 - phi_1 - free_angle) - damping*(rate), opposite on the first.
 /// With a law: -law(phi_2 - phi_1 - free_angle, rate).
 struct TorsionSpring {
@@ -99,6 +125,7 @@ struct MechanismModel {
   std::vector<Driver> drivers;
   std::vector<Spring> springs;
   std::vector<TorsionSpring> torsion_springs;
+  std::vector<Rope> ropes;
   std::vector<Actuator> actuators;
   double gravity = 9.81;  // m/s2, along -y
   double gradient = 0.0;  // tan of the angle of the x axis: gravity has the component -gradient*gravity along x

@@ -15,13 +15,19 @@ struct FitParameter {
   double low = 0.0, high = 0.0;  // bounds
   double start = 0.0;            // the scene's value, or the middle of the bounds
   int copies = 1;                // numbers of the option, all with this value
+  int entry = 0;                 // of a list, counted from 1; 0: the whole option
+  std::vector<double> list;      // the scene's own list of which this is an entry
+
+  std::string name() const { return entry == 0 ? option : option + "_" + std::to_string(entry); }
 };
 
-/// A measured natural frequency.
+/// A measured natural frequency, with the shape of its mode if it was measured.
 struct MeasuredFrequency {
   std::string name;
   int number = 1;                // 1: the lowest
   double value = 0.0, sd = 0.0;  // Hz, measured value and its standard deviation
+  std::vector<double> x, shape;  // m, and the measured deflections there in any scale; empty: not measured
+  double shape_sd = 0.0;         // standard deviation of these values, relative to the largest of them
 };
 
 /// A measured series of a number that a run stores over time.
@@ -34,6 +40,7 @@ struct MeasuredSeries {
   std::optional<double> sd;         // standard deviation of a value; none: from the residuals
   bool align = false;               // the difference of the clocks is estimated
   bool offset = false;              // a constant is estimated that is added to the computed values
+  bool gain = false;                // a factor is estimated by which the computed values are multiplied
   std::optional<double> low_pass;   // Hz, cut-off frequency of the filter of measured and computed values
 };
 
@@ -42,6 +49,13 @@ struct Fit {
   std::vector<FitParameter> parameters;
   std::vector<MeasuredFrequency> frequencies;
   std::vector<MeasuredSeries> series;
+
+  /// The number of values of modes: all frequencies, then the shapes of those that have one.
+  std::size_t modal_size() const {
+    std::size_t size = frequencies.size();
+    for (const MeasuredFrequency& f : frequencies) size += f.x.size();
+    return size;
+  }
   int starts = 1;          // minimisations from different starts; the first one starts at the scene's values
   std::uint64_t seed = 1;  // of the other starts
 };

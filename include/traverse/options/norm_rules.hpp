@@ -1,6 +1,7 @@
 // The options of EN 1991-2. The formulas are in src/norm/en1991.cpp.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,6 +40,8 @@ struct NormRules {
   /// A uniform load that accompanies the train of the scene in its static effects, where it is unfavourable, N/m; and
   /// the range without it, m from the foremost force.
   double lane_load = 0.0, lane_gap_from = 0.0, lane_gap_to = 0.0;
+  /// Where the foremost force of the scene's train or forces stands in static effects, m.
+  std::optional<std::array<double, 2>> range;
 };
 
 enum class BridgeMaterial { steel, composite, prestressed, reinforced, filler_beam };

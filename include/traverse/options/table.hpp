@@ -52,8 +52,8 @@ struct Row {
 };
 
 /// The kinds of parts of a vehicle, in the order of the table in table_vehicle.cpp.
-enum class Part { body, joint, spring, torsion_spring, wheel, actuator, driver, contact, sensor };
-inline constexpr int part_kinds = 9;
+enum class Part { body, joint, spring, torsion_spring, rope, wheel, actuator, driver, contact, sensor };
+inline constexpr int part_kinds = 10;
 /// The option with the list of the parts of a kind: "bodies", ...
 std::string_view part_list(Part part);
 /// The name of a kind in messages: "body", "joint", ...
