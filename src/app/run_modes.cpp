@@ -42,7 +42,7 @@ modes::DampedModes damped_by_ratios(const modes::Modes& modes) {
   modes::DampedModes damped;
   for (const auto& [lambda, i] : found) {
     damped.lambda.push_back(lambda);
-    damped.axial.push_back(modes.axial[i]);
+    damped.motion.push_back(modes.motion[i]);
     damped.shape.emplace_back(modes.shape[i].begin(), modes.shape[i].end());
   }
   return damped;

@@ -27,6 +27,27 @@ void for_elements(const Line& line, const Slice& slice, bool uniform, Compute co
   }
 }
 
+/// Adds the matrices of the twist, and those that couple it with the deflection.
+void add_torsion(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness) {
+  const Torsion& torsion = *line.model.torsion;
+  const bool uniform = torsion.GJ.uniform() && torsion.inertia.uniform() && line.model.mass.uniform() &&
+                       line.model.EI.uniform() && (!line.model.GA || line.model.GA->uniform());
+  for_elements(
+      line, slice, uniform, [&](const Element& e) { return torsion_matrices(line.model, e); },
+      [&](int e, const TorsionMatrices& m) {
+        const auto twists = line.twists(e);
+        mass.add(twists, m.mass);
+        stiffness.add(twists, m.stiffness);
+        if (torsion.mass_centre == 0.0) return;
+        const auto [v1, theta1, v2, theta2] = line.transverse(e);
+        std::array<double, 36> coupling{};
+        for (std::size_t i = 0; i < 4; ++i)
+          for (std::size_t j = 0; j < 2; ++j)
+            coupling[6 * i + j + 4] = coupling[6 * (j + 4) + i] = m.coupling[2 * i + j];
+        mass.add(std::array{v1, theta1, v2, theta2, twists[0], twists[1]}, coupling);
+      });
+}
+
 /// A matrix of u1, u2 as a matrix of four unknowns.
 Transverse among_four(const Axial& m) { return {m[0], m[1], 0.0, 0.0, m[2], m[3]}; }
 
@@ -47,6 +68,7 @@ void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness)
         mass.add(line.axial(e), m.axial_mass);
         stiffness.add(line.axial(e), m.axial_stiffness);
       });
+  if (model.torsion) add_torsion(line, slice, mass, stiffness);
   for (const PointMass& point : model.point_masses)
     for (const Direction direction : {Direction::vertical, Direction::longitudinal}) {
       const PointShape s = shape_at(line, direction, line.mesh.locate(point.x));

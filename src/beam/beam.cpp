@@ -79,6 +79,7 @@ void release_nodes(const Line& line, Slice& slice) {
     for (int component = 0; component < (line.mesh.hinged(node) ? 4 : 3); ++component)
       slice.release(line.unknown(node, component));
     if (line.mesh.has_expansion_device(node)) slice.release(line.unknown(node, 4));
+    slice.release(line.unknown(node, 5));
   }
 }
 
@@ -103,6 +104,7 @@ void hold_supports(const Line& bridge, Slice& slice) {
       if (fixes_vertical(s)) slice.hold(bridge.unknown(node, 1));
       if (fixes_rotation(s)) slice.hold(bridge.unknown(node, 2));
       if (fixes_rotation(s)) slice.hold(bridge.unknown(node, 3));
+      if (bridge.model.torsion && bridge.model.torsion->held[index(end)] != 0) slice.hold(bridge.unknown(node, 5));
     }
   }
 }

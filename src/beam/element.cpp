@@ -80,6 +80,9 @@ Axial axial_stiffness_of(const Distribution& EA, const Element& e) {
   return {mean / h, -mean / h, -mean / h, mean / h};
 }
 
+/// The mean of a consistent mass matrix of a bar and the lumped one with the same row sums.
+Axial mean_of_lumped(const Axial& m) { return {m[0] + 0.5 * m[1], 0.5 * m[1], 0.5 * m[2], m[3] + 0.5 * m[2]}; }
+
 }  // namespace
 
 Transverse transverse_bed(const Distribution& density, const Element& e) {
@@ -101,6 +104,24 @@ Axial axial_bed(const Distribution& density, const Element& e) {
 
 Transverse slope_bed(const Distribution& density, const Element& e) {
   return integral<4>(density, e, [&](double xi) { return rotation(xi, e.length, e.shear); });
+}
+
+TorsionMatrices torsion_matrices(const BeamModel& model, const Element& e) {
+  const Torsion& torsion = *model.torsion;
+  TorsionMatrices m;
+  m.stiffness = axial_stiffness_of(torsion.GJ, e);
+  m.mass = mean_of_lumped(axial_bed(torsion.inertia, e));
+  if (torsion.mass_centre == 0.0) return m;
+  const Axial of_mass = mean_of_lumped(axial_bed(model.mass, e));
+  for (std::size_t i = 0; i < of_mass.size(); ++i) m.mass[i] += torsion.mass_centre * torsion.mass_centre * of_mass[i];
+  integrate(model.mass, e.x, e.x + e.length, [&](double x, double weight) {
+    const double xi = (x - e.x) / e.length;
+    const auto psi = hermite(xi, e.length, e.shear).value;
+    const auto phi = linear(xi);
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 2; ++j) m.coupling[2 * i + j] += torsion.mass_centre * weight * psi[i] * phi[j];
+  });
+  return m;
 }
 
 std::array<double, 4> transverse_load(const Distribution& density, const Element& e) {

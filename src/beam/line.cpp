@@ -29,6 +29,7 @@ Layout::Layout(const BeamModel& model) {
   add(Kind::v);
   add(Kind::theta);
   if (hinges) add(Kind::theta_right);
+  if (model.torsion) add(Kind::twist);
   if (!model.dampers.empty()) add(Kind::damper);
 }
 
@@ -40,9 +41,9 @@ Line::Line(BeamModel its_model, const Layout& layout, bool rail, int its_first_c
       per_node(model.axial ? 3 : 2) {
   const auto& places = layout.place;
   if (rail) {
-    place = {places[rail_u], places[rail_v], places[rail_theta], places[rail_theta_right], places[rail_u_right]};
+    place = {places[rail_u], places[rail_v], places[rail_theta], places[rail_theta_right], places[rail_u_right], -1};
   } else {
-    place = {places[Kind::u], places[Kind::v], places[Kind::theta], places[Kind::theta_right], -1};
+    place = {places[Kind::u], places[Kind::v], places[Kind::theta], places[Kind::theta_right], -1, places[Kind::twist]};
   }
 }
 
@@ -67,6 +68,11 @@ std::pair<int, int> Line::elements_at(int first, int count) const {
 std::array<int, 4> Line::transverse(int element) const {
   const int left = mesh.element(element).left;
   return {unknown(left, 1), unknown(left, mesh.hinged(left) ? 3 : 2), unknown(left + 1, 1), unknown(left + 1, 2)};
+}
+
+std::array<int, 2> Line::twists(int element) const {
+  const int left = mesh.element(element).left;
+  return {unknown(left, 5), unknown(left + 1, 5)};
 }
 
 std::array<int, 2> Line::axial(int element) const {

@@ -1,7 +1,8 @@
 // The numbering of the structure's unknowns, column by column along x, with the same number in each column, and arrays
 // of their values for products with many nodes at a time.
 //
-// A column contains a node of the bridge, (u, v, theta), with a second rotation if the beam has hinges. With a layered
+// A column contains a node of the bridge, (u, v, theta), with a second rotation if the beam has hinges, and the
+// twist if it twists. With a layered
 // track it also contains a node of the rail, with a second rotation if the rail has joints and a second displacement
 // along x if it has expansion devices, and the sleeper at the node. On the ground the ballast's mass uses the place of
 // the bridge's deflection, unless it has a separate place because the ballast on the bridge is a separate mass too.
@@ -28,6 +29,7 @@ enum Kind {
   v,
   theta,
   theta_right,
+  twist,
   damper,
   kinds
 };
@@ -45,12 +47,14 @@ struct Layout {
 
   static bool axial(Kind k) { return k == rail_u || k == rail_u_right || k == Kind::u; }
   static bool rotation(Kind k) {
-    return k == rail_theta || k == rail_theta_right || k == Kind::theta || k == Kind::theta_right;
+    return k == rail_theta || k == rail_theta_right || k == Kind::theta || k == Kind::theta_right || k == Kind::twist;
   }
   /// Whether the unknown is a vertical displacement: also that of a damper.
   static bool is_vertical(Kind k) { return !axial(k) && !rotation(k); }
   /// Whether the unknown belongs to the bridge; on the ground the ballast may use its place.
-  static bool of_bridge(Kind k) { return k == Kind::u || k == Kind::v || k == Kind::theta || k == Kind::theta_right; }
+  static bool of_bridge(Kind k) {
+    return k == Kind::u || k == Kind::v || k == Kind::theta || k == Kind::theta_right || k == Kind::twist;
+  }
 };
 
 /// Beam elements among the columns: the elements of the bridge, or the elements of the rail.
@@ -62,20 +66,44 @@ struct Line {
   int first_column = 0;  // column of its first node
   int block = 0;
   int per_node = 2;            // unknowns per node of an element: (v, theta), or (u, v, theta)
-  std::array<int, 5> place{};  // index of u, v, theta, theta_right, u_right in a column; -1: it does not exist
+  std::array<int, 6> place{};  // index of u, v, theta, theta_right, u_right, twist in a column; -1: it does not exist
 
   /// The elements with a node among `count` columns from the first: [first, past).
   std::pair<int, int> elements_at(int first, int count) const;
   /// Global unknowns v1, theta1, v2, theta2 of an element; u1, u2 (only with axial unknowns).
   std::array<int, 4> transverse(int element) const;
   std::array<int, 2> axial(int element) const;
+  std::array<int, 2> twists(int element) const;  // twist1, twist2, only with torsion
+  /// The distance of the track to the left of the shear centre, m.
+  double eccentricity() const { return model.torsion ? model.torsion->track : 0.0; }
+  /// Calls use(k, unknown, factor): nodal value k of the track in an element, in the order of unknowns(), is the sum of
+  /// these unknowns times their factors: deflection and rotation of the beam, and its twist, which is linear along the
+  /// element, times the eccentricity.
+  template <class Use>
+  void for_unknowns(int element, Use use) const;
   /// The unknowns node by node: (v1, theta1, v2, theta2) or (u1, v1, theta1, u2, v2, theta2), 2*per_node in number.
   std::array<int, 6> unknowns(int element) const;
-  /// Global unknown of a node: 0 u, 1 v, 2 theta, 3 theta_right, 4 u_right; -1: does not exist.
+  /// Global unknown of a node: 0 u, 1 v, 2 theta, 3 theta_right, 4 u_right, 5 twist; -1: does not exist.
   int unknown(int node, int component) const {
     return place[component] < 0 ? -1 : (first_column + node) * block + place[component];
   }
 };
+
+template <class Use>
+void Line::for_unknowns(int element, Use use) const {
+  const auto own = unknowns(element);
+  for (int k = 0; k < 2 * per_node; ++k) use(k, own[static_cast<std::size_t>(k)], 1.0);
+  const double e = eccentricity();
+  if (e == 0.0) return;
+  const auto twist = twists(element);
+  const double slope = e / mesh.element(element).length;
+  for (int node = 0; node < 2; ++node) {
+    const int v = node * per_node + per_node - 2;
+    use(v, twist[static_cast<std::size_t>(node)], e);
+    use(v + 1, twist[0], -slope);
+    use(v + 1, twist[1], slope);
+  }
+}
 
 /// The arrays, by the unknown's index in a column.
 using Planes = std::array<double*, kinds>;

@@ -175,6 +175,27 @@ void check_divisions(const BeamModel& model) {
                       option, x[i - 1], x[i], x[i] - x[i - 1], min_distance));
 }
 
+void check_torsion(const BeamModel& model) {
+  const Torsion& torsion = *model.torsion;
+  require_positive(torsion.GJ, "beam_GJ", "N m2");
+  require_positive(torsion.inertia, "beam_polar_inertia", "kg m");
+  require(std::isfinite(torsion.mass_centre), "beam_mass_centre", number(torsion.mass_centre), "it must be a number");
+  require(torsion.held.size() == model.supports.size(), "support_torsion",
+          std::to_string(torsion.held.size()) + " words", "one at every span end is needed");
+  require(!model.track, "track_rail_EI", "given", "a layered track lies on a beam that does not twist (beam_GJ)");
+  std::size_t begin = 0;
+  for (std::size_t end = 1; end < model.supports.size(); ++end) {
+    const bool part_ends = end + 1 == model.supports.size() || model.joint(static_cast<int>(end)) == Joint::separate;
+    if (!part_ends) continue;
+    const bool held =
+        std::any_of(torsion.held.begin() + static_cast<std::ptrdiff_t>(begin),
+                    torsion.held.begin() + static_cast<std::ptrdiff_t>(end) + 1, [](char one) { return one != 0; });
+    require(held, "support_torsion", "free",
+            "nothing holds the twist of a part of the beam; allowed: held at a support");
+    begin = end;
+  }
+}
+
 void check_strains(const BeamModel& model) {
   require(model.settlement.empty() || model.settlement.size() == model.supports.size(), "support_settlement",
           std::to_string(model.settlement.size()) + " numbers", "one at every span end is needed");
@@ -248,6 +269,7 @@ void check(const BeamModel& model) {
   check_divisions(model);
   check_strains(model);
   if (model.track) check_track(model);
+  if (model.torsion) check_torsion(model);
   check_foundation(model.foundation, model.length());
 }
 

@@ -33,6 +33,9 @@ std::array<double, 4> rotation(double xi, double h, double shear);
 /// Axial shape functions phi_1, phi_2.
 inline std::array<double, 2> linear(double xi) { return {1.0 - xi, xi}; }
 
+/// A curve along the beam.
+enum class Along { axis, deflection, twist };
+
 /// Points along the bridge at which its shapes are stored. They are so close that straight lines between them represent
 /// the curves of the elements.
 class ShapePoints {
@@ -65,19 +68,19 @@ class ShapePoints {
     return out;
   }
 
-  /// The element's curve through nodal values, cubic in bending and linear along x. value(unknown) is the value of a
-  /// global unknown of the line.
+  /// The element's curve through nodal values, cubic in bending, linear along x and in twist. value(unknown) is the
+  /// value of a global unknown of the line.
   template <class Number, class Value>
-  std::vector<Number> curve(const Line& line, bool axial, Value value) const {
+  std::vector<Number> curve(const Line& line, Along which, Value value) const {
     std::vector<Number> out;
     out.reserve(points_.size());
     for (const Point& p : points_) {
       Number sum = 0.0;
       if (p.node >= 0) {
-        const int unknown = line.unknown(p.node, axial ? 0 : 1);
+        const int unknown = line.unknown(p.node, which == Along::axis ? 0 : which == Along::twist ? 5 : 1);
         sum = unknown < 0 ? Number(0.0) : value(unknown);
-      } else if (axial) {
-        const auto unknowns = line.axial(p.at.element);
+      } else if (which != Along::deflection) {
+        const auto unknowns = which == Along::axis ? line.axial(p.at.element) : line.twists(p.at.element);
         const auto phi = linear(p.at.xi);
         for (std::size_t i = 0; i < 2; ++i) sum += phi[i] * value(unknowns[i]);
       } else {

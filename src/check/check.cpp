@@ -76,6 +76,12 @@ std::string range_text(const beam::Distribution& d, const char* unit) {
 void print_properties(const Page& page, const beam::BeamModel& beam) {
   if (beam.GA) page.line("GA, shear", range_text(*beam.GA, "N"));
   if (beam.rotary_inertia.maximum() > 0.0) page.line("rotary inertia", range_text(beam.rotary_inertia, "kg m"));
+  if (beam.torsion) {
+    page.line("torsion", fmt::format("GJ {}, polar inertia {}", range_text(beam.torsion->GJ, "N m2"),
+                                     range_text(beam.torsion->inertia, "kg m")));
+    page.line("", fmt::format("from the shear centre to the left: track {:g} m, centre of mass {:g} m",
+                              beam.torsion->track, beam.torsion->mass_centre));
+  }
   for (const beam::Crack& crack : beam.cracks)
     page.line("crack", fmt::format("at x = {:g} m, {:.4g} N m/rad", crack.x, crack.k));
   if (!beam.cuts.empty())

@@ -79,11 +79,13 @@ QuasiStaticResponse::InfluenceLine QuasiStaticResponse::influence_line(double st
   line.weight_deflection += weight_deflection;
   if (beam.model().strained()) line.weight_deflection = permanent_deflection(station);
   for (int e = 0; e < structure_->line().mesh.elements(); ++e) {
-    const auto unknowns = structure_->line().transverse(e);
-    for (int i = 0; i < 4; ++i) {
-      const int local = beam.local(unknowns[i]);
-      if (local >= 0) line.nodal[4 * static_cast<std::size_t>(e) + i] = nodal[local];
-    }
+    const int along = structure_->per_node() - 2;  // unknowns of a node along x
+    structure_->line().for_unknowns(e, [&](int k, int unknown, double factor) {
+      const int local = beam.local(unknown), place = k % (along + 2) - along;
+      if (local >= 0 && place >= 0)
+        line.nodal[4 * static_cast<std::size_t>(e) + static_cast<std::size_t>(2 * (k / (along + 2)) + place)] +=
+            factor * nodal[local];
+    });
   }
   MPI_Allreduce(MPI_IN_PLACE, line.nodal.data(), static_cast<int>(line.nodal.size()), MPI_DOUBLE, MPI_SUM, comm_);
   return line;

@@ -223,7 +223,8 @@ void ForwardModel::add_frequencies(const std::vector<double>& values, std::vecto
       const auto distance = [&](double x) { return std::abs(x - place); };
       const auto nearest = std::ranges::min_element(found.x, {}, distance) - found.x.begin();
       const auto i = static_cast<std::size_t>(frequency.number - 1);
-      response.push_back(found.axial[i] != 0 ? 0.0 : found.shape[i][static_cast<std::size_t>(nearest)]);
+      response.push_back(found.motion[i] != modes::Motion::bending ? 0.0
+                                                                   : found.shape[i][static_cast<std::size_t>(nearest)]);
     }
 }
 

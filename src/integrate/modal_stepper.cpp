@@ -198,13 +198,11 @@ void ModalStepper::nodal_loads(double* nodal) const {
     const double x = load_.positions[j] + load_.speed * before;
     if (!train::is_on_line(line.mesh.start(), line.mesh.end(), x, load_.speed)) continue;
     const beam::Station s = line.mesh.locate(load_.positions[j] + load_.speed * t);
-    const beam::Element& element = line.mesh.element(s.element);
-    const beam::Hermite psi = beam::hermite(s.xi, element.length, element.shear);
-    const auto unknowns = line.transverse(s.element);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const int local = bridge_.beam().local(unknowns[i]);
-      if (local >= 0 && bridge_.beam().fixed()[local] == 0) nodal[local] -= load_.forces[j] * psi.value[i];
-    }
+    const auto parts = structure::on_unknowns(line, {s.element, s.xi, 0.0, -load_.forces[j]});
+    line.for_unknowns(s.element, [&](int k, int unknown, double factor) {
+      const int local = bridge_.beam().local(unknown);
+      if (local >= 0 && bridge_.beam().fixed()[local] == 0) nodal[local] += factor * parts[static_cast<std::size_t>(k)];
+    });
   }
 }
 

@@ -83,12 +83,11 @@ std::vector<DampedMode> lowest_damped(const std::vector<Segment>& segments, cons
 }
 
 DampedModes damped_modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* points) {
-  auto segments = transverse_segments(beam, Damping::included);
-  for (Segment& s : axial_segments(beam, Damping::included)) segments.push_back(std::move(s));
+  const std::vector<Segment> segments = segments_of(beam, true, Damping::included);
   DampedModes result;
   for (const DampedMode& mode : lowest_damped(segments, beam.rayleigh(), std::max(count, 0))) {
     result.lambda.push_back(mode.lambda);
-    result.axial.push_back(mode.segment->axial ? 1 : 0);
+    result.motion.push_back(mode.segment->motion);
     if (points != nullptr) result.shape.push_back(stored_shape(beam, *mode.segment, mode.offset, mode.shape, *points));
   }
   return result;

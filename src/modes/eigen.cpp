@@ -43,7 +43,7 @@ base::Handle<Mat> matrix(const Band& band) {
 /// eigenvalue grows with the fourth power of the number of elements for a beam, with the second power for a bar.
 double shift_below_zero(const Segment& s) {
   const double elements = std::max(1.0, static_cast<double>(s.nodes.back() - s.nodes.front()));
-  return -highest_quotient(s.K, s.M) / std::pow(elements, s.axial ? 2.0 : 4.0);
+  return -highest_quotient(s.K, s.M) / std::pow(elements, s.order());
 }
 
 /// Checks that the lowest eigenvalue is not below the rounding error of the highest one. The ratio of both grows with
@@ -52,7 +52,7 @@ double shift_below_zero(const Segment& s) {
 void check_rounding(const Segment& s, const Bracket& lowest) {
   const double rounding = std::numeric_limits<double>::epsilon() * highest_quotient(s.K, s.M);
   const double elements = s.nodes.back() - s.nodes.front();
-  const bool too_many = !s.axial && std::pow(elements, 4.0) * std::numeric_limits<double>::epsilon() > 1.0;
+  const bool too_many = s.order() == 4.0 && std::pow(elements, 4.0) * std::numeric_limits<double>::epsilon() > 1.0;
   if (too_many && lowest.high < rounding)
     throw InputError(fmt::format(
         "beam_elements_per_span: in {:g} elements from joint to joint rounding hides the lowest frequencies; fewer "

@@ -37,7 +37,7 @@ double typical_frequency(const Segment& s) {
   // The ratio of squared frequencies grows with the fourth power of the number of elements for a beam, with the second
   // power for a bar.
   const double elements = std::max(1.0, static_cast<double>(s.nodes.back() - s.nodes.front()));
-  return std::sqrt(highest_quotient(s.K, s.M) / std::pow(elements, s.axial ? 2.0 : 4.0));
+  return std::sqrt(highest_quotient(s.K, s.M) / std::pow(elements, s.order()));
 }
 
 }  // namespace

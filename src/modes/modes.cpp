@@ -121,7 +121,8 @@ bool without_kinks(const beam::Beam& beam) {
 void add_slopes(const beam::Beam& beam, const beam::ShapePoints& points, const std::vector<double>& vector, double mass,
                 Modes& modes) {
   const auto value = [&](int unknown) { return vector[static_cast<std::size_t>(unknown)]; };
-  const std::vector<double> raw = points.curve<double>(beam.bridge(), false, value), &shape = modes.shape.back();
+  const std::vector<double> raw = points.curve<double>(beam.bridge(), beam::Along::deflection, value),
+                            &shape = modes.shape.back();
   const std::size_t largest = static_cast<std::size_t>(std::max_element(shape.begin(), shape.end()) - shape.begin());
   const double scale = shape[largest] / raw[largest];
   modes.slope.push_back(points.slopes(beam.bridge(), value));
@@ -156,8 +157,7 @@ void add_terms(const beam::Beam& beam, const std::vector<Segment>& segments, con
 }
 
 Modes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* points) {
-  auto segments = transverse_segments(beam);
-  for (Segment& s : axial_segments(beam)) segments.push_back(std::move(s));
+  const std::vector<Segment> segments = segments_of(beam, true);
   const bool smooth = points != nullptr && without_kinks(beam);
   Modes result;
   if (points != nullptr) result.x = points->x();
@@ -165,14 +165,14 @@ Modes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* point
   if (points != nullptr && beam.damping() != nullptr) add_terms(beam, segments, found, result);
   for (const Mode& mode : found) {
     result.omega.push_back(mode.omega);
-    result.axial.push_back(mode.segment->axial ? 1 : 0);
+    result.motion.push_back(mode.segment->motion);
     if (points == nullptr) continue;
     result.shape.push_back(stored_shape(beam, *mode.segment, mode.offset, mode.shape, *points));
     if (!smooth) continue;
     std::vector<double> all(static_cast<std::size_t>(beam.columns()) * static_cast<std::size_t>(beam.block()), 0.0);
     for (std::size_t i = 0; i < mode.shape.size(); ++i)
       all[static_cast<std::size_t>(mode.segment->unknowns[i] + mode.offset * beam.block())] = mode.shape[i];
-    if (mode.segment->axial) {  // excluded from the modes of bending
+    if (mode.segment->order() == 2.0) {  // excluded from the modes of bending
       result.slope.emplace_back(points->points().size(), 0.0);
       result.mass.push_back(1.0);
     } else {
@@ -198,7 +198,7 @@ std::vector<Mode> lowest_with_copies(const std::vector<Segment>& segments, int c
 }  // namespace
 
 Basis bending_basis(const beam::Beam& beam, int count) {
-  const auto segments = transverse_segments(beam);
+  const std::vector<Segment> segments = segments_of(beam, false);
   std::vector<Mode> modes = lowest_with_copies(segments, count);
   orthonormalise(modes);
   Basis basis;
@@ -214,11 +214,11 @@ Basis bending_basis(const beam::Beam& beam, int count) {
 Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoints& points) {
   Modes modes;
   modes.omega = basis.omega;
-  modes.axial.assign(basis.omega.size(), 0);
+  modes.motion.assign(basis.omega.size(), Motion::bending);
   modes.x = points.x();
   for (const auto& mode : basis.shape) {
     const auto value = [&](int unknown) { return mode[static_cast<std::size_t>(unknown)]; };
-    modes.shape.push_back(points.curve<double>(beam.bridge(), false, value));
+    modes.shape.push_back(points.curve<double>(beam.bridge(), beam::Along::deflection, value));
     scale_to_one(modes.shape.back(), 0.0);
     if (without_kinks(beam)) add_slopes(beam, points, mode, 1.0, modes);
   }
@@ -236,12 +236,12 @@ Modes natural_modes(const beam::Beam& beam, int count, const beam::ShapePoints& 
 
 std::vector<double> distinct_frequencies(const beam::Beam& beam, std::size_t count) {
   std::vector<double> omegas;
-  for (const Distinct& one : distinct_of(transverse_segments(beam), count)) omegas.push_back(one.omega);
+  for (const Distinct& one : distinct_of(bending_segments(beam), count)) omegas.push_back(one.omega);
   return omegas;
 }
 
 std::vector<BendingMode> distinct_modes(const beam::Beam& beam, std::size_t count, Mat own_mass) {
-  const std::vector<Segment> segments = transverse_segments(beam);
+  const std::vector<Segment> segments = bending_segments(beam);
   std::vector<BendingMode> modes;
   for (const Distinct& one : distinct_of(segments, count)) {
     const Segment& s = segments[one.segment];

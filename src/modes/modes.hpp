@@ -11,11 +11,14 @@
 
 namespace traverse::modes {
 
+/// What a mode moves. Bending and twist are coupled if the mass is beside the shear centre.
+enum class Motion { along, bending, twist, bending_and_twist };
+
 struct Modes {
   std::vector<double> omega;  // rad/s, ascending, repeated frequencies as often as they occur
-  std::vector<char> axial;    // per mode: non-zero for motion along x, 0 for bending
+  std::vector<Motion> motion;
   std::vector<std::vector<double>>
-      shape;  // per mode: deflection at every requested point, for an axial mode the displacement along x; largest
+      shape;  // per mode: deflection at every requested point, the displacement along x, or the twist; largest
               // magnitude 1. All zero if a mode only rotates the points (nodes, with one element per span)
   std::vector<double> x{};  // stations of the points, m
   /// The slope at every point (1/m) and the modal mass phi^T M phi (kg) of these shapes, if no shape can have a kink.
@@ -58,7 +61,7 @@ Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoi
 /// stored.
 struct DampedModes {
   std::vector<std::complex<double>> lambda;  // 1/s, ascending in magnitude
-  std::vector<char> axial;                   // per mode: non-zero for motion along x, 0 for bending
+  std::vector<Motion> motion;
   std::vector<std::vector<std::complex<double>>>
       shape;  // same layout as in Modes; the displacement of largest magnitude is 1
 

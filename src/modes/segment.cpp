@@ -40,15 +40,19 @@ Band band_of(Mat matrix, int size) {
 /// Whether bending is coupled with motion along x, because sleepers act on the bridge above its axis.
 bool axially_coupled(const beam::BeamModel& model) { return model.track && model.axial && model.surface_height != 0.0; }
 
-/// The global unknowns along x, or the others; all of them if they are coupled.
-std::vector<PetscInt> unknowns_of(const beam::Beam& beam, bool axial) {
+/// Whether an unknown belongs to a motion. If bending is coupled with motion along x, both are bending.
+bool belongs(beam::Kind kind, Motion motion, const beam::BeamModel& model) {
+  if (beam::Layout::axial(kind)) return motion == Motion::along || axially_coupled(model);
+  if (kind == beam::Kind::twist) return motion == Motion::twist || motion == Motion::bending_and_twist;
+  return motion == Motion::bending || motion == Motion::bending_and_twist;
+}
+
+/// The global unknowns of a motion.
+std::vector<PetscInt> unknowns_of(const beam::Beam& beam, Motion motion) {
   std::vector<PetscInt> wanted;
-  const bool all = axially_coupled(beam.model());
-  for (int column = 0; column < beam.columns(); ++column) {
-    for (int i = 0; i < beam.block(); ++i) {
-      if (all || beam::Layout::axial(beam.layout().kind[i]) == axial) wanted.push_back(column * beam.block() + i);
-    }
-  }
+  for (int column = 0; column < beam.columns(); ++column)
+    for (int i = 0; i < beam.block(); ++i)
+      if (belongs(beam.layout().kind[i], motion, beam.model())) wanted.push_back(column * beam.block() + i);
   return wanted;
 }
 
@@ -116,7 +120,8 @@ Band nonproportional_damping(const Band& C, const Band& M, const Band& K, const 
 }
 
 bool equal(const Segment& a, const Segment& b) {
-  if (a.size() != b.size() || a.slope != b.slope || a.rigid.size() != b.rigid.size()) return false;
+  if (a.motion != b.motion || a.size() != b.size() || a.slope != b.slope || a.rigid.size() != b.rigid.size())
+    return false;
   for (std::size_t i = 0; i < a.nodes.size(); ++i) {
     if (a.nodes[i] - a.nodes[0] != b.nodes[i] - b.nodes[0]) return false;
   }
@@ -125,10 +130,10 @@ bool equal(const Segment& a, const Segment& b) {
 
 class Splitter {
  public:
-  Splitter(const beam::Beam& beam, bool axial, Damping damping)
+  Splitter(const beam::Beam& beam, Motion motion, Damping damping)
       : beam_(beam),
-        axial_(axial),
-        unknowns_(unknowns_of(beam, axial)),
+        motion_(motion),
+        unknowns_(unknowns_of(beam, motion)),
         K_(gathered(beam.stiffness(), unknowns_)),
         M_(gathered(beam.mass(), unknowns_)),
         motions_(beam::rigid_motions(beam.model())) {
@@ -167,17 +172,23 @@ class Splitter {
     return false;
   }
 
+  /// Whether an unknown is a displacement of the bridge in this motion.
+  bool moves(beam::Kind kind) const {
+    if (motion_ == Motion::along) return kind == beam::Kind::u;
+    if (motion_ == Motion::twist) return kind == beam::Kind::twist;
+    return kind == beam::Kind::v || kind == beam::damper;
+  }
+
   void add_segment(std::vector<int>& rows) {
     if (rows.empty()) return;
     Segment s;
-    s.axial = axial_;
+    s.motion = motion_;
     for (int row : rows) {
       s.nodes.push_back(column(row) - beam_.bridge().first_column);
       s.unknowns.push_back(static_cast<int>(unknowns_[static_cast<std::size_t>(row)]));
       // On the ground the ballast of a layered track uses the place of the bridge's deflection.
       const bool bridge = s.nodes.back() >= 0 && s.nodes.back() < beam_.mesh().nodes();
-      const bool moves = axial_ ? kind(row) == beam::Kind::u : kind(row) == beam::Kind::v || kind(row) == beam::damper;
-      s.slope.push_back(bridge && moves ? 0 : 1);
+      s.slope.push_back(bridge && moves(kind(row)) ? 0 : 1);
     }
     s.K = part_of(K_, rows);
     s.M = part_of(M_, rows);
@@ -198,18 +209,20 @@ class Splitter {
   void add_rigid_motions(Segment& s, const std::vector<int>& rows) const {
     for (const beam::RigidMotion& motion : motions_) {
       const double left = beam_.mesh().x(s.nodes.front()), right = beam_.mesh().x(s.nodes.back());
-      if (motion.axial != s.axial || left < motion.left || right > motion.right) continue;
+      if (s.motion == Motion::twist) return;  // supports hold it
+      if (motion.axial != (s.motion == Motion::along) || left < motion.left || right > motion.right) continue;
       s.rigid.emplace_back();
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const double x = beam_.mesh().x(s.nodes[i]);
-        s.rigid.back().push_back(s.slope[i] == 0 ? motion.value(x)
-                                                 : motion.slope(x, kind(rows[i]) != beam::Kind::theta_right));
+        s.rigid.back().push_back(kind(rows[i]) == beam::Kind::twist ? 0.0
+                                 : s.slope[i] == 0                  ? motion.value(x)
+                                                   : motion.slope(x, kind(rows[i]) != beam::Kind::theta_right));
       }
     }
   }
 
   const beam::Beam& beam_;
-  bool axial_;
+  Motion motion_;
   std::vector<PetscInt> unknowns_;
   Band K_, M_, D_;
   std::vector<beam::RigidMotion> motions_;
@@ -223,13 +236,22 @@ Band part_of(Mat matrix, const Segment& segment) {
   return gathered(matrix, {segment.unknowns.begin(), segment.unknowns.end()});
 }
 
-std::vector<Segment> transverse_segments(const beam::Beam& beam, Damping damping) {
-  return Splitter(beam, false, damping).split();
+std::vector<Segment> bending_segments(const beam::Beam& beam) {
+  return Splitter(beam, Motion::bending, Damping::ignored).split();
 }
 
-std::vector<Segment> axial_segments(const beam::Beam& beam, Damping damping) {
-  if (!beam.model().axial || axially_coupled(beam.model())) return {};
-  return Splitter(beam, true, damping).split();
+std::vector<Segment> segments_of(const beam::Beam& beam, bool all, Damping damping) {
+  const beam::BeamModel& model = beam.model();
+  std::vector<Motion> motions = {Motion::bending};
+  if (model.torsion && model.torsion->mass_centre != 0.0)
+    motions = {Motion::bending_and_twist};
+  else if (model.torsion)
+    motions.push_back(Motion::twist);
+  if (all && model.axial && !axially_coupled(model)) motions.push_back(Motion::along);
+  std::vector<Segment> segments;
+  for (const Motion motion : motions)
+    for (Segment& s : Splitter(beam, motion, damping).split()) segments.push_back(std::move(s));
+  return segments;
 }
 
 }  // namespace traverse::modes

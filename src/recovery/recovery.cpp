@@ -106,7 +106,11 @@ double Recovery::add_deflection_form(std::size_t station, double factor, double*
     const int local = beam_.local(s.unknowns[transverse[i]]);
     if (local >= 0) forces[local] += factor * (s.psi.value[i] + s.held_by_stiffness[i]);
   }
-  return s.weight.deflection;
+  if (!s.twisting) return s.weight.deflection;
+  const double e = s.twisting->eccentricity;
+  for (std::size_t k = 0; k < 2; ++k)
+    if (const int local = beam_.local(s.twisting->unknowns[k]); local >= 0) forces[local] += factor * e * s.phi[k];
+  return s.weight.deflection + e * s.weight.twist;
 }
 
 void Recovery::gather(const double* v, const double* w, const double* a, const std::vector<std::size_t>& which) {
@@ -119,6 +123,7 @@ void Recovery::gather(const double* v, const double* w, const double* a, const s
     const RecoverySection& s = sections_[station];
     for (const double* vector : {v, w, a}) {
       for (int unknown : s.unknowns) append(vector, unknown);
+      for (std::size_t k = 0; s.twisting && k < 2; ++k) append(vector, s.twisting->unknowns[k]);
     }
     for (const RecoverySection::ConnectedSleeper& connected : s.sleepers) {
       for (int unknown : {connected.connection.unknown, connected.connection.along}) {
@@ -131,7 +136,8 @@ void Recovery::gather(const double* v, const double* w, const double* a, const s
   MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(gathered_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
 }
 
-Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const {
+Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a,
+                                    const Twists& twists) const {
   const auto transverse = [](const std::array<double, 4>& form, const Values& y) {
     return form[0] * y[1] + form[1] * y[2] + form[2] * y[4] + form[3] * y[5];
   };
@@ -162,6 +168,20 @@ Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, c
               transverse(s.mass.moment(), inertial);
   r.shear += r.nodal_shear + transverse(s.stiffness.shear(), v) + transverse(s.damping.shear(), w) +
              transverse(s.mass.shear(), inertial);
+  if (s.twisting) {
+    const RecoverySection::Twisting& t = *s.twisting;
+    const auto linear = [](const std::array<double, 2>& form, const std::array<double, 2>& y) {
+      return form[0] * y[0] + form[1] * y[1];
+    };
+    const std::array<double, 2> inertial_twist = {twists[2][0] + drag * twists[1][0],
+                                                  twists[2][1] + drag * twists[1][1]};
+    r.twist += linear(s.phi, twists[0]);
+    r.deflection += t.eccentricity * r.twist;
+    r.velocity += t.eccentricity * linear(s.phi, twists[1]);
+    r.acceleration += t.eccentricity * linear(s.phi, twists[2]);
+    r.torsional_moment += linear(t.moment, twists[0]) + linear(t.moment_by_twist, inertial_twist) +
+                          transverse(t.moment_by_bending, inertial);
+  }
   r.axial_displacement += axial(s.phi, v);
   r.axial_force += r.nodal_axial_force + axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) +
                    axial(s.mass.axial_force(), inertial);
@@ -171,9 +191,10 @@ Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, c
 StationForms Recovery::forms(std::size_t station) const {
   const RecoverySection& s = sections_[station];
   std::array<Values, 3> values{};
+  Twists twists{};
   std::vector<double> sleepers(4 * s.sleepers.size(), 0.0);
   const auto response = [&] {
-    Response r = evaluate_section(s, values[0], values[1], values[2]);
+    Response r = evaluate_section(s, values[0], values[1], values[2], twists);
     add_sleepers(s, values.data(), sleepers.data(), r);
     return r;
   };
@@ -201,6 +222,8 @@ StationForms Recovery::forms(std::size_t station) const {
     }
   };
   for (std::size_t k = 0; k < s.unknowns.size(); ++k) add(s.unknowns[k], {&values[0][k], &values[1][k], &values[2][k]});
+  for (std::size_t k = 0; s.twisting && k < 2; ++k)
+    add(s.twisting->unknowns[k], {&twists[0][k], &twists[1][k], &twists[2][k]});
   double* sleeper_value = sleepers.data();
   for (const RecoverySection::ConnectedSleeper& connected : s.sleepers)
     for (const int unknown : {connected.connection.unknown, connected.connection.along}) {
@@ -243,11 +266,15 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
   for (const std::size_t i : which) {
     const RecoverySection& s = sections_[i];
     std::array<Values, 3> values;
-    for (Values& y : values) {
-      std::copy_n(at, 6, y.begin());
+    Twists twists{};
+    for (std::size_t d = 0; d < 3; ++d) {
+      std::copy_n(at, 6, values[d].begin());
       at += 6;
+      if (!s.twisting) continue;
+      std::copy_n(at, 2, twists[d].begin());
+      at += 2;
     }
-    out[i] = evaluate_section(s, values[0], values[1], values[2]);
+    out[i] = evaluate_section(s, values[0], values[1], values[2], twists);
     add_sleepers(s, values.data(), at, out[i]);
     at += 4 * s.sleepers.size();
   }

@@ -31,6 +31,7 @@ struct ElementLoad {
 struct Response {
   double deflection = 0.0, velocity = 0.0, acceleration = 0.0;  // in space
   double relative_deflection = 0.0;                             // to the line through the supports (beam/mesh.hpp)
+  double twist = 0.0, torsional_moment = 0.0;                   // rad; N m, positive as the twist on a right section
   double moment = 0.0, shear = 0.0;
   double axial_displacement = 0.0, axial_force = 0.0;
   /// The parts of the forces, and of d moment/dt (N m/s), that follow from the nodal values alone, without loads,
@@ -126,9 +127,12 @@ class Recovery {
  private:
   /// Nodal values of a station's element: u1, v1, theta1, u2, v2, theta2.
   using Values = std::array<double, 6>;
+  /// Twists at both ends of a station's element, and their rates and accelerations.
+  using Twists = std::array<std::array<double, 2>, 3>;
 
   void gather(const double* v, const double* w, const double* a, const std::vector<std::size_t>& which);
-  Response evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
+  Response evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a,
+                            const Twists& twists) const;
   /// The load as one of the element at its place: a wheel may already be beyond the element that it was assigned to.
   ElementLoad in_own_element(ElementLoad load) const;
   void add_beside(const ElementLoad& load, const std::vector<std::size_t>& which, std::vector<Response>& out) const;

@@ -39,7 +39,39 @@ RecoverySection::RecoverySection(const beam::Line& line, double x)
     mass.add_axial_density(model.mass);
   }
   add_foundation(line);
+  if (model.torsion) add_torsion(line);
   if (model.temperature) add_strains(model);
+}
+
+/// The torsional moment at the section is that at the element's left end, which its equilibrium determines, plus the
+/// inertia between the two.
+void RecoverySection::add_torsion(const beam::Line& line) {
+  const beam::Torsion& torsion = *line.model.torsion;
+  const beam::TorsionMatrices matrices = beam::torsion_matrices(line.model, element);
+  Twisting t;
+  t.unknowns = line.twists(at.element);
+  t.eccentricity = line.eccentricity();
+  t.flexibility = element.length / torsion.GJ.at(element.x + 0.5 * element.length, element.x);
+  for (std::size_t j = 0; j < 2; ++j) {
+    t.moment[j] = -matrices.stiffness[j];
+    t.moment_by_twist[j] = -matrices.mass[j];
+  }
+  for (std::size_t i = 0; i < 4; ++i) t.moment_by_bending[i] = -matrices.coupling[2 * i];
+  const auto add_until_here = [&](const beam::Distribution& density, double factor, auto add) {
+    beam::integrate(density, element.x, element.x + at.xi * element.length,
+                    [&](double x, double piece) { add((x - element.x) / element.length, factor * piece); });
+  };
+  const auto add_twist = [&](double xi, double piece) {
+    for (std::size_t j = 0; j < 2; ++j) t.moment_by_twist[j] += piece * beam::linear(xi)[j];
+  };
+  const double e = torsion.mass_centre;
+  add_until_here(torsion.inertia, 1.0, add_twist);
+  add_until_here(line.model.mass, e * e, add_twist);
+  add_until_here(line.model.mass, e, [&](double xi, double piece) {
+    const auto shape = beam::hermite(xi, element.length, element.shear).value;
+    for (std::size_t i = 0; i < 4; ++i) t.moment_by_bending[i] += piece * shape[i];
+  });
+  twisting = t;
 }
 
 /// Subtracts the forces of the temperature: the elastic strain is the total strain minus the thermal strain.
@@ -138,6 +170,11 @@ void RecoverySection::set_up_held_element(const beam::BeamModel& model, const st
 
 void RecoverySection::add_weight(const beam::BeamModel& model, double gravity) {
   const double h = element.length, x = at.xi * h;
+  if (twisting) {  // the weight acts like a uniform acceleration
+    weight.torsional_moment += gravity * (twisting->moment_by_bending[0] + twisting->moment_by_bending[2]);
+    weight.twist -= 0.5 * gravity * model.torsion->mass_centre * model.mass.at(element.x + 0.5 * h, element.x) * h *
+                    twisting->flexibility * at.xi * (1.0 - at.xi);
+  }
   const auto end = beam::transverse_load(model.mass, element);
   weight.shear += gravity * end[0];
   weight.moment += gravity * (x * end[0] - end[1]);
@@ -200,6 +237,13 @@ void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const
     r.deflection += load.fy * beam::fixed_end_by_force(at.xi, load.xi, h, EI, element.shear) +
                     load.moment * beam::fixed_end_by_moment(at.xi, load.xi, h, EI, element.shear);
   const bool left = beam::is_left(load.xi, at.xi);
+  if (twisting) {
+    const double torque = twisting->eccentricity * load.fy;
+    const double twist = torque * twisting->flexibility * (left ? load.xi * (1.0 - at.xi) : at.xi * (1.0 - load.xi));
+    r.twist += twist;
+    r.deflection += twisting->eccentricity * twist;
+    r.torsional_moment += torque * (left ? -load.xi : 1.0 - load.xi);
+  }
   if (left) {
     r.shear += load.fy;
     r.moment += load.fy * std::max(at.xi - load.xi, 0.0) * h - load.moment;

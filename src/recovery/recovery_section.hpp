@@ -26,6 +26,16 @@ struct RecoverySection {
   /// follows from the nodal values.
   void add_load(const ElementLoad& load, Response& r) const;
 
+  /// The twist of the element: coefficients of the twists at its ends, of their accelerations, and of the accelerations
+  /// of the transverse values in the torsional moment.
+  struct Twisting {
+    std::array<int, 2> unknowns{};  // global
+    double eccentricity = 0.0;      // m, of the track
+    double flexibility = 0.0;       // rad/(N m): length/GJ at the middle
+    std::array<double, 2> moment{}, moment_by_twist{};
+    std::array<double, 4> moment_by_bending{};
+  };
+
   /// A sleeper of a layered track on this element.
   struct ConnectedSleeper {
     beam::SleeperConnection connection;
@@ -45,6 +55,7 @@ struct RecoverySection {
   /// under the forces of foundation and inertia for a motion by the shape functions.
   std::optional<beam::HeldElement> held;
   std::array<double, 4> held_by_stiffness{}, held_by_damping{}, held_by_mass{};
+  std::optional<Twisting> twisting;
   double support_line = 0.0;  // m: the height of the line through the settled supports
   std::vector<ConnectedSleeper> sleepers;
 
@@ -53,6 +64,7 @@ struct RecoverySection {
   /// A force along x (N) at xi.
   void add_axial_point_load(double xi, double force, Response& r) const;
   void add_foundation(const beam::Line& line);
+  void add_torsion(const beam::Line& line);
   void set_up_held_element(const beam::BeamModel& model, const std::vector<beam::InnerSpring>& springs,
                            const std::vector<beam::InnerSpring>& dampers);
   template <class Sum>

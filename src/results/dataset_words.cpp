@@ -21,6 +21,8 @@ constexpr Row dataset_rows[] = {
     {"probes/acceleration_lowpass", "time probes/x", "low-passed vertical acceleration of the beam"},
     {"probes/moment", "time probes/x", "bending moment, positive in sagging"},
     {"probes/shear", "time probes/x", "shear force"},
+    {"probes/twist", "time probes/x", "twist, positive if the left side goes up"},
+    {"probes/torsional_moment", "time probes/x", "torsional moment, positive as the twist on the section's right side"},
     {"probes/axial_force", "time probes/x", "axial force, positive in tension"},
     {"probes/*", "time probes/x", ""},
     {"rail/devices/x", "rail/devices/x", "station of the expansion device of the rail"},

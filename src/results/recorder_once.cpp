@@ -5,6 +5,16 @@
 #include "recorder_file.hpp"
 
 namespace traverse::results {
+namespace {
+
+/// 1 for each mode of this motion, otherwise 0.
+std::vector<double> marked(const std::vector<modes::Motion>& modes, modes::Motion motion) {
+  std::vector<double> marks;
+  for (const modes::Motion one : modes) marks.push_back(one == motion ? 1.0 : 0.0);
+  return marks;
+}
+
+}  // namespace
 
 void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2) {
   if (impl_ == nullptr) return;
@@ -13,8 +23,9 @@ void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double raylei
     std::vector<double> frequency;
     for (const double omega : modes.omega) frequency.push_back(omega / (2.0 * std::numbers::pi));
     file.dataset("/modes/frequency", {frequency.size()}, frequency, "Hz");
-    if (!modes.axial.empty()) {
-      file.dataset("/modes/axial", {modes.axial.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
+    if (!modes.motion.empty()) {
+      file.dataset("/modes/axial", {modes.motion.size()}, marked(modes.motion, modes::Motion::along), "1");
+      file.dataset("/modes/twisting", {modes.motion.size()}, marked(modes.motion, modes::Motion::twist), "1");
     }
     if (!modes.shape.empty()) {
       const std::size_t points = modes.shape.front().size();
@@ -55,7 +66,8 @@ void Recorder::damped_modes(const modes::DampedModes& modes) {
     file.dataset("/modes/damped_frequency", {modes.size()}, frequency, "Hz");
     file.dataset("/modes/damping_ratio", {modes.size()}, ratio, "1");
     file.dataset("/modes/decay_rate", {modes.size()}, decay_rate, "1/s");
-    file.dataset("/modes/damped_axial", {modes.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
+    file.dataset("/modes/damped_axial", {modes.size()}, marked(modes.motion, modes::Motion::along), "1");
+    file.dataset("/modes/damped_twisting", {modes.size()}, marked(modes.motion, modes::Motion::twist), "1");
     if (!modes.shape.empty()) {
       std::vector<double> parts;
       for (const auto& shape : modes.shape) {

@@ -127,15 +127,18 @@ std::string cost_text(const Summary& summary) {
   return text;
 }
 
+const char* motion_text(modes::Motion motion) {
+  return motion == modes::Motion::along ? "   along x" : motion == modes::Motion::twist ? "   twist" : "";
+}
+
 const char* mode_kind(const modes::Modes& modes, std::size_t i) {
   if (modes.omega[i] == 0.0) return "   rigid";
-  return i < modes.axial.size() && modes.axial[i] != 0 ? "   along x" : "";
+  return i < modes.motion.size() ? motion_text(modes.motion[i]) : "";
 }
 
 std::string damped_kind(const modes::DampedModes& modes, std::size_t i) {
   if (modes.lambda[i] == 0.0) return "   rigid";
-  return fmt::format("{}{}", modes.axial[i] != 0 ? "   along x" : "",
-                     modes.damped_omega(i) == 0.0 ? "   overdamped" : "");
+  return fmt::format("{}{}", motion_text(modes.motion[i]), modes.damped_omega(i) == 0.0 ? "   overdamped" : "");
 }
 
 std::string undamped_part(const modes::Modes& modes, std::size_t i) {

@@ -28,6 +28,12 @@ constexpr Row<Response> force_rows[] = {
     {"axial_force", "N", of<&Response::axial_force>},
 };
 
+// Quantities of beams that twist.
+constexpr Row<Response> twist_rows[] = {
+    {"twist", "rad", of<&Response::twist>},
+    {"torsional_moment", "N m", of<&Response::torsional_moment>},
+};
+
 // Quantities of the bridge only.
 constexpr Row<Response> shear_rows[] = {{"shear", "N", of<&Response::shear>}};
 
@@ -107,6 +113,7 @@ void add_probes(const Source& source, Outputs& outputs) {
   if (source.beam->model().given) return;
   outputs.add_each("/probes/", force_rows, x.size(), probe);
   outputs.add_each("/probes/", shear_rows, x.size(), probe);
+  if (source.beam->model().torsion) outputs.add_each("/probes/", twist_rows, x.size(), probe);
 }
 
 void add_supports(const Source& source, Outputs& outputs) {

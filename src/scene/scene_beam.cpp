@@ -71,6 +71,21 @@ void read_supports(const Options& o, beam::BeamModel& beam) {
   }
 }
 
+/// Reads the torsion of the beam; the supports must have been read.
+void read_torsion(const Options& o, beam::BeamModel& beam) {
+  if (!o.has("beam_GJ")) return;
+  beam::Torsion torsion;
+  torsion.GJ = read_distribution(o, "beam_GJ");
+  torsion.inertia = read_distribution(o, "beam_polar_inertia");
+  torsion.mass_centre = o.number("beam_mass_centre") - o.number("beam_shear_centre");
+  torsion.track = o.number("track_eccentricity") - o.number("beam_shear_centre");
+  const std::size_t ends = beam.supports.size();
+  const std::vector<std::string> words = o.texts("support_torsion", ends, "one per span end, or one for all");
+  for (std::size_t end = 0; end < ends; ++end)
+    torsion.held.push_back(beam::fixes_vertical(beam.supports[end]) && words[end] == "held" ? 1 : 0);
+  beam.torsion = std::move(torsion);
+}
+
 std::pair<double, double> pair_of(const std::vector<double>& two) { return {two[0], two[1]}; }
 
 void read_damping(const Options& o, Damping& damping) {
@@ -285,6 +300,7 @@ void read_beam(const Options& o, Scene& scene) {
   read_cracks(o, beam);
   read_masses(o, beam);
   read_supports(o, beam);
+  read_torsion(o, beam);
   beam.foundation = read_foundation(o, beam);
   read_tension(o, beam);
   read_bearings(o, beam);

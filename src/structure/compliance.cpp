@@ -205,13 +205,12 @@ const Compliance::Column& Compliance::column(const BeamFactor& factor, double sh
 void Compliance::load_element(int element, std::ptrdiff_t first, std::ptrdiff_t past) {
   const std::ptrdiff_t size = (past - first) * beam_.block();
   work_.assign(static_cast<std::size_t>(size * m_), 0.0);
-  const auto unknowns = line_.unknowns(element);
-  for (int j = 0; j < m_; ++j) {
-    const int unknown = beam_.local(unknowns[j]);
+  line_.for_unknowns(element, [&](int j, int global, double factor) {
+    const int unknown = beam_.local(global);
     const std::ptrdiff_t place = unknown - first * beam_.block();
     if (unknown >= 0 && place >= 0 && place < size && beam_.fixed()[unknown] == 0)
-      work_[static_cast<std::size_t>(j * size + place)] = 1.0;
-  }
+      work_[static_cast<std::size_t>(j * size + place)] += factor;
+  });
 }
 
 // Stores the solutions in work_; returns their first local node.
@@ -353,13 +352,12 @@ void Compliance::fill_blocks(bool same_factor) {
 // Fills this rank's rows of the block; the other entries are unchanged.
 void Compliance::fill_block(int a, int b, double* to) const {
   const Column& c = *active_[b].column;
-  const auto unknowns = line_.unknowns(elements_[a]);
-  for (int i = 0; i < m_; ++i) {
-    const int local = beam_.local(unknowns[i]), unknown = local - active_[b].unknown;
-    if (local < 0 || unknown < c.low || unknown >= c.high) continue;
+  line_.for_unknowns(elements_[a], [&](int i, int global, double factor) {
+    const int local = beam_.local(global), unknown = local - active_[b].unknown;
+    if (local < 0 || unknown < c.low || unknown >= c.high) return;
     for (int j = 0; j < m_; ++j)
-      to[i + j * m_] = c.values[static_cast<std::size_t>(j) * (c.high - c.low) + (unknown - c.low)];
-  }
+      to[i + j * m_] += factor * c.values[static_cast<std::size_t>(j) * (c.high - c.low) + (unknown - c.low)];
+  });
 }
 
 void Compliance::add_response(const std::vector<double>& loads, double* v) const {

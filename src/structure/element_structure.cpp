@@ -31,12 +31,11 @@ void ElementStructure::set_reference_loads(double sum, double greatest) {
 void ElementStructure::load(const std::vector<recovery::ElementLoad>& forces) {
   nodal_forces_.clear();
   for (const recovery::ElementLoad& force : forces) {
-    const auto unknowns = line_.unknowns(force.element);
     const auto parts = on_unknowns(line_, force);
-    for (std::size_t i = 0; i < unknowns.size(); ++i) {
-      const int local = unknowns[i] < 0 ? -1 : beam_.local(unknowns[i]);
-      if (local >= 0 && parts[i] != 0.0) nodal_forces_.push_back({local, parts[i]});
-    }
+    line_.for_unknowns(force.element, [&](int k, int unknown, double factor) {
+      const double part = factor * parts[static_cast<std::size_t>(k)];
+      if (const int local = beam_.local(unknown); local >= 0 && part != 0.0) nodal_forces_.push_back({local, part});
+    });
   }
   const auto sort = [](std::vector<NodalLoad>& loads) {
     std::sort(loads.begin(), loads.end(), [](const NodalLoad& a, const NodalLoad& b) { return a.unknown < b.unknown; });
@@ -101,11 +100,13 @@ void ElementStructure::add_values(const std::vector<int>& elements, const double
     return {v_predicted_[i] + z_[i], w_predicted_[i] + stage_.shift * z_[i]};
   };
   for (std::size_t a = 0; a < elements.size(); ++a) {
-    const auto unknowns = line_.unknowns(elements[a]);
-    for (std::size_t i = 0; i < m; ++i) {
-      const int local = beam_.local(unknowns[i]);
-      if (local >= 0) std::tie(v_elements[a * m + i], w_elements[a * m + i]) = value_at(local);
-    }
+    line_.for_unknowns(elements[a], [&](int k, int unknown, double factor) {
+      const int local = beam_.local(unknown);
+      if (local < 0) return;
+      const auto [value, rate] = value_at(local);
+      v_elements[a * m + static_cast<std::size_t>(k)] += factor * value;
+      w_elements[a * m + static_cast<std::size_t>(k)] += factor * rate;
+    });
   }
 }
 

@@ -276,12 +276,16 @@ ModalBridge::Line ModalBridge::correction_of(recovery::Recovery& recovery, std::
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
   std::vector<recovery::Response> responses;
   std::vector<double> load(basis_.shape.front().size(), 0.0);
-  for (const int unknown : beam_.bridge().transverse(beam_.mesh().locate(recovery.stations()[p]).element)) {
+  const auto add_unit = [&](int unknown) {
     std::vector<double> unit = zero;
     if (beam_.local(unknown) >= 0) unit[static_cast<std::size_t>(beam_.local(unknown))] = 1.0;
     recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, responses);
     load[static_cast<std::size_t>(unknown)] = responses[p].*quantity;
-  }
+  };
+  const int element = beam_.mesh().locate(recovery.stations()[p]).element;
+  for (const int unknown : beam_.bridge().transverse(element)) add_unit(unknown);
+  if (beam_.bridge().eccentricity() != 0.0)
+    for (const int unknown : beam_.bridge().twists(element)) add_unit(unknown);
   const std::vector<double>& form = quantity == &recovery::Response::deflection ? probes_.deflection : probes_.moment;
   Line line = line_of(load, [&](std::size_t mode) { return form[mode * probes_.count + p]; });
   line.probe = p;
@@ -302,6 +306,19 @@ ModalBridge::Line ModalBridge::line_of(const std::vector<double>& load,
   return line;
 }
 
+/// The values v1, theta1, v2, theta2 of the track in an element, of values of all unknowns.
+std::array<double, 4> ModalBridge::transverse_values(const std::vector<double>& nodal, int element) const {
+  const beam::Line& line = beam_.bridge();
+  std::array<double, 4> values{};
+  line.for_unknowns(element, [&](int k, int unknown, double factor) {
+    const int place = k % line.per_node - (line.per_node - 2);
+    if (place < 0) return;  // along x
+    values[static_cast<std::size_t>(2 * (k / line.per_node) + place)] +=
+        factor * nodal[static_cast<std::size_t>(unknown)];
+  });
+  return values;
+}
+
 PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const {
   const beam::Mesh& mesh = beam_.mesh();
   std::vector<recovery::Recovery> recoveries;
@@ -314,7 +331,6 @@ PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const s
       if (x > element.x && x < element.x + element.length) ends.push_back(x - element.x);
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    const auto unknowns = beam_.bridge().transverse(e);
     double left = 0.0;
     for (const double right : ends) {
       const std::size_t piece = influence.coefficients.size();
@@ -322,8 +338,7 @@ PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const s
       influence.coefficients.resize(piece + 4 * lines.size());
       for (std::size_t channel = 0; channel < lines.size(); ++channel) {
         const Line& line = lines[channel];
-        std::array<double, 4> nodal{};
-        for (std::size_t k = 0; k < 4; ++k) nodal[k] = line.nodal[static_cast<std::size_t>(unknowns[k])];
+        const std::array<double, 4> nodal = transverse_values(line.nodal, e);
         beam::Cubic cubic = beam::shifted(beam::hermite_cubic(nodal, element.length, element.shear), left);
         if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
           const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {

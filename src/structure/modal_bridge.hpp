@@ -145,6 +145,7 @@ class ModalBridge {
   void record_weight(recovery::Recovery& recovery, double gravity);
   Line correction_of(recovery::Recovery& recovery, std::size_t probe, double recovery::Response::*quantity);
   std::vector<Line> lines_of_modes() const;
+  std::array<double, 4> transverse_values(const std::vector<double>& nodal, int element) const;
   Line line_of(const std::vector<double>& load, const std::function<double(std::size_t)>& form);
   PiecewiseCubic influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const;
   std::vector<double> static_solution(const std::vector<double>& load);

@@ -64,24 +64,34 @@ void ModalStructure::load(const std::vector<recovery::ElementLoad>& forces) {
   forces_ = forces;
   std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
   for (const recovery::ElementLoad& force : forces_) {
-    const auto unknowns = line_.unknowns(force.element);
     const auto parts = on_unknowns(line_, force);
-    for (std::size_t k = 0; k < unknowns.size() && unknowns[k] >= 0; ++k) {
-      const double* phi = shapes(unknowns[k]);
-      for (std::size_t i = 0; i < modes_; ++i) modal_force_[i] += phi[i] * parts[k];
-    }
+    line_.for_unknowns(force.element, [&](int k, int unknown, double factor) {
+      const double* phi = shapes(unknown);
+      const double part = factor * parts[static_cast<std::size_t>(k)];
+      for (std::size_t i = 0; i < modes_; ++i) modal_force_[i] += phi[i] * part;
+    });
   }
+}
+
+const double* ModalStructure::shapes(int element, int k, std::vector<double>& work) const {
+  if (line_.eccentricity() == 0.0) return shapes(line_.unknowns(element)[static_cast<std::size_t>(k)]);
+  work.assign(modes_, 0.0);
+  line_.for_unknowns(element, [&](int value, int unknown, double factor) {
+    if (value != k) return;
+    const double* phi = shapes(unknown);
+    for (std::size_t i = 0; i < modes_; ++i) work[i] += factor * phi[i];
+  });
+  return work.data();
 }
 
 void ModalStructure::add_modal_forces(const ElementLoads& contacts, double* to) const {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   for (std::size_t a = 0; a < contacts.elements.size(); ++a) {
-    const auto unknowns = line_.unknowns(contacts.elements[a]);
-    for (std::size_t k = 0; k < m; ++k) {
-      const double* phi = shapes(unknowns[k]);
-      const double force = contacts.values[a * m + k];
+    line_.for_unknowns(contacts.elements[a], [&](int k, int unknown, double factor) {
+      const double* phi = shapes(unknown);
+      const double force = factor * contacts.values[a * m + static_cast<std::size_t>(k)];
       for (std::size_t i = 0; i < modes_; ++i) to[i] += phi[i] * force;
-    }
+    });
   }
 }
 
@@ -124,17 +134,16 @@ void ModalStructure::add_values(const std::vector<int>& elements, const double* 
   if (n_ == 0) return;
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   for (std::size_t a = 0; a < elements.size(); ++a) {
-    const auto unknowns = line_.unknowns(elements[a]);
-    for (std::size_t k = 0; k < m; ++k) {
-      const double* phi = shapes(unknowns[k]);
-      double value = weight_displacement_[static_cast<std::size_t>(unknowns[k])], rate = 0.0;
+    line_.for_unknowns(elements[a], [&](int k, int unknown, double factor) {
+      const double* phi = shapes(unknown);
+      double value = weight_displacement_[static_cast<std::size_t>(unknown)], rate = 0.0;
       for (std::size_t i = 0; i < modes_; ++i) {
         value += phi[i] * (v != nullptr ? v[i] : v_predicted_[i] + z_[i]);
         rate += phi[i] * (v != nullptr ? w[i] : w_predicted_[i] + shift_ * z_[i]);
       }
-      v_elements[a * m + k] = value;
-      w_elements[a * m + k] = rate;
-    }
+      v_elements[a * m + static_cast<std::size_t>(k)] += factor * value;
+      w_elements[a * m + static_cast<std::size_t>(k)] += factor * rate;
+    });
   }
 }
 

@@ -62,14 +62,17 @@ class ModalStructure final : public MovingStructure {
     void prepare(const std::vector<int>& elements);
 
    private:
-    void fill(int a, double* to) const;
+    void fill(int a, double* to);
     const ModalStructure& structure_;
     std::vector<int> elements_, elements_before_, previous_index_;
     double shift_ = -1.0, shift2_ = -1.0;  // shifts of the stage for which the blocks were computed
     std::vector<double> blocks_before_;
     std::vector<double> loaded_shapes_;  // S^-1 times the shapes of the loaded element: [unknown][mode]
+    std::vector<double> shape_;          // of a nodal value
   };
 
+  /// The values of nodal value k of an element of the track in every mode: those of an unknown, or their sum in `work`.
+  const double* shapes(int element, int k, std::vector<double>& work) const;
   /// The values of an unknown of the beam, counted over all ranks, in every mode.
   const double* shapes(int unknown) const { return &by_unknown_[static_cast<std::size_t>(unknown) * modes_]; }
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,

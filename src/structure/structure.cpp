@@ -77,10 +77,10 @@ std::array<double, 6> on_unknowns(const beam::Line& line, const recovery::Elemen
 }
 
 void Structure::add_force(const beam::Line& line, const recovery::ElementLoad& force, double* nodal) const {
-  const auto unknowns = line.unknowns(force.element);
   const auto parts = on_unknowns(line, force);
-  for (std::size_t i = 0; i < unknowns.size(); ++i)
-    if (const int local = unknowns[i] < 0 ? -1 : beam_.local(unknowns[i]); local >= 0) nodal[local] += parts[i];
+  line.for_unknowns(force.element, [&](int k, int unknown, double factor) {
+    if (const int local = beam_.local(unknown); local >= 0) nodal[local] += factor * parts[static_cast<std::size_t>(k)];
+  });
 }
 
 void Structure::gather(const std::vector<int>& elements, const double* v, const double* w,
@@ -89,13 +89,13 @@ void Structure::gather(const std::vector<int>& elements, const double* v, const 
   gathered_.assign(2 * std::max(count, least), 0.0);
   add_values(elements, v, w, gathered_.data(), gathered_.data() + count);
   for (std::size_t a = 0; support_motion_ && a < elements.size(); ++a) {
-    const auto unknowns = line_.unknowns(elements[a]);
-    for (std::size_t i = 0; i < least; ++i) {
-      const int local = beam_.local(unknowns[i]);
-      if (local < 0) continue;
-      gathered_[a * least + i] += support_motion_->displacement()[local];
-      gathered_[count + a * least + i] += support_motion_->velocity()[local];
-    }
+    line_.for_unknowns(elements[a], [&](int k, int unknown, double factor) {
+      const int local = beam_.local(unknown);
+      if (local < 0) return;
+      const std::size_t i = a * least + static_cast<std::size_t>(k);
+      gathered_[i] += factor * support_motion_->displacement()[local];
+      gathered_[count + i] += factor * support_motion_->velocity()[local];
+    });
   }
   if (count > 0 && ranks_ > 1)
     MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, beam_.comm());
@@ -117,10 +117,10 @@ double Structure::power_with_supports(const ElementLoads& forces) const {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   double power = 0.0;
   for (std::size_t a = 0; a < forces.elements.size(); ++a) {
-    const auto unknowns = line_.unknowns(forces.elements[a]);
-    for (std::size_t i = 0; i < m; ++i)
-      if (const int local = beam_.local(unknowns[i]); local >= 0)
-        power += forces.values[a * m + i] * support_motion_->velocity()[local];
+    line_.for_unknowns(forces.elements[a], [&](int k, int unknown, double factor) {
+      if (const int local = beam_.local(unknown); local >= 0)
+        power += factor * forces.values[a * m + static_cast<std::size_t>(k)] * support_motion_->velocity()[local];
+    });
   }
   MPI_Allreduce(MPI_IN_PLACE, &power, 1, MPI_DOUBLE, MPI_SUM, beam_.comm());
   return power;
@@ -142,11 +142,10 @@ void Structure::add_support_motion(NodalMotion& motion) {
 void Structure::add_contacts(const ElementLoads& contacts, double* nodal) const {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   for (std::size_t a = 0; a < contacts.elements.size(); ++a) {
-    const auto unknowns = line_.unknowns(contacts.elements[a]);
-    for (std::size_t i = 0; i < m; ++i) {
-      const int local = beam_.local(unknowns[i]);
-      if (local >= 0) nodal[local] += contacts.values[a * m + i];
-    }
+    line_.for_unknowns(contacts.elements[a], [&](int k, int unknown, double factor) {
+      if (const int local = beam_.local(unknown); local >= 0)
+        nodal[local] += factor * contacts.values[a * m + static_cast<std::size_t>(k)];
+    });
   }
 }
 

@@ -87,6 +87,17 @@ struct Temperature {
   double curvature() const { return -expansion * gradient / depth; }  // 1/m, positive in sagging
 };
 
+/// Torsion of the beam: the twist of its sections about the line of their shear centres, to which the deflection v of
+/// the beam belongs. It is positive if the left side, seen along x, goes up: a point at the distance e to the left of
+/// the shear centre has the deflection v + e*twist.
+struct Torsion {
+  Distribution GJ;           // N m2, > 0: stiffness of St. Venant
+  Distribution inertia;      // kg m, > 0: moment of inertia of the mass per length about its centre
+  double mass_centre = 0.0;  // m, to the left of the shear centre
+  std::vector<char> held;    // at each span end: non-zero if the support holds the twist
+  double track = 0.0;        // m, of the track to the left of the shear centre
+};
+
 struct BeamModel {
   std::vector<double> spans;  // m, each > 0
   std::vector<int> elements;  // number per span, each >= 1; with a layered track the mesh of its rail is used instead
@@ -106,6 +117,7 @@ struct BeamModel {
   std::vector<double> settlement;  // m upward, settlements of supports that fix v: one at every span end, or empty
   std::vector<double> shift;       // m along the beam, displacements of supports that fix u: likewise
   std::optional<Temperature> temperature;
+  std::optional<Torsion> torsion;  // empty: the beam does not twist
   Foundation foundation;
   std::optional<LayeredTrack> track;
   std::optional<GivenModes>

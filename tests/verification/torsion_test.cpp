@@ -1,0 +1,193 @@
+// Beams that twist: natural frequencies, coupled bending and torsion, a force on a track beside the shear centre at
+// rest and in motion, and vehicles on such a track by modes and by elements.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/curve.hpp"
+#include "support/folders.hpp"
+#include "support/message.hpp"
+
+namespace traverse::test {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double L = 24.0, EI = 3.0e10, GJ = 1.1e10, mass = 9.0e3, inertia = 4.0e4, e = 2.25, F = 2.0e5;
+
+/// A beam on forks with additional options of the block `beam`.
+std::string bridge(const std::string& more = "", const std::string& rest = "") {
+  return "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4" + more +
+         "}\nsupport: {types: [pinned, roller]}\n" + rest;
+}
+
+double omega_of_bending(int n) { return std::pow(n * pi / L, 2) * std::sqrt(EI / mass); }
+double omega_of_twist(int n) { return n * pi / L * std::sqrt(GJ / inertia); }
+
+std::vector<double> frequencies_where(Results& run, const char* marks) {
+  std::vector<double> found;
+  for (std::size_t i = 0; i < run("/modes/frequency").size(); ++i)
+    if (run(marks)[i] != 0.0) found.push_back(run("/modes/frequency")[i]);
+  return found;
+}
+
+TEST(Torsion, FrequenciesBetweenForks) {
+  std::array<double, 2> error{};
+  for (const int fine : {0, 1}) {
+    Results run = run_yaml(bridge(fine ? ", elements_per_span: 32" : ", elements_per_span: 16",
+                                  "scene: {analysis: modes}\nmodes: {count: 8}\n"));
+    const std::vector<double> found = frequencies_where(run, "/modes/twisting");
+    ASSERT_GE(found.size(), 3U);
+    for (int n = 1; n <= 3; ++n)
+      EXPECT_NEAR(found[static_cast<std::size_t>(n - 1)] / (omega_of_twist(n) / (2.0 * pi)), 1.0, fine ? 2e-5 : 3e-4)
+          << n;
+    error[static_cast<std::size_t>(fine)] = std::abs(found[2] / (omega_of_twist(3) / (2.0 * pi)) - 1.0);
+  }
+  EXPECT_NEAR(std::log2(error[0] / error[1]), 4.0, 0.2) << "of fourth order";
+}
+
+TEST(Torsion, FrequenciesOfACantileverAndOfThreeSpans) {
+  Results jib = run_yaml(
+      "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4, elements_per_span: 40}\n"
+      "support: {types: [clamped, free]}\nscene: {analysis: modes}\nmodes: {count: 8}\n");
+  const std::vector<double> of_jib = frequencies_where(jib, "/modes/twisting");
+  for (int n = 1; n <= 2; ++n)
+    EXPECT_NEAR(of_jib[static_cast<std::size_t>(n - 1)], (2.0 * n - 1.0) / (4.0 * L) * std::sqrt(GJ / inertia), 1e-4)
+        << n;
+  // Inner forks hold the twist, single bearings do not.
+  for (const bool forks : {true, false}) {
+    Results run = run_yaml(
+        "beam: {spans: [10, 14, 10], EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4, elements_per_span: "
+        "40}\n"
+        "support: {types: [pinned, roller, roller, roller], torsion: [held, " +
+        std::string(forks ? "held, held" : "free, free") + ", held]}\nscene: {analysis: modes}\nmodes: {count: 10}\n");
+    EXPECT_NEAR(frequencies_where(run, "/modes/twisting").front(),
+                1.0 / (2.0 * (forks ? 14.0 : 34.0)) * std::sqrt(GJ / inertia), 1e-4);
+  }
+}
+
+TEST(Torsion, TheDampingIsThatOfBending) {
+  const std::string rest = "scene: {analysis: modes}\nmodes: {count: 8}\n";
+  Results with = run_yaml(bridge(", damping_ratios: 0.02", rest)),
+          without = run_yaml(
+              "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, damping_ratios: 0.02}\n"
+              "support: {types: [pinned, roller]}\n" +
+              rest);
+  for (const char* name : {"rayleigh_a", "rayleigh_b"})
+    EXPECT_EQ(with.attribute("/modes", name), without.attribute("/modes", name));
+}
+
+// Mass beside the shear centre: v and twist are both sines, with (EI k^4 - m w^2)(GJ k^2 - (I + m c^2) w^2) = (m c
+// w^2)^2.
+TEST(Torsion, CoupledFrequencies) {
+  constexpr double c = 0.8;
+  Results run = run_yaml(bridge(", mass_centre: 1.1, shear_centre: 0.3, elements_per_span: 40",
+                                "scene: {analysis: modes}\nmodes: {count: 8}\n"));
+  std::vector<double> exact;
+  for (int n = 1; n <= 4; ++n) {
+    const double k = n * pi / L, a = mass * inertia;  // m (I + m c^2) - (m c)^2
+    const double b = EI * std::pow(k, 4) * (inertia + mass * c * c) + GJ * k * k * mass,
+                 d = EI * std::pow(k, 4) * GJ * k * k;
+    for (const double sign : {-1.0, 1.0})
+      exact.push_back(std::sqrt((b + sign * std::sqrt(b * b - 4.0 * a * d)) / (2.0 * a)) / (2.0 * pi));
+  }
+  std::sort(exact.begin(), exact.end());
+  std::vector<double> found;
+  for (std::size_t i = 0; i < run("/modes/frequency").size(); ++i)
+    if (run("/modes/axial")[i] == 0.0) found.push_back(run("/modes/frequency")[i]);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(found[i] / exact[i], 1.0, 3e-5) << i;
+}
+
+/// At rest on the track over midspan, by modes with static correction and by elements, in an element or at a node.
+TEST(Torsion, AForceBesideTheAxis) {
+  for (const char* model : {"model: {modes: 6, damping_ratios: 0.02}\n", "ts: {dt: 0.01}\n"})
+    for (const double x : {12.0, 11.3}) {
+      Results run =
+          run_yaml(bridge(", elements_per_span: 12, damping_ratios: 0.02",
+                          std::string(model) + "track: {eccentricity: 2.25}\nload: {forces: 2.0e5, speed: 0}\n"
+                                               "ts: {max_time: 60}\noutput: {probes: [6, 12, 11.3]}\n"),
+                   {{"load_positions", text(x)}, {"output_interval", "60"}});
+      const auto last = [&](const char* name, std::size_t i) { return run.column(name, i).back(); };
+      const double twist = -F * e * (L - x) * 6.0 / (GJ * L), under = -F * e * (L - x) * x / (GJ * L);
+      EXPECT_NEAR(last("/probes/twist", 0), twist, 1e-6 * std::abs(twist)) << model << x;
+      const std::size_t here = x == 12.0 ? 1 : 2;
+      EXPECT_NEAR(last("/probes/twist", here), under, 1e-6 * std::abs(under)) << model << x;
+      const double bent = -F * x * x * (L - x) * (L - x) / (3.0 * EI * L);
+      EXPECT_NEAR(last("/probes/deflection", here), bent + e * under, 1e-6 * std::abs(bent)) << model << x;
+      EXPECT_NEAR(last("/probes/torsional_moment", 0), -F * e * (L - x) / L, 1e-6 * F * e) << model << x;
+      EXPECT_NEAR(last("/probes/moment", here), F * x * (L - x) / L, 1e-6 * F * L) << model << x;
+    }
+}
+
+/// Deflection and acceleration of the track at midspan under a force at the speed v from the left end, by the modal
+/// series without damping.
+std::array<double, 2> series(double v, double t) {
+  double deflection = 0.0, acceleration = 0.0;
+  const auto add = [&](double omega, double W, double shape, double amplitude) {
+    const double factor = amplitude * shape / (omega * omega - W * W);
+    deflection += factor * (std::sin(W * t) - W / omega * std::sin(omega * t));
+    acceleration += factor * (-W * W * std::sin(W * t) + W * omega * std::sin(omega * t));
+  };
+  for (int n = 1; n <= 801; ++n) {
+    const double W = n * pi * v / L, shape = std::sin(0.5 * n * pi);
+    add(omega_of_bending(n), W, shape, -2.0 * F / (mass * L));
+    add(omega_of_twist(n), W, shape, -2.0 * F * e * e / (inertia * L));
+  }
+  return {deflection, acceleration};
+}
+
+TEST(Torsion, AMovingForceBesideTheAxis) {
+  const std::string rest =
+      "track: {eccentricity: 2.25}\nload: {forces: 2.0e5, speed: 40}\nts: {max_time: 0.6}\n"
+      "output: {probes: 12, interval: 0.01}\n";
+  const auto error = [&](const std::string& more, const std::string& model) {
+    Results run = run_yaml(bridge(more, model + rest));
+    const std::vector<double> time = run.time(), found = run.column("/probes/deflection");
+    double worst = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < time.size(); ++i) {
+      const double exact = series(40.0, time[i])[0];
+      worst = std::max(worst, std::abs(found[i] - exact));
+      largest = std::max(largest, std::abs(exact));
+    }
+    return worst / largest;
+  };
+  const double by_modes = error(", elements_per_span: 64, rayleigh: [0, 0]", "model: {modes: 60}\n"),
+               by_elements = error(", elements_per_span: 64, rayleigh: [0, 0]", "ts: {dt: 5e-5}\n");
+  EXPECT_LT(by_modes, 1e-4);
+  EXPECT_LT(by_elements, 3e-4);
+}
+
+/// A sprung mass on the track: by modes and by elements, with a linear vehicle and as a mechanism.
+TEST(Torsion, AVehicleBesideTheAxis) {
+  const std::string rest = "track: {eccentricity: 2.25}\nvehicle:\n  mass:\n    file: " + source_folder() +
+                           "/options/vehicles/manchester.yml\ntrain: {vehicles: mass, speed: 60}\n"
+                           "output: {probes: [6, 12], interval: 2e-3}\nts: {max_time: 0.9, dt: 1e-4}\n";
+  const std::string beam = ", elements_per_span: 48, damping_ratios: 0.02";
+  Results elements = run_yaml(bridge(beam, rest)), modes = run_yaml(bridge(beam, rest), {{"model_modes", "60"}}),
+          full = run_yaml(bridge(beam, rest), {{"model_vehicles", "full"}});
+  EXPECT_LT(relative_difference(full("/probes/deflection"), elements("/probes/deflection")), 1e-4);
+  EXPECT_LT(relative_difference(full("/probes/twist"), elements("/probes/twist")), 1e-4);
+  EXPECT_LT(relative_difference(modes("/probes/deflection"), elements("/probes/deflection")), 2e-3);
+  EXPECT_LT(energy_error(full), 1e-4);
+  EXPECT_LT(energy_error(elements), 1e-4);
+  // On the line of shear centres nothing twists, and a track there is one of a beam that cannot.
+  const Values centred = {{"track_eccentricity", "0"}};
+  Results there = run_yaml(bridge(beam, rest), centred);
+  EXPECT_EQ(peak(there("/probes/twist")).first, 0.0);
+}
+
+TEST(Torsion, Refusals) {
+  const auto refused = [](const std::string& yaml) { return message_of([&] { run_yaml(yaml); }); };
+  EXPECT_EQ(refused("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10}\n").find("beam_GJ"), 0U);
+  EXPECT_NE(refused(bridge("", "track: {eccentricity: 1}\nscene: {analysis: envelope}\nload: {forces: 1, speed: 1}\n"))
+                .find("static effects and screens have no torsion"),
+            std::string::npos);
+  EXPECT_NE(refused("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4}\n"
+                    "support: {torsion: free}\nload: {forces: 1, speed: 1}\n")
+                .find("nothing holds the twist"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace traverse::test
