@@ -13,8 +13,8 @@ class InputError(ValueError):
     """A file that cannot be read, in one line that names it."""
 
 
-def text_of(path, most=LARGEST, encoding="utf-8-sig"):
-    """The text of a file of at most so many bytes."""
+def bytes_of(path, most):
+    """The content of a file of at most so many bytes."""
     try:
         handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
         with open(handle, "rb") as file:
@@ -27,6 +27,12 @@ def text_of(path, most=LARGEST, encoding="utf-8-sig"):
         raise InputError(f"{path}: {error.strerror}") from None
     if len(content) > most:
         raise InputError(f"{path}: is too large; allowed: at most {most:,} bytes")
+    return content
+
+
+def text_of(path, most=LARGEST, encoding="utf-8-sig"):
+    """The text of a file of at most so many bytes."""
+    content = bytes_of(path, most)
     try:
         return content.decode(encoding)
     except UnicodeDecodeError as error:

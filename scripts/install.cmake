@@ -10,8 +10,8 @@ install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
 install(PROGRAMS scripts/traverse-check scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_report DESTINATION ${share}/python
         FILES_MATCHING PATTERN *.py PATTERN *.csv PATTERN *.yml PATTERN *.html PATTERN *.css PATTERN *.js)
-file(GLOB pictures CONFIGURE_DEPENDS scripts/picture*.py)
-install(FILES ${pictures} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
+file(GLOB several CONFIGURE_DEPENDS scripts/picture*.py scripts/convert*.py)
+install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
         scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_answers.py
         scripts/export_tables.py
         scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/traffic.py
@@ -84,7 +84,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_NAME traverse)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_TRAVERSE_PACKAGE_RECOMMENDS "openmpi-bin, libjs-chart.js, python3-h5py, python3-matplotlib, python3-openpyxl, python3-xarray, python3-yaml")
+set(CPACK_DEBIAN_TRAVERSE_PACKAGE_RECOMMENDS "openmpi-bin, libjs-chart.js, python3-h5py, python3-matplotlib, python3-openpyxl, python3-scipy, python3-xarray, python3-yaml")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtraverse-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS

@@ -9,7 +9,7 @@ setup_log=build/setup.log
 # No name carries a version, so that Debian 12 and 13 and Ubuntu take what they have.
 program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-real-dev libopenmpi-dev openmpi-bin
   libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev libboost-dev libjs-chart.js python3-h5py python3-matplotlib
-  python3-openpyxl python3-xarray python3-yaml)
+  python3-openpyxl python3-scipy python3-xarray python3-yaml)
 test_packages=(ccache chromium libgtest-dev python3-h5netcdf python3-netcdf4)
 benchmark_packages=(libbenchmark-dev)
 check_packages=(clang-format clang-tidy)

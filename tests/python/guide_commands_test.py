@@ -14,7 +14,7 @@ import unittest
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2])).resolve()
 PROGRAM = os.environ.get("TRAVERSE_BINARY", SOURCE / "build" / "traverse")
 PAGES = sorted((SOURCE / "doc/guide").glob("*.md"))
-MODULES = {"python3-h5py": ["h5py", "numpy"], "python3-openpyxl": ["openpyxl"],
+MODULES = {"python3-h5py": ["h5py", "numpy"], "python3-openpyxl": ["openpyxl"], "python3-scipy": ["scipy"],
            "python3-matplotlib": ["matplotlib", "mpl_toolkits", "PIL"], "python3-xarray": ["xarray", "pandas"], "python3-yaml": ["yaml"]}
 PLACES = ("scripts", "python", "examples", "benchmarks")  # of the repository's own modules
 

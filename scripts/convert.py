@@ -1,0 +1,224 @@
+#!/usr/bin/python3
+"""Converts files of measuring systems and finite element programs:
+
+  convert.py records FILE -o TABLE.csv            records over time: universal files (datasets 58 and 58b), MATLAB files
+  convert.py modes FILE... --track POINT POINT -o MODES.txt    mode shapes along tracks: universal files (dataset 55 with
+                                                  nodes), CalculiX (.frd, with .dat for section forces), Nastran (.pch, .bdf)
+
+A table is read by every option that names one, such as fit_to_NAME_series; a file of modes by bridge_modes_file. Without -o
+the command lists what the files contain.
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+
+import convert_calculix
+import convert_matlab
+import convert_modes
+import convert_nastran
+import convert_records
+import convert_universal
+import numpy as np
+import output_files
+from input_files import LARGEST_TABLE, InputError, bytes_of
+
+LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3, "in": 0.0254, "ft": 0.3048}
+MASSES = {"kg": 1.0, "t": 1e3, "g": 1e-3, "lb": 0.45359237, "slug": 14.593902937, "lbf.s2/in": 175.12683525}
+LARGEST_RATIO = 1.0
+RECORDS = "a universal file (.unv, .uff) with dataset 58, or a MATLAB file (.mat)"
+MODES = "a universal file with dataset 55, CalculiX's .frd in ASCII, or a punch file of Nastran"
+
+
+def scale(known, what):
+    """A type of an argument: a unit, or its size in SI."""
+    def read(text):
+        try:
+            value = known[text] if text in known else float(text)
+        except ValueError:
+            value = 0.0
+        if not 1e-12 < value < 1e12:
+            raise argparse.ArgumentTypeError(f"'{text}'; allowed: {', '.join(known)}, or the {what} of a unit of the model")
+        return value
+    return read
+
+
+def positive(text):
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < 1e50:
+        raise argparse.ArgumentTypeError(f"'{text}'; allowed: a number above 0")
+    return value
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    kinds = parser.add_subparsers(dest="what", required=True)
+    records = kinds.add_parser("records", help="records over time")
+    records.add_argument("files", metavar="FILE", nargs=1)
+    records.add_argument("-o", metavar="TABLE.csv", help="channels with other times go to TABLE_2.csv, ...")
+    records.add_argument("--channels", nargs="+", default=[], metavar="NAME", help="left out: all")
+    records.add_argument("--time", metavar="NAME", help="of a MATLAB file: the vector of times in s; left out: t or time")
+    records.add_argument("--rate", type=positive, metavar="HZ", help="of a MATLAB file without times: samples a second")
+    modes = kinds.add_parser("modes", help="mode shapes along tracks")
+    modes.add_argument("files", metavar="FILE", nargs="+")
+    modes.add_argument("-o", metavar="MODES.txt")
+    modes.add_argument("--track", nargs="+", action="append", default=[], metavar="POINT",
+                       help="points x,y,z of the model or numbers of nodes, from the left end of the bridge; once for each track")
+    modes.add_argument("--up", default="z", type=str.strip, choices=["x", "y", "z", "-x", "-y", "-z"], help="left out: z")
+    modes.add_argument("--within", type=positive, metavar="D", help="distance of nodes to a track; left out: 0.05 of its length")
+    modes.add_argument("--supported-ends", action="store_true", help="the shapes are 0 at the ends of the tracks")
+    modes.add_argument("--modes", type=int, nargs="+", metavar="N", help="the modes that are taken; left out: all")
+    modes.add_argument("--damping", type=positive, nargs="+", metavar="RATIO", help="one for all modes, or one for each")
+    modes.add_argument("--modal-mass", type=positive, nargs="+", metavar="M", help="in the unit of the model, one for all or for each")
+    modes.add_argument("--length", type=scale(LENGTHS, "length in m"), metavar="UNIT", help="of the model: m, mm, in, ...; left out: m")
+    modes.add_argument("--mass", type=scale(MASSES, "mass in kg"), metavar="UNIT", help="of the model: kg, t, ...; left out: kg")
+    modes.add_argument("--output", action="append", default=[], metavar="NAME=FIELD:COMPONENT@NUMBER[:UNIT]",
+                       help="a result of a node, element or section")
+    # A point such as -1,2,0 and the direction -z are no options.
+    return parser.parse_args([" " + word if re.match(r"-([\d.]+,|[xyz]$)", word) else word for word in words])
+
+
+def read_records(given):
+    path = given.files[0]
+    content = bytes_of(path, LARGEST_TABLE)[:512]
+    if convert_universal.is_universal(content):
+        return convert_universal.read_records(path)
+    if convert_matlab.is_matlab(content):
+        return convert_matlab.read_records(path, given.time, given.rate)
+    raise InputError(f"{path}: is no file of records; allowed: {RECORDS}. A table of numbers needs no conversion")
+
+
+def records(given):
+    """Converts records, and yields what is said."""
+    channels, passed = read_records(given)
+    tables = convert_records.tables_of(convert_records.chosen(channels, given.channels))
+    if given.o:
+        output_files.kind_of(given.o, ["csv"])
+        first = pathlib.Path(given.o)
+        paths = [first if i == 0 else first.with_name(f"{first.stem}_{i + 1}.csv") for i in range(len(tables))]
+        for path, table in zip(paths, tables):
+            output_files.check(path, "csv", given.files, table.head)
+        for path, table in zip(paths, tables):
+            output_files.write_table(path, table.head, convert_records.rows_of(table), given.files)
+    for i, table in enumerate(tables):
+        times = table.channels[0].times
+        yield f"{paths[i] if given.o else f'table {i + 1}'}: {len(times)} rows from {times[0]:g} to {times[-1]:g} s"
+        for column, (one, head) in enumerate(zip(table.channels, table.head[1:]), 2):
+            yield f"  column {column}: {head}{'' if one.unit else ', without a unit'}; {one.about}"
+    for one in passed:
+        yield f"not read: {one}"
+
+
+def read_modes(given):
+    """(model, what is said of units and of what is not read)"""
+    contents = {path: bytes_of(path, LARGEST_TABLE) for path in given.files}
+    first = given.files[0]
+    units, passed, length, mass = None, [], given.length, given.mass
+    kinds = {path: "universal" if convert_universal.is_universal(content[:512]) else
+             "frd" if convert_calculix.is_frd(content[:512]) else
+             "punch" if convert_nastran.is_punch(content) else "" for path, content in contents.items()}
+    del contents
+    found = [path for path in given.files if kinds[path]]
+    others = [path for path in given.files if not kinds[path]]
+    if not found:
+        raise InputError(f"{first}: is no file of modes; allowed: {MODES}")
+    kind = kinds[found[0]]
+    if kind != "punch" and (len(found) > 1 or len(others) > (1 if kind == "frd" else 0)):
+        raise InputError(f"{(found[1:] + others)[-1]}: one file too many; allowed: {MODES}, with .dat of CalculiX or .bdf of Nastran")
+    if kind == "universal":
+        ids, points, modes, units, passed = convert_universal.read_modes(found[0])
+    elif kind == "frd":
+        ids, points, modes = convert_calculix.read_frd(found[0])
+        for path in others:
+            convert_calculix.add_sections(path, modes)
+    else:
+        ids, points, modes = convert_nastran.read(given.files)
+    if units:
+        length = length or 1.0 / units.length
+        mass = mass or units.length / units.force
+    wanted = given.modes or [one.number for one in modes]
+    if missing := [number for number in wanted if number not in [one.number for one in modes]]:
+        raise InputError(f"{first}: has no mode {missing[0]}; it has {', '.join(str(one.number) for one in modes[:20])}")
+    modes = [one for one in modes if one.number in wanted]
+    return convert_modes.model_of(ids, points, modes, length or 1.0, mass or 1.0), passed
+
+
+def for_each(given, modes, what, option, attribute):
+    """The numbers of an option for the modes, or those of the file."""
+    values = given * len(modes) if given and len(given) == 1 else given
+    values = values or [getattr(one, attribute) for one in modes]
+    if len(values) != len(modes):
+        raise InputError(f"{option} has {len(values)} numbers for {len(modes)} modes; allowed: one, or one for each mode")
+    for one, value in zip(modes, values):
+        if value is None or not value > 0.0:
+            raise InputError(f"{one.place}: the file does not have the {what} of mode {one.number}; give {option}"
+                             + (", which is 1 for shapes normalised by the mass matrix" if attribute == "mass" else ""))
+    return values
+
+
+def modes(given):
+    """Converts modes, and yields what is said."""
+    model, passed = read_modes(given)
+    head = f"{len(model.modes)} modes at {len(model.ids)} nodes: {convert_modes.box_of(model)}"
+    units = f"a unit of length is {model.length:g} m, one of mass {model.mass:g} kg (--length, --mass)"
+    yield from (head, units)
+    up = "xyz".index(given.up[-1]), -1.0 if given.up[0] == "-" else 1.0
+    tracks = [convert_modes.track_of([word.strip() for word in words], model, up, given.within, given.supported_ends)
+              for words in given.track]
+    for i, track in enumerate(tracks, 1):
+        yield f"track {i}: {model.length * track.x[-1]:g} m, {track.words}"
+    yield f"{'mode':>6} {'Hz':>10} {'mass':>10} {'damping':>9}" + "".join(f"{f'track {i}':>10}" for i in range(1, len(tracks) + 1))
+    for i, one in enumerate(model.modes):
+        largest = "".join(f"{np.abs(track.shapes[:, i]).max():10.3g}" for track in tracks)
+        yield f"{one.number:6d} {one.frequency:10.5g} {words_of(one.mass)} {words_of(one.ratio, 9)}{largest}"
+        for number, track in enumerate(tracks, 1):
+            waves = convert_modes.half_waves(track.shapes[:, i], np.abs(model.shapes[:, :, i]).max())
+            if len(track.x) - 1 < convert_modes.ENOUGH * waves and waves > 1:
+                yield f"       {waves} half waves on track {number}, {len(track.x)} stations: fewer than {convert_modes.ENOUGH} in each"
+    for one in passed:
+        yield f"not read: {one}"
+    if not given.o:
+        return
+    if not tracks:
+        raise InputError("-o needs --track, with points of the model or numbers of nodes")
+    if not any(np.any(track.shapes) for track in tracks):
+        raise InputError("no mode deflects along the tracks; see --up")
+    masses = [model.mass * mass for mass in for_each(given.modal_mass, model.modes, "modal mass", "--modal-mass", "mass")]
+    ratios = for_each(given.damping, model.modes, "damping ratio", "--damping", "ratio")
+    if max(ratios) >= LARGEST_RATIO:
+        raise InputError(f"damping ratio {max(ratios):g}; allowed: below 1 (critical damping), not in per cent")
+    outputs = [convert_modes.output_of(text, model) for text in given.output]
+    about = [f"Modes of {', '.join(' '.join(pathlib.Path(path).name.split()) for path in given.files)}; up is {given.up}; {units}",
+             *(f"Track {i}: {' '.join(words)}; {track.words}" for i, (words, track) in enumerate(zip(given.track, tracks), 1))]
+    output_files.check(given.o, output_files.kind_of(given.o, ["txt"]), given.files)
+    output_files.write_text(given.o, convert_modes.text_of(model, tracks, ratios, masses, outputs, about))
+    yield str(given.o)
+
+
+def printable(line):
+    """A line without the signs of a file that control a terminal."""
+    return "".join(one if one.isprintable() else "?" for one in line)
+
+
+def words_of(value, width=10):
+    return f"{'-' if value is None else f'{value:.4g}':>{width}}"
+
+
+def main(words=None):
+    given = arguments(sys.argv[1:] if words is None else words)
+    try:
+        with np.errstate(all="ignore"):
+            for line in (records if given.what == "records" else modes)(given):
+                print(printable(line))
+    except (InputError, output_files.OutputError) as error:
+        print(printable(f"convert.py: {error}"), file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,309 @@
+"""Universal files (.unv, .uff): datasets 15 and 2411 (nodes), 55 (mode shapes), 58 and 58b (records), 164 (units).
+
+The datasets are those of the Structural Dynamics Research Laboratory, University of Cincinnati: a dataset stands between
+two lines -1, and its first line is its number. The fields have the columns of Fortran's formats.
+"""
+
+import re
+from typing import NamedTuple
+
+import numpy as np
+from convert_lines import Lines, count, fields, integer, label
+from convert_modes import Field, Mode
+from convert_records import Channel, known_unit
+
+WANTED = ("15", "55", "58", "58b", "164", "2411")
+TEXT_RECORDS, HEAD_RECORDS = 5, 11  # lines of text of datasets 55 and 58; lines of 58 before its data
+RESPONSE, TIME, NO_TIME = 1, 17, 18  # function type; types of abscissas: time, frequency (0 is unknown)
+# SI unit of a type of ordinates, and the exponents of length and force in it.
+QUANTITIES = {2: ("Pa", -2, 1), 8: ("m", 1, 0), 9: ("N", 0, 1), 11: ("m/s", 1, 0), 12: ("m/s2", 1, 0), 13: ("N", 0, 1),
+              15: ("Pa", -2, 1)}
+FUNCTIONS = {2: "auto spectrum", 3: "cross spectrum", 4: "frequency response function", 6: "coherence",
+             7: "auto correlation", 8: "cross correlation", 9: "power spectral density", 12: "spectrum"}
+DIRECTIONS = {1: "+X", 2: "+Y", 3: "+Z", 4: "+RX", 5: "+RY", 6: "+RZ"}
+NORMAL, COMPLEX = 2, (3, 7)  # kinds of analyses with modes
+DISPLACEMENT, VECTOR, ROTATIONS = 8, 2, 3
+LARGEST_IMAGINARY = 0.1  # of a complex shape turned to be real, relative to its real part
+
+
+class Dataset(NamedTuple):
+    kind: str
+    row: int        # of the line with its number
+    head: str       # this line
+    lines: list
+    data: bytes = b""  # of 58b
+
+    def at(self, i):
+        """The row of a line."""
+        return self.row + 1 + i
+
+
+class Units(NamedTuple):
+    """SI units in units of the file, as dataset 164 has them."""
+    length: float = 1.0
+    force: float = 1.0
+
+
+def is_universal(content):
+    return re.match(rb"\s*-1\s*\n", content) is not None
+
+
+def datasets(lines):
+    """Yields the datasets that are read; the others are passed over."""
+    while (line := lines.take()) is not None:
+        if not line.strip():
+            continue
+        if line.strip() != "-1":
+            lines.refuse("expected -1, which begins a dataset")
+        head = lines.need("the number of a dataset")
+        kind, row, found, data = (head.split() or [""])[0].lower(), lines.row, [], b""
+        if kind == "58b":
+            size = lines.read(count, head[31:43])
+            if lines.read(count, head[19:31]) != HEAD_RECORDS:
+                lines.refuse(f"58b with other than {HEAD_RECORDS} lines of text")
+            found = [lines.need("a line of the head of 58b") for _ in range(HEAD_RECORDS)]
+            data = lines.bytes(size, "the data")
+            while not (line := lines.need("-1, which ends the dataset")).strip():
+                pass
+            if line.strip() != "-1":
+                lines.refuse("expected -1, which ends the dataset: its head has another number of bytes than there are")
+        else:
+            while (line := lines.need(f"-1, which ends the dataset of row {row}")).strip() != "-1":
+                if kind in WANTED:
+                    found.append(line)
+        if kind in WANTED:
+            yield Dataset(kind, row, head, found, data)
+
+
+def need_lines(lines, one, least):
+    if len(one.lines) < least:
+        lines.refuse(f"dataset {one.kind} has {len(one.lines)} lines; expected at least {least}", one.row)
+
+
+def units_of(lines, one):
+    """The factors of dataset 164, which convert SI units to those of the file."""
+    need_lines(lines, one, 2)
+    values = lines.numbers([cell for cell in fields(one.lines[1], 25) if cell.strip()], one.at(1))
+    if len(values) < 2 or not np.all(values[:2] > 0.0):
+        lines.refuse("expected the factors of length and force, above 0", one.at(1))
+    return Units(*values[:2])
+
+
+# --- dataset 58
+
+def channel_of(lines, one, units):
+    """The record of a dataset 58, or the reason why it is none."""
+    need_lines(lines, one, HEAD_RECORDS)
+    texts = [label(line) for line in one.lines[:TEXT_RECORDS]]
+    dof, form, abscissa, ordinate = one.lines[5:9]
+    function = lines.read(integer, dof[:5], row=one.at(5))
+    kind_of_x = lines.read(integer, abscissa[:10], row=one.at(7))
+    where = f"row {one.row}, '{texts[0]}'"
+    if function not in (0, RESPONSE) or kind_of_x >= NO_TIME or (function == 0 and kind_of_x != TIME):
+        return f"{where}: {FUNCTIONS.get(function, f'function type {function}')} is no record over time"
+    words = form.split()
+    words = words if len(words) == 6 else [form[:10], form[10:20], form[20:30], *fields(form, 13, 30)]
+    kind, total, even = (lines.read(count, word, row=one.at(6)) for word in words[:3])
+    if kind not in (2, 4) or even not in (0, 1) or total < 2:
+        lines.refuse(f"ordinates of type {kind}, {total} values, spacing {even}; allowed: types 2 and 4 (real), at least 2 values, "
+                     "spacing 0 or 1", one.at(6))
+    first, step = lines.numbers(words[3:5], one.at(6)) if len(words) >= 5 else (0.0, 0.0)
+    values = data_of(lines, one, kind, total, even)
+    times = first + step * np.arange(total) if even else values[::2]
+    if not np.all(np.diff(times) > 0.0):
+        lines.refuse("the times do not increase", one.at(6))
+    name, unit, factor = axis_of(lines, one, ordinate, units)
+    place = lines.read(integer, dof[41:51], row=one.at(5)), lines.read(integer, dof[51:55], row=one.at(5))
+    return Channel(name_of(label(dof[31:41]), *place, name, texts[0]), unit, times * time_factor(lines, one, abscissa),
+                   factor * (values if even else values[1::2]), where)
+
+
+def name_of(entity, node, direction, axis, text):
+    """A name by what the head says: entity, node and direction of the response, or else its axis, or its first line."""
+    signs = DIRECTIONS.get(abs(direction), "")
+    signs = signs.replace("+", "-") if direction < 0 else signs
+    words = [one for one in (entity, axis, text) if one and one.upper() != "NONE"][:1] or ["record"]
+    return " ".join([*words, *([str(node)] if node and str(node) not in words[0] else []),
+                     *([signs] if signs and signs not in words[0] else [])])
+
+
+def data_of(lines, one, kind, total, even):
+    """The numbers of the data: ordinates, or abscissas and ordinates in turns."""
+    wanted, rows = total * (1 if even else 2), range(one.at(HEAD_RECORDS), one.at(len(one.lines)))
+    if one.kind == "58b":
+        return binary_of(lines, one, kind, total, even)
+    text = one.lines[HEAD_RECORDS:]
+    words, places = [], []
+    for row, line in zip(rows, text):
+        parts = line.split()
+        words += parts
+        places += [row] * len(parts)
+    if len(words) != wanted or any(len(word) > 25 for word in words):  # fields without blanks between them
+        words, places, widths = [], [], (13,) if kind == 2 else (20,) if even else (13, 20)
+        for row, line in zip(rows, text):
+            at, parts = 0, []
+            while line[at:].strip():
+                width = widths[len(parts) % len(widths)]
+                parts.append(line[at:at + width])
+                at += width
+            words += parts
+            places += [row] * len(parts)
+    if len(words) != wanted:
+        lines.refuse(f"{len(words)} numbers; by its head the dataset has {wanted}", one.row)
+    return lines.numbers(words, places)
+
+
+def binary_of(lines, one, kind, total, even):
+    order, form = (lines.read(count, one.head[at:at + 6], row=one.row) for at in (7, 13))
+    if order not in (1, 2) or form != 2:
+        lines.refuse(f"byte order {order}, format {form}; allowed: 1 or 2, and 2 (IEEE)", one.row)
+    sign, value = "<>"[order - 1], "f4" if kind == 2 else "f8"
+    allowed = [np.dtype(sign + value)] if even else [np.dtype([("x", sign + x), ("y", sign + value)])
+                                                     for x in dict.fromkeys(("f4", value))]
+    for dtype in allowed:
+        if dtype.itemsize * total == len(one.data):
+            found = np.frombuffer(one.data, dtype)
+            found = found if even else np.column_stack([found["x"].astype(float), found["y"].astype(float)]).ravel()
+            if not np.all(np.abs(found) < 1e50):
+                lines.refuse("the data have a value that is no finite number", one.row)
+            return found.astype(float)
+    lines.refuse(f"{len(one.data):,} bytes; {total:,} values have {' or '.join(f'{one.itemsize * total:,}' for one in allowed)}",
+                 one.row)
+
+
+def axis_of(lines, one, text, units):
+    """(name, unit, factor) of the ordinates: by the label of their unit, or else in SI by type and dataset 164."""
+    name, unit = label(text[26:46]), label(text[47:67])
+    if known_unit(unit) or units is None:
+        return name, known_unit(unit) or ("" if unit.upper() == "NONE" else unit), 1.0
+    kind, length, force = (lines.read(integer, text[a:b], row=one.at(8)) for a, b in ((0, 10), (10, 15), (15, 20)))
+    si, length, force = QUANTITIES.get(kind, ("", length, force))
+    if max(abs(length), abs(force)) > 4:
+        lines.refuse("expected exponents of length and force from -4 to 4", one.at(8))
+    return name, si or unit, units.length**-length * units.force**-force
+
+
+def time_factor(lines, one, text):
+    unit = label(text[47:67]).lower()
+    found = {"": 1.0, "none": 1.0, "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}.get(unit)
+    if found is None:
+        lines.refuse(f"the abscissa has the unit {unit}; allowed: s, ms, min", one.at(7))
+    return found
+
+
+def read_records(path):
+    """(channels, what is not read)"""
+    lines, units, found = Lines(path), None, []
+    sets = list(datasets(lines))
+    for one in sets:
+        if one.kind == "164":
+            units = units_of(lines, one)
+    for one in sets:
+        if one.kind in ("58", "58b"):
+            found.append(channel_of(lines, one, units))
+    channels = [one for one in found if isinstance(one, Channel)]
+    if not channels:
+        lines.refuse_file("the file has no dataset 58 of a record over time" + "".join(f"; {one}" for one in found[:1]))
+    return channels, [one for one in found if not isinstance(one, Channel)]
+
+
+# --- datasets 15, 2411 and 55
+
+def nodes_of(lines, one, nodes):
+    """Adds the nodes of a dataset 15 or 2411."""
+    step = 2 if one.kind == "2411" else 1
+    if len(one.lines) % step:
+        lines.refuse("the last node has no coordinates", one.at(len(one.lines) - 1))
+    for i in range(0, len(one.lines), step):
+        head = one.lines[i]
+        node, system = (lines.read(count, head[at:at + 10], row=one.at(i)) for at in (0, 10))
+        moved = lines.read(count, head[20:30], row=one.at(i))
+        if system > 1 or moved > 1:
+            lines.refuse(f"node {node} is in the coordinate system {max(system, moved)}; allowed: the global one, 0 or 1", one.at(i))
+        words = one.lines[i + 1].split() if step == 2 else head[40:].split()
+        if len(words) != 3:
+            words = fields(one.lines[i + 1], 25) if step == 2 else fields(head, 13, 40)
+        if node in nodes or len(words) != 3:
+            lines.refuse(f"node {node} is given twice" if node in nodes else f"node {node} has no three coordinates", one.at(i))
+        nodes[node] = lines.numbers(words, one.at(i + step - 1))
+
+
+def mode_of(lines, one, modes):
+    """Adds the shape of a dataset 55, if it has displacements of a mode."""
+    need_lines(lines, one, TEXT_RECORDS + 5)
+    _, analysis, characteristic, quantity, kind, size = lines.read(
+        lambda text: [integer(text[at:at + 10]) for at in range(0, 60, 10)], one.lines[5], row=one.at(5))
+    if analysis not in (NORMAL, *COMPLEX) or quantity != DISPLACEMENT or characteristic not in (VECTOR, ROTATIONS):
+        return f"row {one.row}: analysis {analysis}, characteristic {characteristic}, data {quantity} is no shape of a mode"
+    if kind not in (2, 4, 5, 6) or size != (3 if characteristic == VECTOR else 6):
+        lines.refuse(f"data type {kind} with {size} values; allowed: 2 or 5, and 3 or 6 values", one.at(5))
+    integers = [lines.read(integer, word, row=one.at(6)) for word in fields(one.lines[6], 10)]
+    reals = lines.numbers([word for word in spaced(one.lines[7], 13)], one.at(7))
+    if len(integers) < 4 or len(reals) < 2 or (analysis == NORMAL and len(reals) < 4):
+        lines.refuse("expected the numbers of the mode and its frequency, mass and damping", one.at(6))
+    turned = kind in (5, 6)
+    ids, values = shape_of(lines, one, size * (2 if turned else 1))
+    if turned:
+        values = real_shape(lines, one, values[:, ::2] + 1j * values[:, 1::2])
+    if analysis == NORMAL:
+        frequency, mass, ratio = reals[0], reals[1] or None, reals[2] or 0.5 * reals[3] or None
+    else:
+        size = np.hypot(reals[0], reals[1])
+        frequency, mass, ratio = size / (2.0 * np.pi), None, max(-reals[0] / size, 0.0) if size > 0.0 else None
+    number_of = integers[3]
+    if number_of in modes:
+        number_of = max(modes) + 1
+    modes[number_of] = Mode(number_of, frequency, mass, ratio, f"{lines.path}:{one.row}",
+                            {"DISP": Field(["x", "y", "z", "rx", "ry", "rz"][:values.shape[1]], ids, values)})
+    return None
+
+
+def spaced(line, width):
+    """The fields of a line, with or without blanks between them."""
+    words, cut = line.split(), [cell for cell in fields(line, width) if cell.strip()]
+    return words if len(words) >= len(cut) else cut
+
+
+def shape_of(lines, one, size):
+    """(numbers of nodes, values) of the data of a dataset 55."""
+    ids, words, rows, i = [], [], [], TEXT_RECORDS + 3
+    while i < len(one.lines):
+        ids.append(lines.read(count, one.lines[i], row=one.at(i)))
+        first, found = i, []
+        while len(found) < size and i + 1 < len(one.lines):
+            i += 1
+            found += spaced(one.lines[i], 13)
+        if len(found) != size:
+            lines.refuse(f"node {ids[-1]} has {len(found)} values; expected {size}", one.at(first))
+        words += found
+        rows += [one.at(first + 1)] * size
+        i += 1
+    return np.array(ids, dtype=np.int64), lines.numbers(words, rows).reshape(len(ids), size)
+
+
+def real_shape(lines, one, shape):
+    """A complex shape turned so that its imaginary part is least; refused if this part remains."""
+    angle = 0.5 * np.angle(np.sum(shape**2))
+    shape = shape * np.exp(-1j * angle)
+    rest, whole = np.linalg.norm(shape.imag), np.linalg.norm(shape.real)
+    if not rest <= LARGEST_IMAGINARY * whole:
+        lines.refuse(f"the shape is complex: its imaginary part is {rest / whole if whole else np.inf:.2g} of the real part; allowed: "
+                     f"up to {LARGEST_IMAGINARY}, modes of proportional damping", one.row)
+    return shape.real
+
+
+def read_modes(path):
+    """(numbers of nodes, coordinates, modes, units, what is not read)"""
+    lines, nodes, modes, units, passed = Lines(path), {}, {}, None, []
+    for one in datasets(lines):
+        if one.kind == "164":
+            units = units_of(lines, one)
+        elif one.kind in ("15", "2411"):
+            nodes_of(lines, one, nodes)
+        elif one.kind == "55":
+            passed.append(mode_of(lines, one, modes))
+    passed = [one for one in passed if one]
+    if not modes or not nodes:
+        lines.refuse_file(f"the file has no dataset {'55 with shapes of modes' if not modes else '15 or 2411 with nodes'}"
+                     + "".join(f"; {one}" for one in passed[:1]))
+    return np.array(list(nodes), dtype=np.int64), np.array(list(nodes.values())), list(modes.values()), units, passed
