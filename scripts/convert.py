@@ -2,8 +2,8 @@
 """Converts files of measuring systems and finite element programs:
 
   convert.py records FILE -o TABLE.csv            records over time: universal files (datasets 58 and 58b), MATLAB files
-  convert.py modes FILE... --track POINT POINT -o MODES.txt    mode shapes along tracks: universal files (dataset 55 with
-                                                  nodes), CalculiX (.frd, with .dat for section forces), Nastran (.pch, .bdf)
+  convert.py modes FILE... --track POINT POINT -o MODES.txt    mode shapes along tracks: universal files (datasets 55 and
+                                                  2414), CalculiX (.frd, with .dat for section forces), Nastran (.pch, .bdf)
 
 A table is read by every option that names one, such as fit_to_NAME_series; a file of modes by bridge_modes_file. Without -o
 the command lists what the files contain.
@@ -22,13 +22,13 @@ import convert_records
 import convert_universal
 import numpy as np
 import output_files
-from input_files import LARGEST_TABLE, InputError, bytes_of
+from input_files import InputError, bytes_of
 
 LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "km": 1e3, "in": 0.0254, "ft": 0.3048}
 MASSES = {"kg": 1.0, "t": 1e3, "g": 1e-3, "lb": 0.45359237, "slug": 14.593902937, "lbf.s2/in": 175.12683525}
-LARGEST_RATIO = 1.0
+BEGINNING = 1 << 16  # bytes of a file that show what it is
 RECORDS = "a universal file (.unv, .uff) with dataset 58, or a MATLAB file (.mat)"
-MODES = "a universal file with dataset 55, CalculiX's .frd in ASCII, or a punch file of Nastran"
+MODES = "a universal file with dataset 55 or 2414, CalculiX's .frd in ASCII, or a punch file of Nastran"
 
 
 def scale(known, what):
@@ -71,7 +71,7 @@ def arguments(words):
     modes.add_argument("--up", default="z", type=str.strip, choices=["x", "y", "z", "-x", "-y", "-z"], help="left out: z")
     modes.add_argument("--within", type=positive, metavar="D", help="distance of nodes to a track; left out: 0.05 of its length")
     modes.add_argument("--supported-ends", action="store_true", help="the shapes are 0 at the ends of the tracks")
-    modes.add_argument("--modes", type=int, nargs="+", metavar="N", help="the modes that are taken; left out: all")
+    modes.add_argument("--modes", type=int, nargs="+", default=[], metavar="N", help="the modes that are taken; left out: all")
     modes.add_argument("--damping", type=positive, nargs="+", metavar="RATIO", help="one for all modes, or one for each")
     modes.add_argument("--modal-mass", type=positive, nargs="+", metavar="M", help="in the unit of the model, one for all or for each")
     modes.add_argument("--length", type=scale(LENGTHS, "length in m"), metavar="UNIT", help="of the model: m, mm, in, ...; left out: m")
@@ -84,7 +84,7 @@ def arguments(words):
 
 def read_records(given):
     path = given.files[0]
-    content = bytes_of(path, LARGEST_TABLE)[:512]
+    content = bytes_of(path, BEGINNING, whole=False)
     if convert_universal.is_universal(content):
         return convert_universal.read_records(path)
     if convert_matlab.is_matlab(content):
@@ -113,38 +113,41 @@ def records(given):
         yield f"not read: {one}"
 
 
+def kind_of(path):
+    """The function that reads a file of modes; None: a file that belongs to another one."""
+    content = bytes_of(path, BEGINNING, whole=False)
+    for known, read in ((convert_universal.is_universal, convert_universal.read_modes),
+                        (convert_calculix.is_frd, convert_calculix.read_frd), (convert_nastran.is_punch, convert_nastran.read)):
+        if known(content):
+            return read
+    return None
+
+
 def read_modes(given):
-    """(model, what is said of units and of what is not read)"""
-    contents = {path: bytes_of(path, LARGEST_TABLE) for path in given.files}
-    first = given.files[0]
-    units, passed, length, mass = None, [], given.length, given.mass
-    kinds = {path: "universal" if convert_universal.is_universal(content[:512]) else
-             "frd" if convert_calculix.is_frd(content[:512]) else
-             "punch" if convert_nastran.is_punch(content) else "" for path, content in contents.items()}
-    del contents
-    found = [path for path in given.files if kinds[path]]
-    others = [path for path in given.files if not kinds[path]]
-    if not found:
-        raise InputError(f"{first}: is no file of modes; allowed: {MODES}")
-    kind = kinds[found[0]]
-    if kind != "punch" and (len(found) > 1 or len(others) > (1 if kind == "frd" else 0)):
-        raise InputError(f"{(found[1:] + others)[-1]}: one file too many; allowed: {MODES}, with .dat of CalculiX or .bdf of Nastran")
-    if kind == "universal":
-        ids, points, modes, units, passed = convert_universal.read_modes(found[0])
-    elif kind == "frd":
-        ids, points, modes = convert_calculix.read_frd(found[0])
+    """(model, what is not read)"""
+    kinds = {path: kind_of(path) for path in given.files}
+    first = next((path for path in given.files if kinds[path]), None)
+    if first is None:
+        raise InputError(f"{given.files[0]}: is no file of modes; allowed: {MODES}")
+    others, units, passed = [path for path in given.files if path != first], None, []
+    if kinds[first] is convert_nastran.read:
+        ids, points, modes = convert_nastran.read(given.files)
+    elif len(others) > (kinds[first] is convert_calculix.read_frd) or any(kinds[path] for path in others):
+        raise InputError(f"{others[-1]}: one file too many; allowed: {MODES}, with .dat of CalculiX or .bdf of Nastran")
+    elif kinds[first] is convert_calculix.read_frd:
+        ids, points, modes = convert_calculix.read_frd(first)
         for path in others:
             convert_calculix.add_sections(path, modes)
     else:
-        ids, points, modes = convert_nastran.read(given.files)
-    if units:
-        length = length or 1.0 / units.length
-        mass = mass or units.length / units.force
-    wanted = given.modes or [one.number for one in modes]
-    if missing := [number for number in wanted if number not in [one.number for one in modes]]:
-        raise InputError(f"{first}: has no mode {missing[0]}; it has {', '.join(str(one.number) for one in modes[:20])}")
-    modes = [one for one in modes if one.number in wanted]
-    return convert_modes.model_of(ids, points, modes, length or 1.0, mass or 1.0), passed
+        ids, points, modes, units, passed = convert_universal.read_modes(first)
+    length = given.length or (1.0 / units.length if units else 1.0)
+    mass = given.mass or (units.length / units.force if units else 1.0)
+    known = {one.number: one for one in modes}
+    for number in given.modes:
+        if number not in known:
+            raise InputError(f"{first}: has no mode {number}; it has {', '.join(map(str, list(known)[:20]))}")
+    modes = [known[number] for number in dict.fromkeys(given.modes or known)]
+    return convert_modes.model_of(ids, points, modes, length, mass), passed
 
 
 def for_each(given, modes, what, option, attribute):
@@ -189,7 +192,7 @@ def modes(given):
         raise InputError("no mode deflects along the tracks; see --up")
     masses = [model.mass * mass for mass in for_each(given.modal_mass, model.modes, "modal mass", "--modal-mass", "mass")]
     ratios = for_each(given.damping, model.modes, "damping ratio", "--damping", "ratio")
-    if max(ratios) >= LARGEST_RATIO:
+    if max(ratios) >= 1.0:
         raise InputError(f"damping ratio {max(ratios):g}; allowed: below 1 (critical damping), not in per cent")
     outputs = [convert_modes.output_of(text, model) for text in given.output]
     about = [f"Modes of {', '.join(' '.join(pathlib.Path(path).name.split()) for path in given.files)}; up is {given.up}; {units}",

@@ -1,4 +1,4 @@
-"""Universal files (.unv, .uff): datasets 15 and 2411 (nodes), 55 (mode shapes), 58 and 58b (records), 164 (units).
+"""Universal files (.unv, .uff): datasets 15 and 2411 (nodes), 55 and 2414 (mode shapes), 58 and 58b (records), 164 (units).
 
 The datasets are those of the Structural Dynamics Research Laboratory, University of Cincinnati: a dataset stands between
 two lines -1, and its first line is its number. The fields have the columns of Fortran's formats.
@@ -12,8 +12,8 @@ from convert_lines import Lines, count, fields, integer, label
 from convert_modes import Field, Mode
 from convert_records import Channel, known_unit
 
-WANTED = ("15", "55", "58", "58b", "164", "2411")
-TEXT_RECORDS, HEAD_RECORDS = 5, 11  # lines of text of datasets 55 and 58; lines of 58 before its data
+WANTED = ("15", "55", "58", "58b", "164", "2411", "2414")
+TEXT_RECORDS, HEAD_RECORDS = 5, 11  # lines of text of dataset 58; its lines before the data
 RESPONSE, TIME, NO_TIME = 1, 17, 18  # function type; types of abscissas: time, frequency (0 is unknown)
 # SI unit of a type of ordinates, and the exponents of length and force in it.
 QUANTITIES = {2: ("Pa", -2, 1), 8: ("m", 1, 0), 9: ("N", 0, 1), 11: ("m/s", 1, 0), 12: ("m/s2", 1, 0), 13: ("N", 0, 1),
@@ -229,33 +229,47 @@ def nodes_of(lines, one, nodes):
 
 
 def mode_of(lines, one, modes):
-    """Adds the shape of a dataset 55, if it has displacements of a mode."""
-    need_lines(lines, one, TEXT_RECORDS + 5)
+    """Adds the shape of a dataset 55 or 2414, if it has displacements of a mode at nodes; otherwise returns what it has."""
+    newer = one.kind == "2414"
+    line = 8 if newer else 5  # that of the kinds of the data
+    need_lines(lines, one, line + 5)
     _, analysis, characteristic, quantity, kind, size = lines.read(
-        lambda text: [integer(text[at:at + 10]) for at in range(0, 60, 10)], one.lines[5], row=one.at(5))
-    if analysis not in (NORMAL, *COMPLEX) or quantity != DISPLACEMENT or characteristic not in (VECTOR, ROTATIONS):
-        return f"row {one.row}: analysis {analysis}, characteristic {characteristic}, data {quantity} is no shape of a mode"
+        lambda text: [integer(text[at:at + 10]) for at in range(0, 60, 10)], one.lines[line], row=one.at(line))
+    at_nodes = not newer or lines.read(integer, one.lines[2], row=one.at(2)) == 1
+    if not at_nodes or analysis not in (NORMAL, *COMPLEX) or quantity != DISPLACEMENT or characteristic not in (VECTOR, ROTATIONS):
+        return f"row {one.row}: analysis {analysis}, characteristic {characteristic}, data {quantity} is no shape of a mode at nodes"
     if kind not in (2, 4, 5, 6) or size != (3 if characteristic == VECTOR else 6):
-        lines.refuse(f"data type {kind} with {size} values; allowed: 2 or 5, and 3 or 6 values", one.at(5))
-    integers = [lines.read(integer, word, row=one.at(6)) for word in fields(one.lines[6], 10)]
-    reals = lines.numbers([word for word in spaced(one.lines[7], 13)], one.at(7))
-    if len(integers) < 4 or len(reals) < 2 or (analysis == NORMAL and len(reals) < 4):
-        lines.refuse("expected the numbers of the mode and its frequency, mass and damping", one.at(6))
-    turned = kind in (5, 6)
-    ids, values = shape_of(lines, one, size * (2 if turned else 1))
-    if turned:
+        lines.refuse(f"data type {kind} with {size} values; allowed: 2 or 5, and 3 or 6 values", one.at(line))
+    number, frequency, mass, viscous, hysteretic, eigenvalue = modal_of(lines, one, newer, analysis)
+    ratio = viscous or 0.5 * hysteretic
+    if analysis != NORMAL:
+        frequency, mass = abs(eigenvalue) / (2.0 * np.pi), 0.0
+        ratio = max(-eigenvalue.real / abs(eigenvalue), 0.0) if eigenvalue else 0.0
+    complex_ = kind in (5, 6)
+    ids, values = shape_of(lines, one, size * (2 if complex_ else 1), 13 if newer else 8)
+    if complex_:
         values = real_shape(lines, one, values[:, ::2] + 1j * values[:, 1::2])
-    if analysis == NORMAL:
-        frequency, mass, ratio = reals[0], reals[1] or None, reals[2] or 0.5 * reals[3] or None
-    else:
-        size = np.hypot(reals[0], reals[1])
-        frequency, mass, ratio = size / (2.0 * np.pi), None, max(-reals[0] / size, 0.0) if size > 0.0 else None
-    number_of = integers[3]
-    if number_of in modes:
-        number_of = max(modes) + 1
-    modes[number_of] = Mode(number_of, frequency, mass, ratio, f"{lines.path}:{one.row}",
-                            {"DISP": Field(["x", "y", "z", "rx", "ry", "rz"][:values.shape[1]], ids, values)})
+    number = max(modes) + 1 if number in modes else number
+    modes[number] = Mode(number, frequency, mass or None, ratio or None, f"{lines.path}:{one.row}",
+                         {"DISP": Field(["x", "y", "z", "rx", "ry", "rz"][:values.shape[1]], ids, values)})
     return None
+
+
+def modal_of(lines, one, newer, analysis):
+    """(number, frequency, mass, viscous damping ratio, hysteretic one, eigenvalue) in the head of a mode."""
+    def reals(i, least):
+        found = lines.numbers(spaced(one.lines[i], 13), one.at(i))
+        if len(found) < least:
+            lines.refuse(f"{len(found)} numbers about the mode; expected {least}", one.at(i))
+        return found
+
+    place = (9, 50) if newer else (6, 30)
+    number = lines.read(integer, one.lines[place[0]][place[1]:place[1] + 10], row=one.at(place[0]))
+    if newer:
+        values, pair = reals(11, 6), reals(12, 2)
+        return number, values[1], *values[3:6], complex(*pair[:2])
+    values = reals(7, 4 if analysis == NORMAL else 2)
+    return (number, *values[:4], 0j) if analysis == NORMAL else (number, 0.0, 0.0, 0.0, 0.0, complex(*values[:2]))
 
 
 def spaced(line, width):
@@ -264,9 +278,9 @@ def spaced(line, width):
     return words if len(words) >= len(cut) else cut
 
 
-def shape_of(lines, one, size):
-    """(numbers of nodes, values) of the data of a dataset 55."""
-    ids, words, rows, i = [], [], [], TEXT_RECORDS + 3
+def shape_of(lines, one, size, i):
+    """(numbers of nodes, values) in the lines from i on."""
+    ids, words, rows = [], [], []
     while i < len(one.lines):
         ids.append(lines.read(count, one.lines[i], row=one.at(i)))
         first, found = i, []
@@ -300,10 +314,10 @@ def read_modes(path):
             units = units_of(lines, one)
         elif one.kind in ("15", "2411"):
             nodes_of(lines, one, nodes)
-        elif one.kind == "55":
+        elif one.kind in ("55", "2414"):
             passed.append(mode_of(lines, one, modes))
     passed = [one for one in passed if one]
     if not modes or not nodes:
-        lines.refuse_file(f"the file has no dataset {'55 with shapes of modes' if not modes else '15 or 2411 with nodes'}"
+        lines.refuse_file(f"the file has no dataset {'55 or 2414 with shapes of modes' if not modes else '15 or 2411 with nodes'}"
                      + "".join(f"; {one}" for one in passed[:1]))
     return np.array(list(nodes), dtype=np.int64), np.array(list(nodes.values())), list(modes.values()), units, passed

@@ -13,14 +13,14 @@ class InputError(ValueError):
     """A file that cannot be read, in one line that names it."""
 
 
-def bytes_of(path, most):
-    """The content of a file of at most so many bytes."""
+def bytes_of(path, most, whole=True):
+    """The content of a file of at most so many bytes, or its beginning."""
     try:
         handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
         with open(handle, "rb") as file:
             if not stat.S_ISREG(os.fstat(handle).st_mode):
                 raise InputError(f"{path}: is no ordinary file")
-            content = file.read(most + 1)
+            content = file.read(most + 1 if whole else most)
     except IsADirectoryError:
         raise InputError(f"{path}: is no ordinary file") from None
     except OSError as error:

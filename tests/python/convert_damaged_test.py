@@ -39,6 +39,7 @@ def files(folder):
         yield name, (folder / name).read_bytes(), ["records", "{}"]
     yield "m.unv", universal_of(SLAB).encode(), ["modes", "{}", *MODES]
     yield "c.unv", universal_of(SLAB, 0.4).encode(), ["modes", "{}", *MODES]
+    yield "n.unv", universal_of(SLAB, 0.4, newer=True).encode(), ["modes", "{}", *MODES]
     yield "m.frd", SLAB.read_bytes(), ["modes", "{}", *MODES]
     yield "m.dat", (MODELS / "skew_slab.dat").read_bytes(), ["modes", str(SLAB), "{}", *MODES, "--output", "a=SECTION:MY@MID"]
     yield "b.frd", (MODELS / "beam.frd").read_bytes(), ["modes", "{}", "--damping", "0.01", "--track", "1", "21"]

@@ -98,9 +98,9 @@ class Modes(Converting):
         self.assertAlmostEqual(np.abs(left[:, 1]).max() / np.abs(other[:, 1]).max(), 1.0, delta=1e-2)
         np.testing.assert_allclose(right[::-1, 1], left[:, 1], atol=0.02 * np.abs(left[:, 1]).max())  # the slab looks the same turned round
         np.testing.assert_allclose(right[::-1, 2], -left[:, 2], atol=0.02 * np.abs(left[:, 2]).max())
-        for turn, mass in ((None, ()), (0.7, ("--modal-mass", 1))):
-            path = self.write("s.unv", universal_of(SLAB, turn))
-            same, (again, _), _ = self.modes_of(path, *tracks, *mass, name=f"u{turn}.txt", damping=())
+        for turn, newer, mass in ((None, False, ()), (0.7, False, ("--modal-mass", 1)), (None, True, ()), (0.7, True, ())):
+            path = self.write("s.unv", universal_of(SLAB, turn, newer))
+            same, (again, _), _ = self.modes_of(path, *tracks, *mass, name=f"u{turn}{newer}.txt", damping=())
             np.testing.assert_allclose(same["frequency"], ccx["frequency"], rtol=1e-5)
             np.testing.assert_allclose(same["damping_ratio"], 0.02, rtol=1e-4)
             for i in (1, 2):
@@ -214,7 +214,6 @@ class Modes(Converting):
         self.refused("is complex", "modes", self.write("c.unv", universal_of(SLAB, 0.0).replace(" 0.00000E+00 ", " 1.00000E-03 ")))
         self.assertEqual(self.run_with("modes", SLAB, "--length", "furlong")[0], 2)
         self.assertFalse((self.folder / "x.txt").exists())
-        self.assertEqual(subprocess.run([BINARY, "-version"], capture_output=True).returncode, 0)
 
 
 if __name__ == "__main__":

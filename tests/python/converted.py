@@ -47,8 +47,8 @@ def units_164(length, force):
                          f"{273.15:25.17E}"])
 
 
-def universal_of(path, turn=None):
-    """The model and modes of a results file of CalculiX as datasets 2411 and 55; turn: shapes are complex, turned by this angle."""
+def universal_of(path, turn=None, newer=False):
+    """The model and modes of a results file of CalculiX as datasets 2411 and 55, or 2414; turn: shapes are complex, turned by this angle."""
     ids, points, modes = convert_calculix.read_frd(path)
     text = dataset(2411, [line for one, point in zip(ids, points)
                           for line in (f"{one:10d}{1:10d}{1:10d}{11:10d}", "".join(f"{x:25.16E}" for x in point).replace("E", "D"))])
@@ -59,11 +59,16 @@ def universal_of(path, turn=None):
         real = [mode.frequency, mode.mass, 0.02, 0.0] if turn is None else [-0.02 * omega, omega * np.sqrt(1 - 0.02**2), 0, 0, 0, 0]
         if turn is not None:
             values = (values[:, :, None] * [np.cos(turn), np.sin(turn)]).reshape(len(values), 6)
-        lines = [*TEXTS, f"{1:10d}{analysis:>10}{2:10d}{8:10d}{kind:10d}{3:10d}", f"{2:10d}{len(real):10d}{1:10d}{mode.number:10d}",
-                 *rows(real, 13, 5, 6)]
+        if newer:
+            lines = [f"{mode.number:10d}", "Mode shapes", f"{1:10d}", *TEXTS, f"{1:10d}{2:10d}{2:10d}{8:10d}{kind:10d}{3:10d}",
+                     f"{0:10d}{0:10d}{1:10d}{0:10d}{0:10d}{mode.number:10d}{0:10d}{0:10d}", f"{0:10d}{0:10d}",
+                     *rows([0.0, mode.frequency, 0.0, mode.mass, 0.02, 0.0], 13, 5, 6), *rows([0.0] * 6, 13, 5, 6)]
+        else:
+            lines = [*TEXTS, f"{1:10d}{analysis:>10}{2:10d}{8:10d}{kind:10d}{3:10d}",
+                     f"{2:10d}{len(real):10d}{1:10d}{mode.number:10d}", *rows(real, 13, 5, 6)]
         for one, row in zip(mode.fields["DISP"].ids, values):
             lines += [f"{one:10d}", *rows(row, 13, 5, 6)]
-        text += dataset(55, lines)
+        text += dataset(2414 if newer else 55, lines)
     return text
 
 
