@@ -1,17 +1,20 @@
 #!/usr/bin/python3
 """Converts files of measuring systems and finite element programs:
 
-  convert.py records FILE -o TABLE.csv            records over time: universal files (datasets 58 and 58b), MATLAB files
-  convert.py modes FILE... --track POINT POINT -o MODES.txt    mode shapes along tracks: universal files (datasets 55 and
-                                                  2414), CalculiX (.frd, with .dat for section forces), Nastran (.pch, .bdf)
+  convert.py records FILE -o TABLE.csv
+    records over time, from universal files (datasets 58 and 58b) and MATLAB files
+  convert.py modes FILE... --track POINT POINT -o MODES.txt
+    mode shapes along tracks, from universal files (datasets 55 and 2414), CalculiX (.frd, with .dat for forces of
+    sections) and Nastran (.pch with .bdf)
 
-A table is read by every option that names one, such as fit_to_NAME_series; a file of modes by bridge_modes_file. Without -o
-the command lists what the files contain.
+A table is read by every option that names one, such as fit_to_NAME_series; a file of modes by bridge_modes_file.
+Without -o the command lists what the files contain.
 """
 
 import argparse
 import pathlib
 import re
+import signal
 import sys
 
 import convert_calculix
@@ -31,27 +34,31 @@ RECORDS = "a universal file (.unv, .uff) with dataset 58, or a MATLAB file (.mat
 MODES = "a universal file with dataset 55 or 2414, CalculiX's .frd in ASCII, or a punch file of Nastran"
 
 
-def scale(known, what):
-    """A type of an argument: a unit, or its size in SI."""
-    def read(text):
-        try:
-            value = known[text] if text in known else float(text)
-        except ValueError:
-            value = 0.0
-        if not 1e-12 < value < 1e12:
-            raise argparse.ArgumentTypeError(f"'{text}'; allowed: {', '.join(known)}, or the {what} of a unit of the model")
-        return value
-    return read
+def number(text, least, most, allowed, known=()):
+    """The value of an argument: a known word, or a number between bounds."""
+    try:
+        value = known[text] if text in known else float(text)
+    except ValueError:
+        value = -1.0
+    if not least <= value <= most:
+        raise argparse.ArgumentTypeError(f"'{text}'; allowed: {allowed}")
+    return value
+
+
+def length(text):
+    return number(text, 1e-12, 1e12, f"{', '.join(LENGTHS)}, or the length in m of a unit of the model", LENGTHS)
+
+
+def mass(text):
+    return number(text, 1e-12, 1e12, f"{', '.join(MASSES)}, or the mass in kg of a unit of the model", MASSES)
 
 
 def positive(text):
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < 1e50:
-        raise argparse.ArgumentTypeError(f"'{text}'; allowed: a number above 0")
-    return value
+    return number(text, 1e-50, 1e50, "a number above 0")
+
+
+def ratio(text):
+    return number(text, 0.0, 0.999, "a ratio from 0 to 0.999 of critical damping, not in per cent")
 
 
 def arguments(words):
@@ -61,21 +68,21 @@ def arguments(words):
     records.add_argument("files", metavar="FILE", nargs=1)
     records.add_argument("-o", metavar="TABLE.csv", help="channels with other times go to TABLE_2.csv, ...")
     records.add_argument("--channels", nargs="+", default=[], metavar="NAME", help="left out: all")
-    records.add_argument("--time", metavar="NAME", help="of a MATLAB file: the vector of times in s; left out: t or time")
+    records.add_argument("--time", metavar="NAME", help="of a MATLAB file: the times in s; left out: t or time")
     records.add_argument("--rate", type=positive, metavar="HZ", help="of a MATLAB file without times: samples a second")
     modes = kinds.add_parser("modes", help="mode shapes along tracks")
     modes.add_argument("files", metavar="FILE", nargs="+")
     modes.add_argument("-o", metavar="MODES.txt")
     modes.add_argument("--track", nargs="+", action="append", default=[], metavar="POINT",
-                       help="points x,y,z of the model or numbers of nodes, from the left end of the bridge; once for each track")
+                       help="points x,y,z of the model or numbers of nodes, from the left end of the bridge; for each track")
     modes.add_argument("--up", default="z", type=str.strip, choices=["x", "y", "z", "-x", "-y", "-z"], help="left out: z")
-    modes.add_argument("--within", type=positive, metavar="D", help="distance of nodes to a track; left out: 0.05 of its length")
+    modes.add_argument("--within", type=positive, metavar="D", help="distance of nodes to a track; left out: 0.05 to 0.2 of it")
     modes.add_argument("--supported-ends", action="store_true", help="the shapes are 0 at the ends of the tracks")
-    modes.add_argument("--modes", type=int, nargs="+", default=[], metavar="N", help="the modes that are taken; left out: all")
-    modes.add_argument("--damping", type=positive, nargs="+", metavar="RATIO", help="one for all modes, or one for each")
-    modes.add_argument("--modal-mass", type=positive, nargs="+", metavar="M", help="in the unit of the model, one for all or for each")
-    modes.add_argument("--length", type=scale(LENGTHS, "length in m"), metavar="UNIT", help="of the model: m, mm, in, ...; left out: m")
-    modes.add_argument("--mass", type=scale(MASSES, "mass in kg"), metavar="UNIT", help="of the model: kg, t, ...; left out: kg")
+    modes.add_argument("--modes", type=int, nargs="+", default=[], metavar="N", help="their numbers; left out: all")
+    modes.add_argument("--damping", type=ratio, nargs="+", metavar="RATIO", help="one for all modes, or one for each")
+    modes.add_argument("--modal-mass", type=positive, nargs="+", metavar="M", help="one for all modes, or one for each")
+    modes.add_argument("--length", type=length, metavar="UNIT", help="of the model: m, mm, in, ...; left out: m")
+    modes.add_argument("--mass", type=mass, metavar="UNIT", help="of the model: kg, t, ...; left out: kg")
     modes.add_argument("--output", action="append", default=[], metavar="NAME=FIELD:COMPONENT@NUMBER[:UNIT]",
                        help="a result of a node, element or section")
     # A point such as -1,2,0 and the direction -z are no options.
@@ -116,11 +123,9 @@ def records(given):
 def kind_of(path):
     """The function that reads a file of modes; None: a file that belongs to another one."""
     content = bytes_of(path, BEGINNING, whole=False)
-    for known, read in ((convert_universal.is_universal, convert_universal.read_modes),
-                        (convert_calculix.is_frd, convert_calculix.read_frd), (convert_nastran.is_punch, convert_nastran.read)):
-        if known(content):
-            return read
-    return None
+    known = {convert_universal.read_modes: convert_universal.is_universal, convert_calculix.read_frd: convert_calculix.is_frd,
+             convert_nastran.read: convert_nastran.is_punch}
+    return next((read for read, fits in known.items() if fits(content)), None)
 
 
 def read_modes(given):
@@ -157,58 +162,68 @@ def for_each(given, modes, what, option, attribute):
     if len(values) != len(modes):
         raise InputError(f"{option} has {len(values)} numbers for {len(modes)} modes; allowed: one, or one for each mode")
     for one, value in zip(modes, values):
-        if value is None or not value > 0.0:
+        if value is None or value < 0.0:
             raise InputError(f"{one.place}: the file does not have the {what} of mode {one.number}; give {option}"
                              + (", which is 1 for shapes normalised by the mass matrix" if attribute == "mass" else ""))
     return values
 
 
-def modes(given):
-    """Converts modes, and yields what is said."""
-    model, passed = read_modes(given)
-    head = f"{len(model.modes)} modes at {len(model.ids)} nodes: {convert_modes.box_of(model)}"
-    units = f"a unit of length is {model.length:g} m, one of mass {model.mass:g} kg (--length, --mass)"
-    yield from (head, units)
-    up = "xyz".index(given.up[-1]), -1.0 if given.up[0] == "-" else 1.0
-    tracks = [convert_modes.track_of([word.strip() for word in words], model, up, given.within, given.supported_ends)
-              for words in given.track]
+def units_of(model):
+    return f"a unit of length is {model.length:g} m, one of mass {model.mass:g} kg (--length, --mass)"
+
+
+def listed(model, tracks):
+    """The lines about modes and tracks."""
+    yield f"{len(model.modes)} modes at {len(model.ids)} nodes: {convert_modes.box_of(model)}"
+    yield units_of(model)
     for i, track in enumerate(tracks, 1):
         yield f"track {i}: {model.length * track.x[-1]:g} m, {track.words}"
-    yield f"{'mode':>6} {'Hz':>10} {'mass':>10} {'damping':>9}" + "".join(f"{f'track {i}':>10}" for i in range(1, len(tracks) + 1))
+    heads = "".join(f"{f'track {i}':>10}" for i in range(1, len(tracks) + 1))
+    yield f"{'mode':>6} {'Hz':>10} {'mass':>10} {'damping':>10}{heads}"
     for i, one in enumerate(model.modes):
-        largest = "".join(f"{np.abs(track.shapes[:, i]).max():10.3g}" for track in tracks)
-        yield f"{one.number:6d} {one.frequency:10.5g} {words_of(one.mass)} {words_of(one.ratio, 9)}{largest}"
+        known = " ".join(f"{'-' if value is None else f'{value:.5g}':>10}" for value in (one.frequency, one.mass, one.ratio))
+        yield f"{one.number:6d} {known}" + "".join(f"{np.abs(track.shapes[:, i]).max():10.3g}" for track in tracks)
         for number, track in enumerate(tracks, 1):
             waves = convert_modes.half_waves(track.shapes[:, i], np.abs(model.shapes[:, :, i]).max())
-            if len(track.x) - 1 < convert_modes.ENOUGH * waves and waves > 1:
-                yield f"       {waves} half waves on track {number}, {len(track.x)} stations: fewer than {convert_modes.ENOUGH} in each"
-    for one in passed:
-        yield f"not read: {one}"
-    if not given.o:
-        return
+            if len(track.x) - 1 < convert_modes.ENOUGH * waves:
+                yield (f"       {waves} half waves on track {number}, {len(track.x)} stations: fewer than "
+                       f"{convert_modes.ENOUGH} in each")
+
+
+def write_modes(given, model, tracks):
+    """Writes the file of modes."""
     if not tracks:
         raise InputError("-o needs --track, with points of the model or numbers of nodes")
     if not any(np.any(track.shapes) for track in tracks):
         raise InputError("no mode deflects along the tracks; see --up")
-    masses = [model.mass * mass for mass in for_each(given.modal_mass, model.modes, "modal mass", "--modal-mass", "mass")]
+    masses = for_each(given.modal_mass, model.modes, "modal mass", "--modal-mass", "mass")
     ratios = for_each(given.damping, model.modes, "damping ratio", "--damping", "ratio")
-    if max(ratios) >= 1.0:
-        raise InputError(f"damping ratio {max(ratios):g}; allowed: below 1 (critical damping), not in per cent")
     outputs = [convert_modes.output_of(text, model) for text in given.output]
-    about = [f"Modes of {', '.join(' '.join(pathlib.Path(path).name.split()) for path in given.files)}; up is {given.up}; {units}",
+    names = ", ".join(" ".join(pathlib.Path(path).name.split()) for path in given.files)
+    about = [f"Modes of {names}; up is {given.up}; {units_of(model)}",
              *(f"Track {i}: {' '.join(words)}; {track.words}" for i, (words, track) in enumerate(zip(given.track, tracks), 1))]
     output_files.check(given.o, output_files.kind_of(given.o, ["txt"]), given.files)
+    masses = [model.mass * one for one in masses]
     output_files.write_text(given.o, convert_modes.text_of(model, tracks, ratios, masses, outputs, about))
-    yield str(given.o)
+
+
+def modes(given):
+    """Converts modes, and yields what is said."""
+    model, passed = read_modes(given)
+    up = "xyz".index(given.up[-1]), -1.0 if given.up[0] == "-" else 1.0
+    tracks = [convert_modes.track_of([word.strip() for word in words], model, up, given.within, given.supported_ends)
+              for words in given.track]
+    yield from listed(model, tracks)
+    for one in passed:
+        yield f"not read: {one}"
+    if given.o:
+        write_modes(given, model, tracks)
+        yield given.o
 
 
 def printable(line):
     """A line without the signs of a file that control a terminal."""
     return "".join(one if one.isprintable() else "?" for one in line)
-
-
-def words_of(value, width=10):
-    return f"{'-' if value is None else f'{value:.4g}':>{width}}"
 
 
 def main(words=None):
@@ -220,8 +235,12 @@ def main(words=None):
     except (InputError, output_files.OutputError) as error:
         print(printable(f"convert.py: {error}"), file=sys.stderr)
         return 2
+    except MemoryError:
+        print(f"convert.py: {given.files[0]}: needs more memory than there is", file=sys.stderr)
+        return 2
     return 0
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ends without a message if the reader of a pipe ends, such as head
     sys.exit(main())

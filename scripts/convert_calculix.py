@@ -84,7 +84,7 @@ def read_result(lines, line, parameters, modes):
     if lines.read(integer, parameters.get("PHID", "-1")) > 0:
         lines.refuse("modes of cyclic symmetry are not read", head)
     ids, values = block(lines, f"block {name}", VALUES[:len(components)], total)
-    mass = lines.read(number, parameters["PGM"], row=head) if "PGM" in parameters else None
+    mass = lines.read(number, parameters.get("PGM", "0"), row=head) or None
     found = modes.setdefault(mode, Mode(mode, frequency, mass, None, f"{lines.path}:{head}", {}))
     if name in found.fields or found.frequency != frequency:
         lines.refuse(f"a second {name} of mode {mode}; allowed: one step *FREQUENCY", head)

@@ -1,7 +1,7 @@
 """Modes of a finite element model along tracks, as a file of given modes (doc/guide/given_modes.md).
 
-The deflection is that of the nodes on the line of a track. Where too few nodes are on it, it is interpolated between the
-nodes in its neighbourhood: by cubic polynomials on triangles with continuous slopes (matplotlib.tri), never outside of them.
+The deflection is that of the nodes on the line of a track. Where too few are on it, it is interpolated between the
+nodes beside it, by cubic polynomials on triangles with continuous slopes (matplotlib.tri), never outside of them.
 """
 
 import re
@@ -13,16 +13,17 @@ from input_files import InputError
 
 AXES = "xyz"
 FEWEST, MOST = 5, 2000  # stations of a track
-NEIGHBOURHOODS = (0.05, 0.1, 0.2)  # of the length of a track: the distance of nodes, to the side and in height; the first that suffices
-ON_THE_LINE = 1e-5      # of the length of a track
-ENDS = 2e-4             # of the length of a track: how far its ends may be outside of the nodes, as rounded points are
-WIDEST = 2.5            # gap between two nodes on the line, in distances between neighbouring nodes
-ENOUGH = 8              # stations in a half wave
-UNITS = {"Pa": (1, -2), "N": (1, 0), "N m": (1, 1), "N/m": (1, -1), "N m/m": (1, 0), "m": (0, 1)}  # powers of force and length
-PLATE = {"FX": "N/m", "FY": "N/m", "FXY": "N/m", "QX": "N/m", "QY": "N/m", "MX": "N m/m", "MY": "N m/m", "MXY": "N m/m"}
-BEAM = {"M1A": "N m", "M2A": "N m", "M1B": "N m", "M2B": "N m", "V1": "N", "V2": "N", "AF": "N", "TRQ": "N m"}
-SECTION = {"FX": "N", "FY": "N", "FZ": "N", "MX": "N m", "MY": "N m", "MZ": "N m"}
-KNOWN = {"QUAD4": PLATE, "TRIA3": PLATE, "BAR": BEAM, "SECTION": SECTION, "DISP": dict.fromkeys(AXES, "m")}  # units by component
+# In lengths of a track: distances of the nodes that are used, to the side and in height, of which the first that
+# suffices counts; the distance of nodes that are on it; how far its ends may be outside of the nodes, by rounding.
+NEIGHBOURHOODS, ON_THE_LINE, ENDS = (0.05, 0.1, 0.2), 1e-4, 2e-4
+WIDEST = 2.5  # gap between two nodes on the line, in distances between neighbouring nodes
+ENOUGH = 8    # stations in a half wave
+# Powers of force and length in the units of outputs, and the units of the components that have only one.
+UNITS = {"Pa": (1, -2), "N": (1, 0), "N m": (1, 1), "N/m": (1, -1), "N m/m": (1, 0), "m": (0, 1)}
+SHELL = {**dict.fromkeys(("FX", "FY", "FXY", "QX", "QY"), "N/m"), **dict.fromkeys(("MX", "MY", "MXY"), "N m/m")}
+BAR = {**dict.fromkeys(("M1A", "M2A", "M1B", "M2B", "TRQ"), "N m"), **dict.fromkeys(("V1", "V2", "AF"), "N")}
+SECTION = {**dict.fromkeys(("FX", "FY", "FZ"), "N"), **dict.fromkeys(("MX", "MY", "MZ"), "N m")}
+KNOWN = {"QUAD4": SHELL, "TRIA3": SHELL, "BAR": BAR, "SECTION": SECTION, "DISP": dict.fromkeys(AXES, "m")}
 
 
 class Field(NamedTuple):
@@ -57,25 +58,31 @@ class Track(NamedTuple):
     words: str          # about its nodes
 
 
+def places_of(ids, wanted):
+    """The places of numbers that occur once in a list."""
+    order = np.argsort(ids)
+    return order[np.searchsorted(ids, wanted, sorter=order)]
+
+
 def model_of(ids, points, modes, length, mass):
     """The model of nodes and modes; InputError where they do not belong together."""
-    if len(np.unique(ids)) < len(ids):
-        raise InputError(f"node {np.sort(ids)[:-1][np.diff(np.sort(ids)) == 0][0]} is given twice")
+    common = np.unique(ids)
+    if len(common) < len(ids):
+        raise InputError(f"{modes[0].place}: the file has a node twice")
     for one in modes:
-        if "DISP" not in one.fields or len(one.fields["DISP"].components) < 3:
+        shape = one.fields.get("DISP")
+        if shape is None or len(shape.components) < 3:
             raise InputError(f"{one.place}: mode {one.number} has no displacements along x, y and z")
         if not one.frequency > 0.0:
-            raise InputError(f"{one.place}: mode {one.number} has {one.frequency:g} Hz: a motion of the whole body; leave it out "
-                             "by --modes, or support the model")
-        of = one.fields["DISP"].ids
-        if len(np.unique(of)) < len(of):
+            raise InputError(f"{one.place}: mode {one.number} has {one.frequency:g} Hz, a motion of the whole body; "
+                             "leave it out by --modes, or support the model")
+        if len(np.unique(shape.ids)) < len(shape.ids):
             raise InputError(f"{one.place}: mode {one.number} has a node twice")
-        ids = np.intersect1d(ids, of) if one is not modes[0] else np.intersect1d(known := ids, of)
-    if not len(ids):
+        common = np.intersect1d(common, shape.ids)
+    if not len(common):
         raise InputError(f"{modes[0].place}: no node with coordinates has displacements in all modes")
-    shapes = np.stack([one.fields["DISP"].values[np.argsort(of := one.fields["DISP"].ids)]
-                       [np.searchsorted(np.sort(of), ids), :3] for one in modes], axis=2)
-    return Model(ids, points[np.argsort(known)][np.searchsorted(np.sort(known), ids)], modes, shapes, length, mass)
+    shapes = [one.fields["DISP"].values[places_of(one.fields["DISP"].ids, common), :3] for one in modes]
+    return Model(common, points[places_of(ids, common)], modes, np.stack(shapes, axis=2), length, mass)
 
 
 def point_of(word, model):
@@ -95,7 +102,7 @@ def point_of(word, model):
 
 
 def on_polyline(corners, points):
-    """(arc length, distance, foot) of points beside a polyline in a plane: of the nearest segment."""
+    """(arc lengths, distances) of points beside a polyline in a plane."""
     best = np.full(len(points), np.inf)
     arc, start = np.zeros(len(points)), 0.0
     for first, last in zip(corners[:-1], corners[1:]):
@@ -109,23 +116,24 @@ def on_polyline(corners, points):
 
 
 def neighbours(model, corners, up, within):
-    """(nodes, arc lengths, distances) near a track: where nodes are above each other, the nearest in height, or their mean."""
+    """The nodes near a track: (groups of nodes at one place in plan, their arc lengths, distances and places).
+    Of nodes above each other, the nearest in height count."""
     plan = [axis for axis in range(3) if axis != up]
     arc, side = on_polyline(corners[:, plan], model.points[:, plan])
-    places = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(corners[:, plan], axis=0), axis=1))])
-    height = np.abs(model.points[:, up] - np.interp(arc, places, corners[:, up]))
-    near = np.flatnonzero((side <= within) & (height <= within))
-    step = ON_THE_LINE * places[-1]
-    groups = {}
-    for i in near:
-        groups.setdefault(tuple(np.round(model.points[i, plan] / step).astype(np.int64)), []).append(i)
-    chosen = [[i for i in group if height[i] <= min(height[group]) + step] for group in groups.values()]
-    firsts = np.array([group[0] for group in chosen], dtype=int)
-    return chosen, arc[firsts], side[firsts], model.points[firsts][:, plan]
+    ends = np.linalg.norm(np.diff(corners[:, plan], axis=0), axis=1).cumsum()
+    height = np.abs(model.points[:, up] - np.interp(arc, [0.0, *ends], corners[:, up]))
+    step, groups = ON_THE_LINE * ends[-1], {}
+    for i in np.flatnonzero((side <= within) & (height <= within)):
+        x, y = np.round(model.points[i, plan] / step).astype(np.int64)
+        beside = [(x + a, y + b) for a in (0, -1, 1) for b in (0, -1, 1)]
+        groups.setdefault(next((one for one in beside if one in groups), (x, y)), []).append(i)
+    nearest = [[i for i in group if height[i] <= min(height[group]) + step] for group in groups.values()]
+    firsts = np.array([group[0] for group in nearest], dtype=int)
+    return nearest, arc[firsts], side[firsts], model.points[firsts][:, plan]
 
 
 def track_of(words, model, up, within=None, supported=False):
-    """The shapes along a track. words: its points; up: (axis, sign); supported: the shapes are 0 at both of its ends."""
+    """The shapes along a track. words: its points; up: (axis, sign); supported: the shapes are 0 at both ends."""
     corners = np.array([point_of(word, model) for word in words])
     lengths = np.linalg.norm(np.diff(np.delete(corners, up[0], axis=1), axis=0), axis=1)
     name = f"track {' '.join(words[:2])}{' ...' if len(words) > 2 else ''}"
@@ -144,8 +152,8 @@ def track_within(name, corners, model, up, within, length, supported):
     (axis, sign), step = up, ON_THE_LINE * length
     groups, arc, side, points = neighbours(model, corners, axis, within)
     if len(groups) < FEWEST - (2 if supported else 0):
-        raise InputError(f"{name}: {len(groups)} nodes within {within:g} of it; allowed: at least {FEWEST}, see --within. The nodes are in "
-                         f"{box_of(model)}")
+        raise InputError(f"{name}: {len(groups)} nodes within {within:g} of it; allowed: at least {FEWEST}, see --within. "
+                         f"The nodes are in {box_of(model)}")
     deflection = sign * np.array([model.shapes[group, axis].mean(axis=0) for group in groups])
     on = np.flatnonzero(side <= step)
     on = on[np.argsort(arc[on])]
@@ -159,8 +167,8 @@ def track_within(name, corners, model, up, within, length, supported):
             x[0], x[-1] = 0.0, length
             return Track(x, shapes, f"{len(on)} nodes on it" + (", its ends at rest" if supported else ""))
     if len(on) == len(groups):
-        raise InputError(f"{name}: {len(on)} nodes on it, from {arc[on].min() if len(on) else 0:g} to {arc[on].max() if len(on) else 0:g} of {length:g}; "
-                         f"allowed: at least {FEWEST}, at its ends too: name others, or --supported-ends")
+        raise InputError(f"{name}: {len(on)} nodes on it, from {arc[on].min():g} to {arc[on].max():g} of {length:g}; allowed: "
+                         f"at least {FEWEST}, also at its ends; name another track, or --supported-ends")
     return between(name, corners, axis, points, deflection, within, spacing(points))
 
 
@@ -192,9 +200,9 @@ def between(name, corners, axis, points, deflection, within, step):
     distance = np.array([np.linalg.norm(points - one, axis=1).min() for one in stations])
     outside = np.flatnonzero(~np.all(np.isfinite(shapes), axis=1) | (distance > within))
     if len(outside):
-        raise InputError(f"{name}: at {x[outside[0]]:g} of {x[-1]:g} it leaves the nodes within {within:g} of it; shorten it, move it, or see "
-                         "--within: shapes are not continued beyond nodes")
-    return Track(x, shapes, f"{len(x)} stations between {len(points)} nodes, of which the nearest is at most {distance.max():.3g} away")
+        raise InputError(f"{name}: at {x[outside[0]]:g} of {x[-1]:g} it leaves the nodes within {within:g} of it; shorten it, "
+                         "move it, or see --within: shapes are not continued beyond nodes")
+    return Track(x, shapes, f"{len(x)} stations between {len(points)} nodes, the nearest at most {distance.max():.3g} away")
 
 
 def box_of(model):
@@ -206,7 +214,7 @@ def output_of(text, model):
     a minus before FIELD reverses the sign"""
     found = re.fullmatch(r"([A-Za-z0-9_-]+)=(-?)(\w+):(\w+)@([^:]+)(?::(.+))?", text)
     if not found:
-        raise InputError(f"--output {text}: allowed: NAME=FIELD:COMPONENT@NUMBER, such as sag=DISP:z@12, and :UNIT after it")
+        raise InputError(f"--output {text}: allowed: NAME=FIELD:COMPONENT@NUMBER, such as sag=DISP:z@12, and then :UNIT")
     name, minus, field, component, number, unit = found.groups()
     values = []
     for one in model.modes:
@@ -215,9 +223,8 @@ def output_of(text, model):
         results = one.fields[field]
         at = np.flatnonzero(results.ids.astype(str) == number)
         if component not in results.components or not len(at):
-            raise InputError(
-                f"--output {text}: {field} of mode {one.number} has the components {', '.join(results.components)}, at "
-                f"{len(results.ids)} places: {', '.join(map(str, results.ids[:5]))}{', ...' if len(results.ids) > 5 else ''}")
+            raise InputError(f"--output {text}: {field} of mode {one.number} has {', '.join(results.components)} at "
+                             f"{len(results.ids)} places: {', '.join(map(str, results.ids[:5]))}, ...")
         values.append(results.values[at[0], results.components.index(component)])
     unit = unit or KNOWN.get(field, {}).get(component, "Pa" if field == "STRESS" else "")
     if unit not in UNITS:
@@ -232,8 +239,8 @@ def text_of(model, tracks, ratios, masses, outputs, about):
     def row(*cells):
         return ", ".join(one if isinstance(one, str) else f"{one:.9g}" for one in cells)
 
-    lines = [f"# {one}" for one in about]
-    lines += [row("frequency", *(one.frequency for one in model.modes)), row("modal_mass", *masses), row("damping_ratio", *ratios)]
+    lines = [*(f"# {one}" for one in about), row("frequency", *(one.frequency for one in model.modes)),
+             row("modal_mass", *masses), row("damping_ratio", *ratios)]
     lines += [row("output", name, unit, *values) for name, unit, values in outputs]
     for i, track in enumerate(tracks, 1):
         lines.append(f"track, {i}")
@@ -242,8 +249,8 @@ def text_of(model, tracks, ratios, masses, outputs, about):
 
 
 def half_waves(shape, largest):
-    """The half waves of a shape, by its changes of sign above a hundredth of its largest value; 0 if it hardly deflects."""
-    if np.abs(shape).max() < 1e-6 * largest:
+    """The half waves of a shape, by the signs of what exceeds a hundredth of its largest value; 0 if it hardly deflects."""
+    if np.abs(shape).max() < 1e-3 * largest:
         return 0
     signs = np.sign(shape[np.abs(shape) > 0.01 * np.abs(shape).max()])
-    return 1 + np.count_nonzero(np.diff(signs))
+    return 1 + int(np.count_nonzero(np.diff(signs)))
