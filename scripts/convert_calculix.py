@@ -48,7 +48,7 @@ def read_frd(path):
         elif line.startswith("    2C"):
             total, form = head_of(lines, line, 36)
             if form != LONG or ids is not None:
-                lines.refuse("expected one block of nodes in the long ASCII format, as ccx writes it without OUTPUT=BINARY")
+                lines.refuse("expected one block of nodes in the long ASCII format of ccx")
             ids, points = block(lines, "block of nodes", VALUES[:3], total)
         elif line.startswith("  100C"):
             read_result(lines, line, parameters, modes)
@@ -68,7 +68,7 @@ def read_result(lines, line, parameters, modes):
     total, form = head_of(lines, line, 36)
     kind, mode, head = lines.read(count, line[56:58]), lines.read(count, line[58:63]), lines.row
     if form != LONG:
-        lines.refuse("the block is not in the long ASCII format, as ccx writes it without OUTPUT=BINARY")
+        lines.refuse("the block is not in the long ASCII format of ccx")
     line = lines.need("-4, the name of the results")
     if not line.startswith(" -4"):
         lines.refuse("expected -4, the name of the results")
@@ -110,7 +110,8 @@ def add_sections(path, modes):
             found[mode][name] = section(lines)
     for one in modes:
         if one.number in frequencies and abs(frequencies[one.number] - one.frequency) > 1e-5 * abs(one.frequency):
-            lines.refuse_file(f"mode {one.number} has {frequencies[one.number]:g} Hz here, {one.frequency:g} Hz in the results file")
+            lines.refuse_file(f"mode {one.number} has {frequencies[one.number]:g} Hz here, {one.frequency:g} Hz in the "
+                              "results file")
         names = list(found[one.number])
         if set(names) != set(found[modes[0].number]):
             lines.refuse_file(f"mode {one.number} has other sections than mode {modes[0].number}: the file is cut off")

@@ -1,6 +1,6 @@
-"""Records in MATLAB files: versions 5 to 7.2 by SciPy, 7.3, which is HDF5, by h5py. Only numbers are read: no objects, no functions.
+"""Records in MATLAB files: versions 5 to 7.2 by SciPy; 7.3, which is HDF5, by h5py. Only numbers count, no objects.
 
-A process of its own with limits of time and memory reads the file first, as that of results files (checked_results.py).
+A process with limits of time and memory reads the file first, as it does with results files (checked_results.py).
 """
 
 import warnings
@@ -56,7 +56,7 @@ def of_scipy(path):
 
 
 def of_hdf5(path):
-    """{name: vector} of the numbers in a file of version 7.3, also in structures; MATLAB's dimensions are reversed there."""
+    """{name: vector} of the numbers in a file of version 7.3, also in structures; dimensions are reversed in it."""
     found = {}
 
     def add(group, name, depth):
@@ -107,7 +107,8 @@ def read_records(path, time=None, rate=None):
         found = [time] if time else [name for name in vectors if is_time(name)]
         if len(found) != 1 or found[0] not in vectors:
             words = f"no vector {time}" if time else f"{len(found)} vectors of times"
-            raise InputError(f"{path}: has {words}; name it by --time, or give the samples a second by --rate; there are {listed}")
+            raise InputError(f"{path}: has {words}; name it by --time, or give the samples a second by --rate; there are "
+                             f"{listed}")
         times = vectors.pop(found[0])
         if not (np.all(np.isfinite(times)) and np.all(np.diff(times) > 0.0)):
             raise InputError(f"{path}: the times {found[0]} do not increase, or have NaN; they are in s")

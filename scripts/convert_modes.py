@@ -43,7 +43,7 @@ class Mode(NamedTuple):
 
 
 class Model(NamedTuple):
-    """Nodes of which all modes have displacements; lengths and masses in units of the model."""
+    """Nodes with displacements; lengths and masses in units of the model."""
     ids: np.ndarray
     points: np.ndarray  # [node, axis]
     modes: list
@@ -66,9 +66,6 @@ def places_of(ids, wanted):
 
 def model_of(ids, points, modes, length, mass):
     """The model of nodes and modes; InputError where they do not belong together."""
-    common = np.unique(ids)
-    if len(common) < len(ids):
-        raise InputError(f"{modes[0].place}: the file has a node twice")
     for one in modes:
         shape = one.fields.get("DISP")
         if shape is None or len(shape.components) < 3:
@@ -76,13 +73,18 @@ def model_of(ids, points, modes, length, mass):
         if not one.frequency > 0.0:
             raise InputError(f"{one.place}: mode {one.number} has {one.frequency:g} Hz, a motion of the whole body; "
                              "leave it out by --modes, or support the model")
-        if len(np.unique(shape.ids)) < len(shape.ids):
-            raise InputError(f"{one.place}: mode {one.number} has a node twice")
-        common = np.intersect1d(common, shape.ids)
-    if not len(common):
-        raise InputError(f"{modes[0].place}: no node with coordinates has displacements in all modes")
-    shapes = [one.fields["DISP"].values[places_of(one.fields["DISP"].ids, common), :3] for one in modes]
-    return Model(common, points[places_of(ids, common)], modes, np.stack(shapes, axis=2), length, mass)
+        of = np.sort(shape.ids)
+        if one is modes[0]:
+            known = of
+        elif not np.array_equal(of, known):
+            raise InputError(f"{one.place}: mode {one.number} has {len(of)} nodes, other ones than the {len(known)} of mode "
+                             f"{modes[0].number}: the file is cut off, or not of one model")
+    if np.any(np.diff(known) == 0) or np.any(np.diff(np.sort(ids)) == 0):
+        raise InputError(f"{modes[0].place}: a node is in the file twice")
+    if len(without := np.setdiff1d(known, ids)):
+        raise InputError(f"{modes[0].place}: {len(without)} nodes have displacements but no coordinates, such as {without[0]}")
+    shapes = [one.fields["DISP"].values[places_of(one.fields["DISP"].ids, known), :3] for one in modes]
+    return Model(known, points[places_of(ids, known)], modes, np.stack(shapes, axis=2), length, mass)
 
 
 def point_of(word, model):
@@ -90,7 +92,7 @@ def point_of(word, model):
     if word.isdecimal():
         at = np.flatnonzero(model.ids.astype(str) == word)
         if not len(at):
-            raise InputError(f"--track {word}: there is no node {word} with displacements in all modes")
+            raise InputError(f"--track {word}: there is no node {word} with displacements")
         return model.points[at[0]]
     try:
         point = np.array([float(one) for one in word.split(",")])

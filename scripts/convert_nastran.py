@@ -1,6 +1,6 @@
 """Modes of Nastran (MSC, Simcenter, OptiStruct, MYSTRAN): the punch file (.pch) and the GRID entries of the bulk data.
 
-Punch files have cards of 80 columns: a head of lines with $, then the values in fields of 18 columns, continued by -CONT-.
+Punch files have cards of 80 columns: heads with $, then values in fields of 18 columns, continued by -CONT-.
 """
 
 import re
@@ -34,7 +34,7 @@ def read(paths):
     if not modes:
         lines.refuse_file("the files have no mode shapes; allowed: a punch file with $EIGENVECTOR, DISPLACEMENT(PUNCH)=ALL")
     if not grid:
-        lines.refuse_file("the files have no GRID entries; name the bulk data too (.bdf, .dat), with the file that INCLUDE names")
+        lines.refuse_file("the files have no GRID entries; name the bulk data too (.bdf, .dat), and what INCLUDE names")
     return np.array(list(grid), dtype=np.int64), np.array(list(grid.values())), list(modes.values())
 
 

@@ -1,14 +1,15 @@
-"""Universal files (.unv, .uff): datasets 15 and 2411 (nodes), 55 and 2414 (mode shapes), 58 and 58b (records), 164 (units).
+"""Universal files (.unv, .uff): datasets 15 and 2411 (nodes), 55 and 2414 (mode shapes), 58 and 58b (records), 164
+(units).
 
-The datasets are those of the Structural Dynamics Research Laboratory, University of Cincinnati: a dataset stands between
-two lines -1, and its first line is its number. The fields have the columns of Fortran's formats.
+The Structural Dynamics Research Laboratory of the University of Cincinnati describes the datasets: each is between two
+lines -1, and its first line is its number. The fields have the columns of Fortran's formats.
 """
 
 import re
 from typing import NamedTuple
 
 import numpy as np
-from convert_lines import Lines, count, fields, integer, label
+from convert_lines import LARGEST_VALUE, Lines, count, fields, integer, label
 from convert_modes import Field, Mode
 from convert_records import Channel, known_unit
 
@@ -20,9 +21,10 @@ QUANTITIES = {2: ("Pa", -2, 1), 8: ("m", 1, 0), 9: ("N", 0, 1), 11: ("m/s", 1, 0
               15: ("Pa", -2, 1)}
 FUNCTIONS = {2: "auto spectrum", 3: "cross spectrum", 4: "frequency response function", 6: "coherence",
              7: "auto correlation", 8: "cross correlation", 9: "power spectral density", 12: "spectrum"}
+TIMES = {**dict.fromkeys(("", "none", "s", "sec", "second", "seconds"), 1.0), "ms": 1e-3, "min": 60.0}  # units, in s
 DIRECTIONS = {1: "+X", 2: "+Y", 3: "+Z", 4: "+RX", 5: "+RY", 6: "+RZ"}
 NORMAL, COMPLEX = 2, (3, 7)  # kinds of analyses with modes
-DISPLACEMENT, VECTOR, ROTATIONS = 8, 2, 3
+SHAPES = {(8, 2): 3, (8, 3): 6}  # displacements, with rotations: (type, characteristic) and numbers at a node
 LARGEST_IMAGINARY = 0.1  # of a complex shape turned to be real, relative to its real part
 
 
@@ -89,8 +91,6 @@ def units_of(lines, one):
     return Units(*values[:2])
 
 
-# --- dataset 58
-
 def channel_of(lines, one, units):
     """The record of a dataset 58, or the reason why it is none."""
     need_lines(lines, one, HEAD_RECORDS)
@@ -105,8 +105,8 @@ def channel_of(lines, one, units):
     words = words if len(words) == 6 else [form[:10], form[10:20], form[20:30], *fields(form, 13, 30)]
     kind, total, even = (lines.read(count, word, row=one.at(6)) for word in words[:3])
     if kind not in (2, 4) or even not in (0, 1) or total < 2:
-        lines.refuse(f"ordinates of type {kind}, {total} values, spacing {even}; allowed: types 2 and 4 (real), at least 2 values, "
-                     "spacing 0 or 1", one.at(6))
+        lines.refuse(f"ordinates of type {kind}, {total} values, spacing {even}; allowed: types 2 and 4 (real), at least "
+                     "2 values, spacing 0 or 1", one.at(6))
     first, step = lines.numbers(words[3:5], one.at(6)) if len(words) >= 5 else (0.0, 0.0)
     values = data_of(lines, one, kind, total, even)
     times = first + step * np.arange(total) if even else values[::2]
@@ -129,31 +129,27 @@ def name_of(entity, node, direction, axis, text):
 
 def data_of(lines, one, kind, total, even):
     """The numbers of the data: ordinates, or abscissas and ordinates in turns."""
-    wanted, rows = total * (1 if even else 2), range(one.at(HEAD_RECORDS), one.at(len(one.lines)))
     if one.kind == "58b":
         return binary_of(lines, one, kind, total, even)
-    text = one.lines[HEAD_RECORDS:]
-    words, places = [], []
-    for row, line in zip(rows, text):
-        parts = line.split()
-        words += parts
-        places += [row] * len(parts)
-    if len(words) != wanted or any(len(word) > 25 for word in words):  # fields without blanks between them
-        words, places, widths = [], [], (13,) if kind == 2 else (20,) if even else (13, 20)
-        for row, line in zip(rows, text):
-            at, parts = 0, []
-            while line[at:].strip():
-                width = widths[len(parts) % len(widths)]
-                parts.append(line[at:at + width])
-                at += width
-            words += parts
-            places += [row] * len(parts)
+    wanted, text = total * (1 if even else 2), one.lines[HEAD_RECORDS:]
+    parts = [line.split() for line in text]
+    if sum(map(len, parts)) != wanted:  # fields without blanks between them
+        widths = (13,) if kind == 2 else (20,) if even else (13, 20)
+        parts = [columns_of(line, widths) for line in text]
+    words = [word for part in parts for word in part]
     if len(words) != wanted:
         lines.refuse(f"{len(words)} numbers; by its head the dataset has {wanted}", one.row)
-    return lines.numbers(words, places)
+    return lines.numbers(words, [one.at(HEAD_RECORDS + i) for i, part in enumerate(parts) for _ in part])
+
+
+def columns_of(line, widths):
+    """The fields of a line, whose widths alternate."""
+    ends = np.cumsum(np.resize(widths, len(line.rstrip()) // min(widths) + 1))
+    return [cell for first, end in zip([0, *ends], ends) if (cell := line[first:end]).strip()]
 
 
 def binary_of(lines, one, kind, total, even):
+    """The numbers of a dataset 58b: as in the text, with single precision or both for the abscissas."""
     order, form = (lines.read(count, one.head[at:at + 6], row=one.row) for at in (7, 13))
     if order not in (1, 2) or form != 2:
         lines.refuse(f"byte order {order}, format {form}; allowed: 1 or 2, and 2 (IEEE)", one.row)
@@ -164,11 +160,11 @@ def binary_of(lines, one, kind, total, even):
         if dtype.itemsize * total == len(one.data):
             found = np.frombuffer(one.data, dtype)
             found = found if even else np.column_stack([found["x"].astype(float), found["y"].astype(float)]).ravel()
-            if not np.all(np.abs(found) < 1e50):
+            if not np.all(np.abs(found) <= LARGEST_VALUE):
                 lines.refuse("the data have a value that is no finite number", one.row)
             return found.astype(float)
-    lines.refuse(f"{len(one.data):,} bytes; {total:,} values have {' or '.join(f'{one.itemsize * total:,}' for one in allowed)}",
-                 one.row)
+    expected = " or ".join(f"{dtype.itemsize * total:,}" for dtype in allowed)
+    lines.refuse(f"{len(one.data):,} bytes of data; {total:,} values have {expected}", one.row)
 
 
 def axis_of(lines, one, text, units):
@@ -185,29 +181,24 @@ def axis_of(lines, one, text, units):
 
 def time_factor(lines, one, text):
     unit = label(text[47:67]).lower()
-    found = {"": 1.0, "none": 1.0, "s": 1.0, "sec": 1.0, "second": 1.0, "seconds": 1.0, "ms": 1e-3, "min": 60.0}.get(unit)
-    if found is None:
+    if unit not in TIMES:
         lines.refuse(f"the abscissa has the unit {unit}; allowed: s, ms, min", one.at(7))
-    return found
+    return TIMES[unit]
 
 
 def read_records(path):
     """(channels, what is not read)"""
-    lines, units, found = Lines(path), None, []
+    lines, units = Lines(path), None
     sets = list(datasets(lines))
     for one in sets:
         if one.kind == "164":
             units = units_of(lines, one)
-    for one in sets:
-        if one.kind in ("58", "58b"):
-            found.append(channel_of(lines, one, units))
+    found = [channel_of(lines, one, units) for one in sets if one.kind in ("58", "58b")]
     channels = [one for one in found if isinstance(one, Channel)]
     if not channels:
         lines.refuse_file("the file has no dataset 58 of a record over time" + "".join(f"; {one}" for one in found[:1]))
     return channels, [one for one in found if not isinstance(one, Channel)]
 
-
-# --- datasets 15, 2411 and 55
 
 def nodes_of(lines, one, nodes):
     """Adds the nodes of a dataset 15 or 2411."""
@@ -216,29 +207,29 @@ def nodes_of(lines, one, nodes):
         lines.refuse("the last node has no coordinates", one.at(len(one.lines) - 1))
     for i in range(0, len(one.lines), step):
         head = one.lines[i]
-        node, system = (lines.read(count, head[at:at + 10], row=one.at(i)) for at in (0, 10))
-        moved = lines.read(count, head[20:30], row=one.at(i))
+        node, system, moved = (lines.read(count, head[at:at + 10], row=one.at(i)) for at in (0, 10, 20))
         if system > 1 or moved > 1:
-            lines.refuse(f"node {node} is in the coordinate system {max(system, moved)}; allowed: the global one, 0 or 1", one.at(i))
+            lines.refuse(f"node {node} is in the coordinate system {max(system, moved)}; allowed: the global one, 0 or 1",
+                         one.at(i))
         words = one.lines[i + 1].split() if step == 2 else head[40:].split()
         if len(words) != 3:
             words = fields(one.lines[i + 1], 25) if step == 2 else fields(head, 13, 40)
         if node in nodes or len(words) != 3:
-            lines.refuse(f"node {node} is given twice" if node in nodes else f"node {node} has no three coordinates", one.at(i))
+            lines.refuse(f"node {node} {'is given twice' if node in nodes else 'has no three coordinates'}", one.at(i))
         nodes[node] = lines.numbers(words, one.at(i + step - 1))
 
 
 def mode_of(lines, one, modes):
-    """Adds the shape of a dataset 55 or 2414, if it has displacements of a mode at nodes; otherwise returns what it has."""
+    """Adds the shape of a dataset 55 or 2414; returns what it has if these are no displacements of a mode at nodes."""
     newer = one.kind == "2414"
     line = 8 if newer else 5  # that of the kinds of the data
     need_lines(lines, one, line + 5)
     _, analysis, characteristic, quantity, kind, size = lines.read(
         lambda text: [integer(text[at:at + 10]) for at in range(0, 60, 10)], one.lines[line], row=one.at(line))
     at_nodes = not newer or lines.read(integer, one.lines[2], row=one.at(2)) == 1
-    if not at_nodes or analysis not in (NORMAL, *COMPLEX) or quantity != DISPLACEMENT or characteristic not in (VECTOR, ROTATIONS):
-        return f"row {one.row}: analysis {analysis}, characteristic {characteristic}, data {quantity} is no shape of a mode at nodes"
-    if kind not in (2, 4, 5, 6) or size != (3 if characteristic == VECTOR else 6):
+    if not at_nodes or analysis not in (NORMAL, *COMPLEX) or (quantity, characteristic) not in SHAPES:
+        return f"row {one.row}: analysis {analysis}, characteristic {characteristic}, data {quantity} is no shape at nodes"
+    if kind not in (2, 4, 5, 6) or size != SHAPES[quantity, characteristic]:
         lines.refuse(f"data type {kind} with {size} values; allowed: 2 or 5, and 3 or 6 values", one.at(line))
     number, frequency, mass, viscous, hysteretic, eigenvalue = modal_of(lines, one, newer, analysis)
     ratio = viscous or 0.5 * hysteretic
@@ -268,8 +259,9 @@ def modal_of(lines, one, newer, analysis):
     if newer:
         values, pair = reals(11, 6), reals(12, 2)
         return number, values[1], *values[3:6], complex(*pair[:2])
-    values = reals(7, 4 if analysis == NORMAL else 2)
-    return (number, *values[:4], 0j) if analysis == NORMAL else (number, 0.0, 0.0, 0.0, 0.0, complex(*values[:2]))
+    if analysis == NORMAL:
+        return number, *reals(7, 4)[:4], 0j
+    return number, 0.0, 0.0, 0.0, 0.0, complex(*reals(7, 2)[:2])
 
 
 def spaced(line, width):
@@ -301,8 +293,8 @@ def real_shape(lines, one, shape):
     shape = shape * np.exp(-1j * angle)
     rest, whole = np.linalg.norm(shape.imag), np.linalg.norm(shape.real)
     if not rest <= LARGEST_IMAGINARY * whole:
-        lines.refuse(f"the shape is complex: its imaginary part is {rest / whole if whole else np.inf:.2g} of the real part; allowed: "
-                     f"up to {LARGEST_IMAGINARY}, modes of proportional damping", one.row)
+        lines.refuse(f"the shape is complex: its imaginary part is {rest / whole if whole else np.inf:.2g} of the real part; "
+                     f"allowed: up to {LARGEST_IMAGINARY}, modes of proportional damping", one.row)
     return shape.real
 
 
@@ -318,6 +310,6 @@ def read_modes(path):
             passed.append(mode_of(lines, one, modes))
     passed = [one for one in passed if one]
     if not modes or not nodes:
-        lines.refuse_file(f"the file has no dataset {'55 or 2414 with shapes of modes' if not modes else '15 or 2411 with nodes'}"
-                     + "".join(f"; {one}" for one in passed[:1]))
+        missing = "15 or 2411 with nodes" if modes else "55 or 2414 with shapes of modes"
+        lines.refuse_file(f"the file has no dataset {missing}" + "".join(f"; {one}" for one in passed[:1]))
     return np.array(list(nodes), dtype=np.int64), np.array(list(nodes.values())), list(modes.values()), units, passed

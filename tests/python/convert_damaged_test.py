@@ -1,9 +1,8 @@
-"""scripts/convert.py on damaged files: changed, cut and lengthened at random, each ends with a table or with one line."""
+"""scripts/convert.py on files changed, cut and lengthened at random: each ends with a table or with one line."""
 
 import contextlib
 import io
 import json
-import os
 import pathlib
 import resource
 import subprocess
@@ -17,7 +16,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from converted import MODELS, SKEW_TRACK, convert, dataset, head_58, rows, universal_of, units_164, write_hdf5  # noqa: E402
 
 MUTANTS, MEMORY = 40, 3 << 30  # of each file; bytes of the process
-WORDS = [b"nan", b"-1", b"99999999999", b"1e999", b"-inf", b"", b"\xff\x00", b"0", b"1.0E+40", b"\n", b"   -3", b",", b"GRID,", b"58b"]
+WORDS = [b"nan", b"-1", b"99999999999", b"1e999", b"-inf", b"", b"\xff\x00", b"0", b"1.0E+40", b"\n", b"   -3", b",", b"GRID,",
+         b"58b"]
 SLAB, PUNCH = MODELS / "skew_slab.frd", [MODELS / "skew_slab.pch", MODELS / "skew_slab.bdf"]
 MODES = ["--damping", "0.01", "--modal-mass", "1", "--track", *SKEW_TRACK]
 
@@ -96,8 +96,8 @@ def run_all():
 class Damaged(unittest.TestCase):
     def test_each_ends_with_a_table_or_with_one_line(self):
         """In a process with limited memory, so that neither a signal nor a traceback is overlooked."""
-        done = subprocess.run([sys.executable, "-B", __file__, "--run"], capture_output=True, text=True, env=os.environ, preexec_fn=lambda:
-                              resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY)))
+        done = subprocess.run([sys.executable, "-B", __file__, "--run"], capture_output=True, text=True,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY)))
         self.assertEqual((done.returncode, done.stderr[-3000:]), (0, ""))
         for ended in json.loads(done.stdout).values():
             self.assertEqual(sum(ended), MUTANTS + 1)

@@ -17,13 +17,14 @@ from converted import SKEW_TRACK as LEFT  # noqa: E402
 from small_runs import BINARY  # noqa: E402
 import convert_modes  # noqa: E402
 
-SLAB, BEAM = MODELS / "skew_slab.frd", MODELS / "beam.frd"
+SLAB, BEAM, PUNCH = MODELS / "skew_slab.frd", MODELS / "beam.frd", [MODELS / "skew_slab.pch", MODELS / "skew_slab.bdf"]
 # The track on the other side of the middle of the slab.
 RIGHT = [f"{-2.25 * SKEW:.4f},-2.25,0", f"{15.0 - 2.25 * SKEW:.4f},-2.25,0"]
 IN_MM = ["--length", "mm", "--mass", "t"]
 # Of the beam in beam.inp, in SI: Timoshenko's beam, simply supported.
 SPAN, WIDTH, HEIGHT, E, RHO = 20.0, 0.5, 1.0, 3.0e10, 2500.0
-EI, MASS, INERTIA, GA = E * WIDTH * HEIGHT**3 / 12.0, RHO * WIDTH * HEIGHT, RHO * WIDTH * HEIGHT**3 / 12.0, 5.0 / 12.0 * E * WIDTH * HEIGHT
+EI, GA = E * WIDTH * HEIGHT**3 / 12.0, 5.0 / 6.0 * 0.5 * E * WIDTH * HEIGHT
+MASS, INERTIA = RHO * WIDTH * HEIGHT, RHO * WIDTH * HEIGHT**3 / 12.0
 
 
 def frequency_of(n):
@@ -63,7 +64,7 @@ class Modes(Converting):
             np.testing.assert_allclose(shape, exact, atol=2e-3)
             # The modal mass of a sine is half of the beam's, for a shape of 1 m; rotation of the sections adds k^2 h^2 / 12.
             scaled = rows["modal_mass"][n - 1] / np.abs(track[:, n]).max()**2
-            self.assertAlmostEqual(scaled / (0.5 * MASS * SPAN * (1.0 + (n * np.pi / SPAN * HEIGHT)**2 / 12.0)), 1.0, delta=5e-3)
+            self.assertAlmostEqual(scaled / (0.5 * SPAN * (MASS + INERTIA * (n * np.pi / SPAN)**2)), 1.0, delta=5e-3)
         unit, moments = rows["sagging"]
         self.assertEqual(unit, "N m")
         self.assertAlmostEqual(-moments[0] / (EI * (np.pi / SPAN)**2 * rows["middle"][1][0]), 1.0, delta=1e-2)
@@ -93,11 +94,11 @@ class Modes(Converting):
         tracks = ["--track", *LEFT, "--track", *RIGHT]
         ccx, (left, right), out = self.modes_of(SLAB, MODELS / "skew_slab.dat", *tracks, "--output", "moment=SECTION:MY@MID")
         self.assertIn("15 m, ", out)
-        punch, (other, _), _ = self.modes_of(MODELS / "skew_slab.pch", MODELS / "skew_slab.bdf", *tracks, "--modal-mass", 1, name="p.txt")
+        punch, (other, _), _ = self.modes_of(*PUNCH, *tracks, "--modal-mass", 1, name="p.txt")
         self.assertAlmostEqual(ccx["frequency"][0] / punch["frequency"][0], 1.0, delta=2e-3)
         self.assertAlmostEqual(np.abs(left[:, 1]).max() / np.abs(other[:, 1]).max(), 1.0, delta=1e-2)
-        np.testing.assert_allclose(right[::-1, 1], left[:, 1], atol=0.02 * np.abs(left[:, 1]).max())  # the slab looks the same turned round
-        np.testing.assert_allclose(right[::-1, 2], -left[:, 2], atol=0.02 * np.abs(left[:, 2]).max())
+        for i, sign in ((1, 1.0), (2, -1.0)):  # the slab looks the same turned round
+            np.testing.assert_allclose(right[::-1, i], sign * left[:, i], atol=0.02 * np.abs(left[:, i]).max())
         for turn, newer, mass in ((None, False, ()), (0.7, False, ("--modal-mass", 1)), (None, True, ()), (0.7, True, ())):
             path = self.write("s.unv", universal_of(SLAB, turn, newer))
             same, (again, _), _ = self.modes_of(path, *tracks, *mass, name=f"u{turn}{newer}.txt", damping=())
@@ -117,8 +118,8 @@ class Modes(Converting):
         self.modes_of(SLAB, "--track", *LEFT, "--track", *RIGHT)
         peaks = []
         for track in (1, 2):
-            (self.folder / "scene.yml").write_text(f"bridge: {{modes_file: m.txt, track: {track}}}\nload: {{forces: [2.0e5], speed: 40.0}}\n"
-                                                   "output: {probes: 7.5}\n", encoding="utf-8")
+            scene = f"bridge: {{modes_file: m.txt, track: {track}}}\nload: {{forces: [2.0e5], speed: 40.0}}\noutput: {{probes: 7.5}}\n"
+            (self.folder / "scene.yml").write_text(scene, encoding="utf-8")
             done = subprocess.run([BINARY, "-options_file", "scene.yml", "-output_file", f"{track}.h5"], cwd=self.folder,
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -134,7 +135,8 @@ class Modes(Converting):
             x, y = (one.ravel() for one in np.meshgrid(np.linspace(0.0, 15.0, along + 1), np.linspace(-5.0, 5.0, across + 1)))
             shape = np.sin(np.pi * x / 15.0) * (1.0 + 0.06 * y)
             points = np.column_stack([x + y * SKEW, y, 0.0 * y])
-            model = convert_modes.Model(np.arange(len(x)), points, [], np.column_stack([0 * x, 0 * x, shape])[:, :, None], 1.0, 1.0)
+            shapes = np.column_stack([0 * x, 0 * x, shape])[:, :, None]
+            model = convert_modes.Model(np.arange(len(x)), points, [], shapes, 1.0, 1.0)
             track = convert_modes.track_of([f"{1.7 * SKEW},1.7,0", f"{15.0 + 1.7 * SKEW},1.7,0"], model, (2, 1.0))
             errors.append(np.abs(track.shapes[:, 0] - 1.102 * np.sin(np.pi * track.x / 15.0)).max())
         self.assertLess(errors[0], 5e-3)
@@ -164,54 +166,65 @@ class Modes(Converting):
         for line in grids.splitlines():
             cells = line.split(",")
             wide.append("GRID*   {:>16}{:>16}{:>16}{:>16}\n*       {:>16}".format(*cells[1:6]) if cells[0] == "GRID" else line)
-        first = self.modes_of(MODELS / "skew_slab.pch", MODELS / "skew_slab.bdf", "--track", *LEFT, "--modal-mass", 1)[1][0]
-        for name, text in (("w.bdf", "\n".join(wide)), ("e.bdf", grids.replace(",5.0000,", ",.5+1,").replace(",-5.0000,", ",-5.D0,"))):
-            again = self.modes_of(MODELS / "skew_slab.pch", self.write(name, text), "--track", *LEFT, "--modal-mass", 1, name=f"{name}.txt")
-            np.testing.assert_allclose(again[1][0], first, rtol=1e-9, atol=1e-15)
-        self.refused("node 1 has its positions in the coordinate system 7", "modes", MODELS / "skew_slab.pch",
+        words = ["--track", *LEFT, "--modal-mass", 1]
+        first = self.modes_of(*PUNCH, *words)[1][0]
+        short = grids.replace(",5.0000,", ",.5+1,").replace(",-5.0000,", ",-5.D0,")
+        for name, text in (("w.bdf", "\n".join(wide)), ("e.bdf", short)):
+            again = self.modes_of(PUNCH[0], self.write(name, text), *words, name=f"{name}.txt")[1][0]
+            np.testing.assert_allclose(again, first, rtol=1e-9, atol=1e-15)
+        self.refused("node 1 has its positions in the coordinate system 7", "modes", PUNCH[0],
                      self.write("c.bdf", grids.replace("GRID,1,,", "GRID,1,7,")))
-        self.refused("no GRID entries; name the bulk data too", "modes", MODELS / "skew_slab.pch")
+        self.refused("1 nodes have displacements but no coordinates, such as 7", "modes", PUNCH[0],
+                     self.write("n.bdf", grids.replace("GRID,7,,", "$RID,7,,")))
+        self.refused("no GRID entries; name the bulk data too", "modes", PUNCH[0])
+        cut = PUNCH[0].read_text().splitlines()[:-10]
+        self.refused("mode 3 has 40 nodes, other ones than the 45 of mode 1: the file is cut off", "modes", PUNCH[1],
+                     self.write("c.pch", "\n".join(cut) + "\n"))
 
     def test_forces_of_elements_in_a_punch_file(self):
         """Cards of MSC Nastran for bars and shells: the moment of the model's units in N m."""
-        lines = (MODELS / "skew_slab.pch").read_text().splitlines()
+        lines = PUNCH[0].read_text().splitlines()
         head = [line for line in lines if line.startswith("$EIGENVALUE") and "MODE =     1" in line][0]
-        cards = [line[:72] for line in ("$TITLE   = X", "$SUBTITLE=", "$LABEL   =", "$ELEMENT FORCES", "$REAL OUTPUT", "$SUBCASE ID =           1",
-                                        "$ELEMENT TYPE =          34  BAR", head, f"{7:10d}{'':8}{1.5:18.6E}{2.5:18.6E}{3.5:18.6E}",
-                                        f"-CONT-{'':12}{4.5:18.6E}{5.5:18.6E}{6.5:18.6E}", f"-CONT-{'':12}{7.5:18.6E}{8.5:18.6E}")]
+        cards = ["$TITLE   = X", "$SUBTITLE=", "$LABEL   =", "$ELEMENT FORCES", "$REAL OUTPUT", "$SUBCASE ID =           1",
+                 "$ELEMENT TYPE =          34  BAR", head[:72], f"{7:10d}{'':8}{1.5:18.6E}{2.5:18.6E}{3.5:18.6E}",
+                 f"-CONT-{'':12}{4.5:18.6E}{5.5:18.6E}{6.5:18.6E}", f"-CONT-{'':12}{7.5:18.6E}{8.5:18.6E}"]
         path = self.write("f.pch", "\n".join(lines + [f"{line:72}{i:8d}" for i, line in enumerate(cards)]) + "\n")
-        words = [path, MODELS / "skew_slab.bdf", "--track", *LEFT, "--modes", 1, "--modal-mass", 1]
+        words = [path, PUNCH[1], "--track", *LEFT, "--modes", 1, "--modal-mass", 1]
         rows, _, _ = self.modes_of(*words, "--output", "m=BAR:M1A@7", "--output", "n=-BAR:AF@7")
         self.assertEqual((rows["m"][0], rows["m"][1][0], rows["n"][0], rows["n"][1][0]), ("N m", 1.5, "N", -7.5))
-        self.refused("BAR of mode 1 has M1A, M2A", "modes", *words, "--damping", 1e-2, "--output", "m=BAR:MY@7", "-o",
-                     self.folder / "x.txt")
+        self.refused("BAR of mode 1 has M1A, M2A", "modes", *words, "--damping", 1e-2, "--output", "m=BAR:MY@7",
+                     "-o", self.folder / "x.txt")
 
     def test_refusals(self):
         text, out = SLAB.read_text(), ["-o", self.folder / "x.txt", "--damping", "0.01", "--track", *LEFT]
         line = text.splitlines()[20]
         for content, part in ((text[:5000], ": the file ends here"), (text.replace(line + "\n", "", 1), "lines; by its head there are"),
                               (text.replace(line, line[:20] + "         NaN" + line[32:], 1), ":21: '"),
-                              (re.sub("    2C                *93", "    2C                     999999999", text, count=1), "by its head there are 999999999"),
-                              (text.replace("MODAL", "OTHER").replace("2    1OTHER", "0    1OTHER").replace("2    2OTHER", "0    2OTHER")
-                               .replace("2    3OTHER", "0    3OTHER"), "no mode shapes"),
+                              (re.sub("    2C                *93", f"    2C{999999999:30d}", text, count=1),
+                               "by its head there are 999999999"),
+                              (re.sub("2(    [123])MODAL", r"0\1OTHER", text), "no mode shapes"),
                               ("x,y\n1,2\n", "is no file of modes; allowed: a universal file")):
             with self.subTest(part):
                 self.refused(part, "modes", self.write("bad.frd", content), *out)
-        for words, part in ((["--track", "0,0,0", "1,0"], "--track 1,0: allowed: points x,y,z"), (["--track", "0,0,0"], "at least two points"),
+        for words, part in ((["--track", "0,0,0", "1,0"], "--track 1,0: allowed: points x,y,z"),
+                            (["--track", "0,0,0"], "at least two points"),
                             (["--track", "0,0,0", "99999"], "there is no node 99999"),
                             (["--track", "-9,0,0", "15,0,0"], "shapes are not continued beyond nodes"),
-                            (["--track", "0,40,0", "15,40,0"], "0 nodes within 3 of it"), (["--modes", "8"], "has no mode 8; it has 1, 2, 3"),
+                            (["--track", "0,40,0", "15,40,0"], "0 nodes within 3 of it"),
+                            (["--modes", "8"], "has no mode 8; it has 1, 2, 3"),
                             (["--damping", "0.1", "0.2"], "2 numbers for 3 modes"),
-                            (["--output", "a=STRESS:SXX@1"], "mode 1 has DISP"), (["--output", "a b=DISP:z@1"], "allowed: NAME=FIELD"),
-                            (["--output", "a=DISP:z@1:kg"], "add its unit, :Pa, :N"), (["--output", "a=DISP:z@9999"], "at 93 places: 1, 2, 3")):
+                            (["--output", "a=STRESS:SXX@1"], "mode 1 has DISP"),
+                            (["--output", "a b=DISP:z@1"], "allowed: NAME=FIELD"),
+                            (["--output", "a=DISP:z@1:kg"], "add its unit, :Pa, :N"),
+                            (["--output", "a=DISP:z@9999"], "at 93 places: 1, 2, 3")):
             with self.subTest(part):
                 self.refused(part, "modes", SLAB, *out, *words)
-        self.refused("does not have the damping ratio of mode 1; give --damping", "modes", SLAB, "--track", *LEFT, "-o", self.folder / "x.txt")
-        self.refused("give --modal-mass, which is 1 for shapes normalised by the mass matrix", "modes", MODELS / "skew_slab.pch",
-                     MODELS / "skew_slab.bdf", *out)
+        self.refused("does not have the damping ratio of mode 1; give --damping", "modes", SLAB, "--track", *LEFT, *out[:2])
+        self.refused("give --modal-mass, which is 1 for shapes normalised by the mass matrix", "modes", *PUNCH, *out)
         self.refused("-o needs --track", "modes", SLAB, "-o", self.folder / "x.txt")
         self.refused("mode 1 has 1.96199 Hz here, 6.92984 Hz in the results file", "modes", SLAB, MODELS / "beam.dat")
-        self.refused("is complex", "modes", self.write("c.unv", universal_of(SLAB, 0.0).replace(" 0.00000E+00 ", " 1.00000E-03 ")))
+        mixed = universal_of(SLAB, 0.0).replace(" 0.00000E+00 ", " 1.00000E-03 ")
+        self.refused("is complex", "modes", self.write("c.unv", mixed))
         for words in (["--length", "furlong"], ["--damping", "2"], ["--within", "nan"]):
             status, _, error = self.run_with("modes", SLAB, *words)
             self.assertEqual(status, 2)

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import numpy as np
+from scipy.io import savemat
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from converted import Converting, dataset, head_58, rows, units_164, write_hdf5  # noqa: E402
@@ -72,7 +73,8 @@ class Records(Converting):
                 (units_164(1000.0, 1.0), "NONE", 2, "acc 12 -Z [Pa]", 1e6), ("", "NONE", 12, "acc 12 -Z", 1.0),
                 ("", "m/s\u00b2", 12, "acc 12 -Z [m/s2]", 1.0)):
             with self.subTest(label=label, quantity=quantity):
-                names, numbers, _ = self.of_universal(units + dataset(58, head_58(2, 8, 1, 0.0, 0.1, unit=label, quantity=quantity) + data))
+                text = units + dataset(58, head_58(2, 8, 1, 0.0, 0.1, unit=label, quantity=quantity) + data)
+                names, numbers, _ = self.of_universal(text)
                 self.assertEqual(names[1], head)
                 np.testing.assert_allclose(numbers[:, 1], factor * VALUES, rtol=1e-11)
                 (self.folder / "t.csv").unlink()
@@ -94,12 +96,12 @@ class Records(Converting):
         self.refused("there is no channel C; there are A -Z, B 1 -Z", "records", self.folder / "r.unv", "--channels", "C")
 
     def test_matlab_files(self):
-        scipy_io = __import__("scipy.io", fromlist=["savemat"])
         times, two = 0.01 * np.arange(50), np.arange(100.0).reshape(50, 2)
         content = {"t": times, "acc": np.sin(times), "both": two, "fs": 100.0, "other": np.arange(7.0)}
         write_hdf5(self.folder / "h.mat", content)
-        scipy_io.savemat(self.folder / "s.mat", {"run": content, "note": "text", "cells": np.array([1, "a"], dtype=object)})
-        scipy_io.savemat(self.folder / "c.mat", content, do_compression=True)
+        whole = {"run": content, "note": "text", "cells": np.array([1, "a"], dtype=object)}
+        savemat(self.folder / "s.mat", whole)
+        savemat(self.folder / "c.mat", content, do_compression=True)
         for name, prefix in (("h.mat", ""), ("s.mat", "run."), ("c.mat", "")):
             with self.subTest(name):
                 out = self.converted("records", self.folder / name, "-o", self.folder / "m.csv", "--channels", f"{prefix}acc",
@@ -111,9 +113,9 @@ class Records(Converting):
                 (self.folder / "m.csv").unlink()
         self.refused("has no vector x; name it by --time, or give the samples a second by --rate; there are acc (50), ",
                      "records", self.folder / "h.mat", "--time", "x")
-        scipy_io.savemat(self.folder / "n.mat", {"t": times, "acc": np.where(times > 0.2, np.nan, 1.0)})
+        savemat(self.folder / "n.mat", {"t": times, "acc": np.where(times > 0.2, np.nan, 1.0)})
         self.refused("acc: value 22 is no finite number", "records", self.folder / "n.mat")
-        scipy_io.savemat(self.folder / "r.mat", {"acc": np.sin(times)})
+        savemat(self.folder / "r.mat", {"acc": np.sin(times)})
         self.refused("has 0 vectors of times", "records", self.folder / "r.mat")
         self.converted("records", self.folder / "r.mat", "--rate", "200", "-o", self.folder / "m.csv")
         np.testing.assert_allclose(self.table("m.csv")[1], np.column_stack([times / 2.0, np.sin(times)]), rtol=1e-11)
@@ -121,10 +123,13 @@ class Records(Converting):
     def test_the_program_reads_a_table(self):
         """A force that varies over time, in kN, with a comma in the name of the file's channel."""
         force = 1e2 * np.sin(np.arange(200) / 20.0)
-        self.of_universal(dataset(58, head_58(2, 200, 1, 0.0, 0.01, axis="F, left", unit="kN", quantity=9) + rows(force, 13, 5, 6)))
-        (self.folder / "scene.yml").write_text("beam: {spans: 20.0, EI: 1.0e10, mass: 9.0e3}\nload: {forces: 1.0, table: t.csv, "
-                                               "positions: 10.0, speed: 0.0}\nts: {max_time: 1.0}\n", encoding="utf-8")
-        done = subprocess.run([BINARY, "-options_file", "scene.yml", "-describe"], cwd=self.folder, capture_output=True, text=True)
+        head = head_58(2, 200, 1, 0.0, 0.01, axis="F, left", unit="kN", quantity=9)
+        self.of_universal(dataset(58, head + rows(force, 13, 5, 6)))
+        scene = ("beam: {spans: 20.0, EI: 1.0e10, mass: 9.0e3}\nload: {forces: 1.0, table: t.csv, positions: 10.0, speed: 0.0}\n"
+                 "ts: {max_time: 1.0}\n")
+        (self.folder / "scene.yml").write_text(scene, encoding="utf-8")
+        done = subprocess.run([BINARY, "-options_file", "scene.yml", "-describe"], cwd=self.folder, capture_output=True,
+                              text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("kN", done.stdout)
 
@@ -132,14 +137,16 @@ class Records(Converting):
         data = rows(VALUES, 13, 5, 6)
         good = dataset(58, head_58(2, 8, 1, 0.0, 0.1) + data)
         for content, part in (
-                (good[:-20], "expected"), (good.replace(data[0], data[0][:-13]), ":2: 7 numbers; by its head the dataset has 8"),
+                (good[:-20], "expected"),
+                (good.replace(data[0], data[0][:-13]), ":2: 7 numbers; by its head the dataset has 8"),
                 (dataset(58, head_58(2, 10**9, 1, 0.0, 0.1) + data), "by its head the dataset has 1000000000"),
                 (dataset(58, head_58(2, 8, 1, 0.0, -0.1) + data), ":9: the times do not increase"),
                 (dataset(58, head_58(5, 4, 1, 0.0, 0.1) + data), ":9: ordinates of type 5"),
                 (good.replace("2.25000E-03", "        NaN"), ":14: 'NaN' is no finite number"),
                 (good.replace("2.25000E-03", "2.25000E+93"), ":14: '2.25000E+93' is no finite number"),
-                (dataset(58, head_58(2, 8, 1, 0.0, 0.1))[:-8], ":13: the file ends here; expected -1, which ends the dataset of row 2"),
-                (dataset(2414, ["x"]), "no dataset 58 of a record over time"), ("time,acc\n0,1\n", "is no file of records"),
+                (dataset(58, head_58(2, 8, 1, 0.0, 0.1))[:-8], ":13: the file ends here; expected -1, which ends the dataset"),
+                (dataset(2414, ["x"]), "no dataset 58 of a record over time"),
+                ("time,acc\n0,1\n", "is no file of records"),
                 (good.replace(f"{'s':20}", f"{'h':20}"), ":10: the abscissa has the unit h; allowed: s, ms, min"),
                 ("    -1\n   58b     1     2          11   999999999\n" + good, "by its head; the file has")):
             with self.subTest(part):

@@ -33,8 +33,8 @@ def rows(values, width, digits, numbers):
     return ["".join(cells[i:i + numbers]) for i in range(0, len(cells), numbers)]
 
 
-def head_58(kind, total, even, first=0.0, step=0.0, function=1, node=12, direction=-3, axis="acc", unit="m/s2", entity="NONE",
-            quantity=12, abscissa=17):
+def head_58(kind, total, even, first=0.0, step=0.0, function=1, node=12, direction=-3, axis="acc", unit="m/s2",
+            entity="NONE", quantity=12, abscissa=17):
     dof = f"{function:5d}{0:10d}{0:5d}{0:10d} {entity:10}{node:10d}{direction:4d} {'NONE':10}{0:10d}{0:4d}"
     form = f"{kind:10d}{total:10d}{even:10d}{first:13.5E}{step:13.5E}{0.0:13.5E}"
     none = f"{0:10d}{0:5d}{0:5d}{0:5d} {'NONE':20} {'NONE':20}"
@@ -48,15 +48,17 @@ def units_164(length, force):
 
 
 def universal_of(path, turn=None, newer=False):
-    """The model and modes of a results file of CalculiX as datasets 2411 and 55, or 2414; turn: shapes are complex, turned by this angle."""
+    """The model and modes of a results file of CalculiX as datasets 2411 and 55, or 2414. turn: the angle of complex
+    shapes."""
     ids, points, modes = convert_calculix.read_frd(path)
-    text = dataset(2411, [line for one, point in zip(ids, points)
-                          for line in (f"{one:10d}{1:10d}{1:10d}{11:10d}", "".join(f"{x:25.16E}" for x in point).replace("E", "D"))])
+    places = ["".join(f"{x:25.16E}" for x in point).replace("E", "D") for point in points]
+    text = dataset(2411, [line for one, place in zip(ids, places) for line in (f"{one:10d}{1:10d}{1:10d}{11:10d}", place)])
     for mode in modes:
         values = mode.fields["DISP"].values
         analysis, kind = ("2", 2) if turn is None else ("3", 5)
         omega = 2.0 * np.pi * mode.frequency
-        real = [mode.frequency, mode.mass, 0.02, 0.0] if turn is None else [-0.02 * omega, omega * np.sqrt(1 - 0.02**2), 0, 0, 0, 0]
+        eigenvalue = [-0.02 * omega, omega * np.sqrt(1.0 - 0.02**2)]
+        real = [mode.frequency, mode.mass, 0.02, 0.0] if turn is None else eigenvalue + [0.0] * 4
         if turn is not None:
             values = (values[:, :, None] * [np.cos(turn), np.sin(turn)]).reshape(len(values), 6)
         if newer:
