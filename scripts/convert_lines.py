@@ -94,14 +94,14 @@ class Lines:
             self.refuse(str(error), row)
 
     def numbers(self, words, row=None):
-        """The finite numbers of words; `row`: that of the first word, or the row of each."""
+        """The finite numbers of words. row: that of all words, or a list with the row of each."""
         try:
             values = np.array(words, dtype=float)
-            if np.all(np.abs(values) <= LARGEST_VALUE):
+            if np.all(np.abs(values) <= LARGEST_VALUE) and "_" not in "".join(words):
                 return values
         except ValueError:
             pass
-        rows = row if isinstance(row, (list, range)) else [row] * len(words)
+        rows = row if isinstance(row, list) else [row] * len(words)
         return np.array([self.read(number, word, row=one) for word, one in zip(words, rows)])
 
     def tables(self, rows, lines, columns):

@@ -13,7 +13,7 @@ from input_files import InputError
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 HEADS = (b"MATLAB 5.0", b"MATLAB 7.3")
-DEEPEST, MOST_COLUMNS = 8, 1000
+DEEPEST = 8  # structures in each other
 TIMES = ("t", "time", "zeit", "temps", "timestamp")  # the last part of a name of times
 
 
@@ -22,15 +22,12 @@ def is_matlab(content):
 
 
 def columns_of(name, values):
-    """{name: vector} of a matrix: its longer side are the samples."""
-    values = np.asarray(values)
+    """{name: vector} of a matrix: the samples are along its longer side."""
     if values.dtype.kind not in "fiu" or values.ndim != 2 or values.size < 2:
         return {}
     values = values if values.shape[0] >= values.shape[1] else values.T
     if values.shape[1] == 1:
         return {name: values[:, 0].astype(float)}
-    if values.shape[1] > MOST_COLUMNS:
-        return {}
     return {f"{name}_{i + 1}": values[:, i].astype(float) for i in range(values.shape[1])}
 
 
@@ -40,10 +37,12 @@ def of_scipy(path):
     found = {}
 
     def add(name, value, depth):
-        if isinstance(value, np.ndarray) and type(value) is np.ndarray and value.dtype.names and value.size == 1:
-            for part in value.dtype.names if depth < DEEPEST else ():
+        if type(value) is not np.ndarray:  # an object or a function of MATLAB
+            return
+        if value.dtype.names:
+            for part in value.dtype.names if value.size == 1 and depth < DEEPEST else ():
                 add(f"{name}.{part}", value[part].flat[0], depth + 1)
-        elif type(value) is np.ndarray and not value.dtype.names:
+        else:
             found.update(columns_of(name, value))
 
     with open(path, "rb") as file, warnings.catch_warnings():

@@ -53,9 +53,9 @@ def tables_of(channels):
     tables = []
     for group in groups.values():
         while group:
-            same = [one for one in group if np.array_equal(one.times, group[0].times)]
-            group = [one for one in group if not any(one is other for other in same)]
-            names = []
+            first = group[0].times
+            same = [one for one in group if np.array_equal(one.times, first)]
+            group, names = [one for one in group if not np.array_equal(one.times, first)], []
             for one in same:
                 name, i = in_a_head(one.name), 1
                 while (new := name if i == 1 else f"{name} {i}") in names:

@@ -143,6 +143,7 @@ class Records(Converting):
                 (dataset(58, head_58(2, 8, 1, 0.0, -0.1) + data), ":9: the times do not increase"),
                 (dataset(58, head_58(5, 4, 1, 0.0, 0.1) + data), ":9: ordinates of type 5"),
                 (good.replace("2.25000E-03", "        NaN"), ":14: 'NaN' is no finite number"),
+                (good.replace("2.25000E-03", "2.2_000E-03"), ":14: '2.2_000E-03' is no finite number"),
                 (good.replace("2.25000E-03", "2.25000E+93"), ":14: '2.25000E+93' is no finite number"),
                 (dataset(58, head_58(2, 8, 1, 0.0, 0.1))[:-8], ":13: the file ends here; expected -1, which ends the dataset"),
                 (dataset(2414, ["x"]), "no dataset 58 of a record over time"),
