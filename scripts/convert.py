@@ -73,7 +73,7 @@ def arguments(words):
     modes = kinds.add_parser("modes", help="mode shapes along tracks")
     modes.add_argument("files", metavar="FILE", nargs="+")
     modes.add_argument("-o", metavar="MODES.txt")
-    modes.add_argument("--track", nargs="+", action="append", default=[], metavar="POINT",
+    modes.add_argument("--track", nargs="+", action="append", type=str.strip, default=[], metavar="POINT",
                        help="points x,y,z of the model or numbers of nodes, from the left end of the bridge; for each track")
     modes.add_argument("--up", default="z", type=str.strip, choices=["x", "y", "z", "-x", "-y", "-z"], help="left out: z")
     modes.add_argument("--within", type=positive, metavar="D", help="distance of nodes to a track; left out: 0.05 to 0.2 of it")
@@ -211,8 +211,7 @@ def modes(given):
     """Converts modes, and yields what is said."""
     model, passed = read_modes(given)
     up = "xyz".index(given.up[-1]), -1.0 if given.up[0] == "-" else 1.0
-    tracks = [convert_modes.track_of([word.strip() for word in words], model, up, given.within, given.supported_ends)
-              for words in given.track]
+    tracks = [convert_modes.track_of(words, model, up, given.within, given.supported_ends) for words in given.track]
     yield from listed(model, tracks)
     for one in passed:
         yield f"not read: {one}"

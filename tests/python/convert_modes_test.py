@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from converted import MODELS, SKEW, Converting, dataset, universal_of  # noqa: E402
+from converted import MODELS, SKEW, SOURCE, Converting, dataset, universal_of  # noqa: E402
 from converted import SKEW_TRACK as LEFT  # noqa: E402
 from small_runs import BINARY  # noqa: E402
 import convert_modes  # noqa: E402
@@ -31,6 +31,13 @@ def frequency_of(n):
     k = n * np.pi / SPAN
     a, b, c = INERTIA * MASS / GA, MASS + INERTIA * k**2 + EI * MASS * k**2 / GA, EI * k**4
     return np.sqrt((b - np.sqrt(b * b - 4.0 * a * c)) / (2.0 * a)) / (2.0 * np.pi)
+
+
+def rows_of(path):
+    """(words, numbers) of each line of a file of modes."""
+    lines = [line.split(", ") for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    return [([cell for cell in line if not cell[-1:].isdigit()], np.array([cell for cell in line if cell[-1:].isdigit()], float))
+            for line in lines]
 
 
 class Modes(Converting):
@@ -113,6 +120,17 @@ class Modes(Converting):
         self.assertEqual(unit, "N m")
         self.assertGreater(abs(moment[0]) / plate, 0.8)
         self.assertLess(abs(moment[0]) / plate, 1.4)
+
+    def test_the_modes_of_a_scene_are_those_of_its_model(self):
+        """options/bridges/skew_slab.txt, by the command of doc/guide/convert.md."""
+        page = (SOURCE / "doc/guide/convert.md").read_text(encoding="utf-8")
+        command = re.search(r"scripts/convert.py (modes tests/data/models/skew_slab.frd .*? -o )skew_slab.txt", page, re.DOTALL)[1]
+        words = [SOURCE / word if word.startswith("tests/") else word for word in command.replace("\\\n", " ").split()]
+        self.converted(*words, self.folder / "s.txt")
+        made, kept = rows_of(self.folder / "s.txt"), rows_of(SOURCE / "options/bridges/skew_slab.txt")
+        self.assertEqual([words for words, _ in made], [words for words, _ in kept])
+        for (_, numbers), (_, others) in zip(made, kept):
+            np.testing.assert_allclose(numbers, others, atol=1e-6 * np.abs(others).max())
 
     def test_both_tracks_run_in_the_program(self):
         self.modes_of(SLAB, "--track", *LEFT, "--track", *RIGHT)
@@ -202,7 +220,7 @@ class Modes(Converting):
                               (text.replace(line, line[:20] + "         NaN" + line[32:], 1), ":21: '"),
                               (re.sub("    2C                *93", f"    2C{999999999:30d}", text, count=1),
                                "by its head there are 999999999"),
-                              (re.sub("2(    [123])MODAL", r"0\1OTHER", text), "no mode shapes"),
+                              (re.sub("2(    [1-8])MODAL", r"0\1OTHER", text), "no mode shapes"),
                               ("x,y\n1,2\n", "is no file of modes; allowed: a universal file")):
             with self.subTest(part):
                 self.refused(part, "modes", self.write("bad.frd", content), *out)
@@ -211,8 +229,8 @@ class Modes(Converting):
                             (["--track", "0,0,0", "99999"], "there is no node 99999"),
                             (["--track", "-9,0,0", "15,0,0"], "shapes are not continued beyond nodes"),
                             (["--track", "0,40,0", "15,40,0"], "0 nodes within 3 of it"),
-                            (["--modes", "8"], "has no mode 8; it has 1, 2, 3"),
-                            (["--damping", "0.1", "0.2"], "2 numbers for 3 modes"),
+                            (["--modes", "9"], "has no mode 9; it has 1, 2, 3"),
+                            (["--damping", "0.1", "0.2"], "2 numbers for 8 modes"),
                             (["--output", "a=STRESS:SXX@1"], "mode 1 has DISP"),
                             (["--output", "a b=DISP:z@1"], "allowed: NAME=FIELD"),
                             (["--output", "a=DISP:z@1:kg"], "add its unit, :Pa, :N"),
