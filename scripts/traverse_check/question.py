@@ -36,8 +36,8 @@ FLAGS = {
     "always": "dynamic analysis even if figure 6.9 requires none",
     "no-report": "neither report nor picture nor page",
 }
-TITLE = ("project", "structure", "line", "author", "checker", "revision", "date", "note", "logo", "norm-edition",
-         "national-annex", "language")
+TITLE = ("project", "structure", "line", "author", "checker", "revision", "date", "note", "logo", "material",
+         "cross-section", "drawings", "norm-edition", "national-annex", "language")
 
 
 class Question(NamedTuple):
@@ -147,11 +147,9 @@ def words_of(given):
 
 
 def title_of(words, folder):
-    """The options report_... of the scene; the logo is beside the scene, or relative to it."""
+    """The options report_... of the scene; pictures are beside the scene, or relative to it."""
     title = {name.replace("-", "_"): words[f"report-{name}"] for name in TITLE if f"report-{name}" in words}
-    if "logo" in title:
-        title["logo"] = os.path.relpath(title["logo"], folder)
-    return title
+    return title | {name: os.path.relpath(title[name], folder) for name in ("logo", "cross_section") if name in title}
 
 
 def bounds(name, words):

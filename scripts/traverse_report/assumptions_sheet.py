@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from engineering_units import shown
 
+from . import structure
 from .language import capital, digits, known, num, percent, t
 from .model_sheet import KINDS, draw_bridge
 from .page import table
@@ -46,6 +47,14 @@ def along(data, kind):
     return in_unit(low, kind) if low == high else t("{low} to {high}, variable along the bridge",
                                                     low=digits(factor * low),
                                                     high=in_unit(high, kind))
+
+
+def of_structure(source):
+    """What the title page's options say of the structure."""
+    rows = [(words, structure.text_of(source, name), name) for words, name in
+            ((t("material"), "report_material"), (t("drawings"), "report_drawings"))]
+    return [(words, said, t("command line") if name in source.replaced else origin(source, name))
+            for words, said, name in rows if said]
 
 
 def of_bridge(source):
@@ -264,7 +273,8 @@ def uncertainty_of(source):
 
 def rows_of(source):
     """Rows (assumption, value, source)."""
-    return of_bridge(source) + (of_damping(source) if source.is_dynamic or source.is_fit else []) + of_loads(source) + of_method(source)
+    damping = of_damping(source) if source.is_dynamic or source.is_fit else []
+    return [*of_structure(source), *of_bridge(source), *damping, *of_loads(source), *of_method(source)]
 
 
 def sheet(report, source):
@@ -272,6 +282,8 @@ def sheet(report, source):
     report.anchor("assumptions")
     if len(source.model.span_ends) > 1:
         draw_bridge(page, source)
+    if source.cross_section is not None:
+        structure.draw_cross_section(page, source.cross_section)
     table(report, page, [(t("assumption"), 1.9, "left"), (t("value"), 3.1, "left"), (t("source"), 1.8, "left")],
           [(capital(words), *rest) for words, *rest in rows_of(source)],
           size=8)

@@ -16,7 +16,7 @@ from traverse_check.rules import CheckError
 from . import (
     annex_sheet, assumptions_sheet, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet, decisions,
     fatigue_sheet, find_sheet, fit_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, screen_sheet,
-    sensitivity_sheet, static_sheet, statistics, title_sheet, uplift, workbook_sheets)
+    sensitivity_sheet, static_sheet, statistics, structure, title_sheet, uplift, workbook_sheets)
 from . import governing as again
 from . import limits as judging
 from .language import LANGUAGES, choose, t
@@ -28,8 +28,12 @@ TITLE = {"project": "name of the project", "structure": "name of the structure",
          "railway-line": "line and kilometre of the structure", "author": "who has made the calculation",
          "checker": "who has checked it", "revision": "revision of the report", "date": "date of the report",
          "note": "a remark on the title page", "logo": "a picture for the title page, PNG or JPEG",
+         "material": "materials of the structure, such as C50/60, St 1570/1770",
+         "cross-section": "a picture of the cross-section, PNG or JPEG", "drawings": "numbers of the drawings",
          "norm-edition": "edition of the norm, such as EN 1991-2:2003",
          "national-annex": "national annex, such as DIN EN 1991-2/NA:2012-08"}
+
+PICTURES = ("logo", "cross-section")
 
 
 class Governing(NamedTuple):
@@ -73,9 +77,10 @@ def arguments_of(given):
     group.add_argument("--line-speed", metavar="SPEED", help="maximum line speed at the site, such as 250 km/h")
     group.add_argument("--torsional-frequency", metavar="HZ", help="first natural frequency of torsion")
     group.add_argument("--complex", action="store_true", help="no simple structure: skew, flexible supports, torsion")
-    group = parser.add_argument_group("title page", "These replace the options report_... of the scene.")
+    group = parser.add_argument_group("title page", "These replace the options report_... of the scene. Material, "
+                                      "cross-section and drawings are in the basis of calculation.")
     for name, words in TITLE.items():
-        group.add_argument(f"--{name}", metavar="TEXT" if name != "logo" else "FILE", help=words)
+        group.add_argument(f"--{name}", metavar="FILE" if name in PICTURES else "TEXT", help=words)
     group.add_argument("--language", choices=LANGUAGES, help="language of the report")
     return parser.parse_args(given)
 
@@ -228,7 +233,8 @@ def checked_outputs(arguments):
     """The names of the PDF and the XLSX file, which may be written."""
     out = pathlib.Path(arguments.output or arguments.results[0])
     stem = out.with_suffix("") if out.suffix in (".pdf", ".xlsx", ".h5") else out
-    inputs = [path for path in (*arguments.results, arguments.limits, arguments.logo) if path]
+    inputs = [path for path in (*arguments.results, arguments.limits, arguments.logo,
+                              arguments.cross_section) if path]
     for kind in ("pdf", "xlsx"):
         output_files.check(f"{stem}.{kind}", kind, inputs)
     return [f"{stem}.pdf", f"{stem}.xlsx"]
@@ -247,6 +253,7 @@ def run(words):
     wanted = arguments.language or sources[0].options.get("report_language", "en")
     choose(wanted if wanted in LANGUAGES else "en")
     title = title_sheet.title_of(sources, given_title(arguments), arguments.folder)
+    structure.read(sources, given_title(arguments), arguments.folder)
     asked = fatigue_sheet.Asked(arguments.factor, arguments.line, arguments.passages)
     with tempfile.TemporaryDirectory() as scratch:
         entries = []

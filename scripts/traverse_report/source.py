@@ -143,6 +143,7 @@ class Source:
         self.line, self.governing = line, None  # the source of the governing run of a sweep or study
         self.least_bearing = None  # uplift.Bearing: the least bearing force over time of all its runs
         self.compared = []  # the sources of all files of the report
+        self.replaced, self.cross_section = {}, None  # options report_... of the command line, and a picture
         self.path = pathlib.Path(path)
         self.file = opened(path)
         if self.file.attrs.get("program") != "traverse":

@@ -2,22 +2,18 @@
 
 import datetime
 import hashlib
-import pathlib
 from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 from matplotlib.backends.backend_pdf import PdfPages
 from output_files import written
-from PIL import Image
 
-from . import norm_sheet
+from . import norm_sheet, structure
 from .language import capital, t
 from .page import AMBER, GREEN, GREY, HEIGHT, INK, LEFT, PALE, RED, RIGHT, WIDTH, Reference, table
-from .source import ReportError
 
 FIELDS = ("project", "structure", "line", "author", "checker", "revision", "date", "note", "logo", "norm_edition",
           "national_annex", "language")
-LARGEST_LOGO = 10_000_000  # bytes
 LOGO_WIDTH, LOGO_HEIGHT = 2.2, 0.8  # inches
 PALES = {GREEN: "#E3F2E9", GREY: "#EEEEEE", AMBER: "#FBF0DC", RED: "#F9E1E4"}
 
@@ -65,35 +61,8 @@ def title_of(sources, given, folder):
         sources[0].options["report_structure"] = given["structure"]
     texts["structure"] = given.get("structure") or ", ".join(dict.fromkeys(source.title() for source in sources))
     texts["date"] = local(texts["date"] or max(day_of(source) for source in sources))
-    texts["logo"] = logo_of(given["logo"], [pathlib.Path()]) if given.get("logo") else own_logo(sources, texts["logo"],
-                                                                                                folder)
+    texts["logo"] = structure.picture("logo", given.get("logo"), texts["logo"], sources, folder)
     return Title(**texts)
-
-
-def own_logo(sources, name, folder):
-    """The logo that a scene names; None with a message if it is elsewhere now."""
-    if not name:
-        return None
-    try:
-        return logo_of(name, [pathlib.Path(folder or "."), *(source.path.parent for source in sources)])
-    except ReportError as error:
-        print(f"the title page has no logo: {error}; --logo or --folder names it")
-        return None
-
-
-def logo_of(name, places):
-    """The picture of a file, PNG or JPEG, that is found in one of the places."""
-    path = next((place / name for place in places if (place / name).is_file()), None)
-    if path is None:
-        raise ReportError(f"{name}: there is no such file")
-    try:
-        if path.stat().st_size > LARGEST_LOGO:
-            raise ReportError(f"{name}: the file of the logo has more than {LARGEST_LOGO // 1_000_000} MB")
-        with Image.open(path, formats=("PNG", "JPEG")) as picture:
-            picture.thumbnail((1200, 1200))
-            return picture.convert("RGBA")
-    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
-        raise ReportError(f"{name} is no PNG or JPEG picture that can be read") from None
 
 
 def draw_logo(page, picture):
@@ -101,7 +70,7 @@ def draw_logo(page, picture):
     inches = min(LOGO_WIDTH / picture.width, LOGO_HEIGHT / picture.height)
     width, height = inches * picture.width, inches * picture.height
     ax = page.figure.add_axes([(RIGHT - width) / WIDTH, (11.2 - height) / HEIGHT, width / WIDTH, height / HEIGHT])
-    ax.imshow(picture, aspect="auto", interpolation="lanczos")
+    ax.imshow(picture, aspect="auto", interpolation="none")
     ax.axis("off")
 
 

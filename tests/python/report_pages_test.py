@@ -12,7 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from reported import BRIDGE, LIMITS, Reported  # noqa: E402
 from traverse_report import (  # noqa: E402
     checks_sheet, comparison_sheet, curve_sheet, curves, fatigue_sheet, limits, loads_sheet, main, page, source,
-                             title_sheet)
+                             structure, title_sheet)
 
 # EN 1991-2, table 6.3: number of intermediate coaches, coach length D, bogie axle spacing d, point force P.
 HSLM_A = {"A1": (18, 18, 2.0, 170), "A2": (17, 19, 3.5, 200), "A3": (16, 20, 2.0, 180), "A4": (15, 21, 3.0, 190),
@@ -108,6 +108,7 @@ class Whole(Reported):
         entries, arguments = self.entries_of(names, *words)
         sources = [one for one, *_ in entries]
         title = title_sheet.title_of(sources, main.given_title(arguments), None)
+        structure.read(sources, main.given_title(arguments), self.folder)
         lines, colour = comparison_sheet.headline([(one, verdicts) for one, _, verdicts, _ in entries])
         report = main.report_of(entries, title, lines, colour, fatigue_sheet.Asked())
         report.fill_references()
@@ -142,12 +143,37 @@ class Whole(Reported):
         self.assertEqual(title.logo.size, (60, 20))
         self.assertTrue(words[1].startswith("No limits were given"), words)  # below the heading
 
-    def test_a_bad_logo_is_said(self):
+    def test_material_drawings_and_cross_section_are_in_the_basis_of_calculation(self):
+        Image.new("RGB", (300, 100), "grey").save(self.folder / "section.png")
+        self.compute("described", BRIDGE + """
+load: {forces: [2.0e5], speed: 40.0}
+report: {material: C50/60, drawings: [B-101, B-102 a], cross_section: section.png}
+""")
+        for words, material, origin in (((), "C50/60", "described.yml, line 9"),
+                                        (("--material", "S355"), "S355", "command line")):
+            report, _ = self.made(["described"], *words)
+            basis = next(sheet for sheet in report.pages if sheet.heading == "Basis of calculation")
+            texts = texts_of(basis)
+            self.assertEqual(texts[texts.index("Material"):][:3], ["Material", material, origin])
+            self.assertEqual(texts[texts.index("Drawings"):][:2], ["Drawings", "B-101, B-102 a"])
+            pictures = [ax for ax in basis.figure.axes if ax.get_images()]
+            self.assertEqual([ax.get_images()[0].get_array().shape[:2] for ax in pictures], [(100, 300)])
+            width, height = pictures[0].get_position().size * (page.WIDTH, page.HEIGHT)
+            self.assertAlmostEqual(width / height, 3.0)
+
+    def test_a_bad_picture_is_said(self):
         (self.folder / "bad.png").write_bytes(b"no picture")
         for name, said in (("bad.png", "no PNG or JPEG"), ("none.png", "no such file"), ("/dev/zero", "no such file")):
-            status, _, error = self.command("crossing.h5", "--logo", name)
-            self.assertEqual((status, len(error.strip().splitlines())), (1, 1))
-            self.assertIn(said, error)
+            for option in ("--logo", "--cross-section"):
+                status, _, error = self.command("crossing.h5", option, name)
+                self.assertEqual((status, len(error.strip().splitlines())), (1, 1))
+                self.assertIn(said, error)
+
+    def test_the_cross_section_is_not_written_over(self):
+        Image.new("RGB", (30, 10)).save(self.folder / "drawn.pdf")
+        status, _, error = self.command("crossing.h5", "--cross-section", "drawn.pdf", "-o", "drawn")
+        self.assertEqual(status, 1)
+        self.assertIn("drawn.pdf is read by this command", error)
 
     def test_trains_of_hslm_are_those_of_the_norm(self):
         rows = loads_sheet.hslm_rows(source.Source(self.folder / "sweep.h5"))
