@@ -252,7 +252,7 @@ def of_accuracy(source):
                      percent(float(options[name])) if name else t("none requested"),
                      origin(source, "sweep_refine", "study_refine")))
         if "peak_uncertainty" in source.summary:
-            rows.append((t("the same, achieved"), uncertainty_of(source), t("computed")))
+            rows.append((t("relative error of the peaks over the speed, achieved"), uncertainty_of(source), t("computed")))
     return rows
 
 

@@ -9,7 +9,7 @@ import yaml
 from .decisions import DECISIONS, need_for_analysis
 from .front_sheet import COLOURS, WORDS
 from .language import capital, t
-from .page import AMBER, GREY, INK, LEFT, RED, Reference, table
+from .page import AMBER, GREEN, GREY, INK, LEFT, RED, Reference, table
 from .quantities import shown_value, speed_in_words
 
 PAGES = {"rail": {"rail_tension", "rail_compression", "deck_displacement", "deck_end_displacement"}}  # others: verdicts
@@ -56,14 +56,19 @@ def is_unnecessary(source):
     return found is not None and not found.needed
 
 
+def of_file(name):
+    return f" ({name})" if name else ""
+
+
 def results_of(source, row, verdicts):
     """(result in words, its colour, limit, value, anchor of its page) of a requirement, one for each verdict."""
     quantities = row.get("quantities", [])
     found = [verdict for verdict in verdicts if verdict.limit.quantity in quantities and verdict.word != "not judged"]
     if found:
-        return [(": ".join([t(WORDS[v.word]), *([v.limit.words] if len(found) > 1 else [])]), COLOURS[v.word],
-                 shown_value(v.limit.value, v.limit.quantity),
-                 shown_value(v.value, v.limit.quantity), "rail" if v.limit.quantity in PAGES["rail"] else "verdicts")
+        return [(": ".join([t(WORDS[v.word]), *([v.limit.words] if len(found) > 1 else [])]) + of_file(v.file),
+                 COLOURS[v.word], shown_value(v.limit.value, v.limit.quantity),
+                 shown_value(v.value, v.limit.quantity),
+                 ("", v.file) if v.file else "rail" if v.limit.quantity in PAGES["rail"] else "verdicts")
                 for v in found]
     if row.get("needs") == "joints" and not has_joints(source):
         return [(t("not applicable: no joint between two decks"), GREY, "", "", "")]
@@ -81,13 +86,19 @@ def results_of(source, row, verdicts):
     return [(t("not verified: no limit given") if quantities else t("not verified"), AMBER, "", "", "")]
 
 
-def rows_of(source, verdicts):
-    """(requirement, clause, results) of all requirements."""
+def rows_of(source, verdicts, others=()):
+    """(requirement, clause, results) of all requirements. others: further files of the structure; their decisions are
+    results, too, where they differ and are not satisfied."""
     rows = []
     for row in clauses()["requirements"]:
         said = t(row["requirement"]) + (f" ({t(row['value'])})" if "value" in row else "")
         mark = MARKS[len(row["sources"])] if row["clause"] and len(row["sources"]) < len(MARKS) else ""
-        rows.append((said, row["clause"] + mark, results_of(source, row, verdicts)))
+        results = results_of(source, row, verdicts)
+        for other in others if "decided" in row else ():
+            results += [(words + of_file(other.path.name), colour, limit, value, ("", other.path.name))
+                        for words, colour, limit, value, _ in results_of(other, row, [])
+                        if words != results[0][0] and colour != GREEN]
+        rows.append((said, row["clause"] + mark, results))
     return rows
 
 
@@ -98,10 +109,10 @@ def alarms(source):
             if decision is not None and decision.colour == RED]
 
 
-def sheet(report, source, verdicts):
+def sheet(report, source, verdicts, others=()):
     report.foot_note = t("{one}: one public source confirms the number of the clause; {none}: no public source "
                          "confirms it. Such numbers must be checked with the norm.", one=MARKS[1], none=MARKS[0])
-    scope(report, source, verdicts)
+    scope(report, source, verdicts, others)
     steps(report, source)
     report.foot_note = ""
 
@@ -119,14 +130,16 @@ def steps(report, source):
     table(report, page, [(t("clause"), 1.7, "left"), (t("step"), 5.1, "left")], found.steps)
 
 
-def scope(report, source, verdicts):
+def scope(report, source, verdicts, others):
     page = report.page(t("Scope of verification"))
     page.text(LEFT, t("All requirements of EN 1990 A2.4.4 and EN 1991-2 6.4 and 6.5.4 for railway bridges. A result "
                       "covers only the requirements with a verdict; the others need a separate verification. Values in "
                       "brackets are the recommended ones; the national annex may change them."))
+    if others:
+        page.text(LEFT, t("Each result is the worst of all files of the structure; one of another file has its name."))
     page.y -= 0.08
     cells = []
-    for requirement, clause, results in rows_of(source, verdicts):
+    for requirement, clause, results in rows_of(source, verdicts, others):
         for i, (said, colour, limit, value, anchor) in enumerate(results):
             first = [capital(requirement), clause] if i == 0 else ["", ""]
             cells.append([*first, (said, colour), limit, value, Reference(anchor) if anchor else ""])

@@ -1,8 +1,10 @@
 """The comparison of several results files: the utilisation of each limit in each file, with its page."""
 
-from . import checks_sheet
+from . import assumptions_sheet, checks_sheet
+from .bounds import structure_of
 from .front_sheet import COLOURS, WORDS, outcome, outcome_of
 from .language import capital, percent, t
+from .limits import key_of
 from .page import AMBER, GREEN, GREY, LEFT, RED, RIGHT, Reference, table
 from .quantities import shown_value, words_of
 
@@ -42,15 +44,16 @@ def headline(entries):
     return lines, max(colours, key=SEVERITY.index)
 
 
-def key_of(limit):
-    return limit.clause, limit.quantity, limit.value
-
-
-def sheet(report, entries, first_pages):
-    """Adds the comparison at the end of the report, one column for each file. entries: (source, verdicts)."""
+def sheet(report, entries, first_pages, shortened=False):
+    """Adds the comparison at the end of the report, one column for each file. entries: (source, verdicts); shortened: some
+    of them have one page."""
     page = report.page(t("Comparison of the results"), numbered=False)
     page.text(LEFT, t("Utilisation: value over limit. An empty cell: the results file does not contain the value."),
               colour=GREY, size=8)
+    if shortened:
+        page.text(LEFT, t("Of the files of one structure, the one with the greatest utilisation has all pages and "
+                          "each other one has one page. The workbook has all numbers of all files."), colour=GREY,
+                  size=8)
     for start in range(0, len(entries), FILES_A_TABLE):
         some = entries[start:start + FILES_A_TABLE]
         limits = list(dict.fromkeys(key_of(verdict.limit) for _, verdicts in some for verdict in verdicts
@@ -69,8 +72,9 @@ def rows_of(entries, limits, first_pages):
             [t("page"), *(Reference(first) for first in first_pages)],
             [t("traffic load"), *(source.train_in_words() for source in sources)],
             [t("computation"), *(source.kind_in_words() for source in sources)],
+            *differences(sources),
             [t("result"), *(outcome_of(*entry) for entry in entries)],
-            [t("run with the greatest utilisation"), *(found[0].run if found else "" for found in worst)],
+            [t("run with the greatest utilisation"), *(found[0].run or found[0].where if found else "" for found in worst)],
             [t("greatest utilisation"), *(utilisation_cell(found[0]) if found else "" for found in worst)]]
     for key in limits:
         clause, quantity, value = key
@@ -80,6 +84,16 @@ def rows_of(entries, limits, first_pages):
         rows.append([f"{words_of(quantity)} ≤ {shown_value(value, quantity)} ({clause})",
                      *(utilisation_cell(verdict) if verdict else "" for verdict in found)])
     return [[capital(row[0]), *row[1:]] for row in rows]
+
+
+def differences(sources):
+    """Rows of the assumptions that differ between files of one structure."""
+    if len({structure_of(source) for source in sources}) > 1 or structure_of(sources[0]) is None:
+        return []
+    own = [{words: said for words, said, _ in assumptions_sheet.rows_of(source)} for source in sources]
+    known_ones = dict.fromkeys(words for one in own for words in one)
+    rows = [(words, *(one.get(words, "") for one in own)) for words in known_ones]
+    return [list(row) for row in rows if len(set(row[1:])) > 1 and row[0] != t("traffic load")]
 
 
 def utilisation_cell(verdict):

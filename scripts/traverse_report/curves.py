@@ -30,7 +30,7 @@ def mark_every(count):
     return max(count // 12, 1)
 
 
-def draw_limits(ax, limits):
+def draw_limits(ax, limits, size=7):
     """Draws limits: (value, text) in the unit of the axes. A limit far above the curves is named, not drawn."""
     low, high = ax.get_ylim()
     shown = [limit for limit in limits if limit[0] <= 2.5 * high]
@@ -38,11 +38,11 @@ def draw_limits(ax, limits):
         ax.set_ylim(low, max(high, 1.12 * max(value for value, _ in shown)))
     for value, words in shown:
         ax.axhline(value, color=RED, lw=1.2, ls=(0, (6, 2)), zorder=4)
-        ax.text(0.006, value, words, color=RED, fontsize=7, va="bottom", ha="left", zorder=6,
+        ax.text(0.006, value, words, color=RED, fontsize=size, va="bottom", ha="left", zorder=6,
                 transform=ax.get_yaxis_transform(), bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6})
     beyond = [words for value, words in limits if value > 2.5 * high]
     if beyond:
-        ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits="; ".join(beyond)), color=RED, fontsize=7,
+        ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits="; ".join(beyond)), color=RED, fontsize=size,
                 va="top", ha="left",
                 transform=ax.transAxes)
 
@@ -102,6 +102,13 @@ def chosen_lines(ax, runs, values, most=MOST_LINES):
     return [lines[i] for i in chosen]
 
 
+def by_x(x, values, indices, least=False):
+    """(x, the worst value of the runs there) of one line, and the values of these runs: several seeds have the same x."""
+    at = np.unique(x[indices])
+    per = [values[indices][x[indices] == one] for one in at]
+    return at, np.array([np.min(v) if least else np.max(v) for v in per]), per
+
+
 def over_x(ax, source, name, values, unit, limits, band=True):
     """Draws one line per train over the speed; for runs with several seeds also their median and range."""
     runs = source.runs
@@ -111,9 +118,7 @@ def over_x(ax, source, name, values, unit, limits, band=True):
     least_counts = name.startswith("least")
     for i, (line, indices) in enumerate(lines):
         colour, style, mark = look(i)
-        at = np.unique(x[indices])
-        per = [values[indices][x[indices] == one] for one in at]
-        worst = np.array([np.min(v) if least_counts else np.max(v) for v in per])
+        at, worst, per = by_x(x, values, indices, least_counts)
         known = ~np.isnan(worst)
         if not known.any():
             continue

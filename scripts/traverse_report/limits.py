@@ -37,6 +37,7 @@ class Verdict(NamedTuple):
     value: float   # NaN without a verdict
     run: str       # name of the run
     where: str     # place and time, or the reason of a missing verdict
+    file: str = ""  # in a table of several files
 
     @property
     def margin(self):
@@ -45,6 +46,11 @@ class Verdict(NamedTuple):
     @property
     def utilisation(self):
         return self.value / self.limit.value
+
+
+def key_of(limit):
+    """What the same limit in several files has in common: its factor may differ."""
+    return limit.clause, limit.quantity, limit.value
 
 
 def as_number(text):

@@ -14,8 +14,8 @@ from traverse_check import flow_chart, units
 from traverse_check.rules import CheckError
 
 from . import (
-    annex_sheet, assumptions_sheet, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet, decisions,
-    fatigue_sheet, find_sheet, fit_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, screen_sheet,
+    annex_sheet, assumptions_sheet, bound_sheet, bounds, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet,
+    decisions, fatigue_sheet, find_sheet, fit_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, screen_sheet,
     sensitivity_sheet, static_sheet, statistics, structure, title_sheet, uplift, workbook_sheets)
 from . import governing as again
 from . import limits as judging
@@ -73,6 +73,8 @@ def arguments_of(given):
                         "slope:M,RANGE,CYCLES, in the stress's unit")
     parser.add_argument("--passages", type=positive, default=1.0, metavar="A_DAY", help="of the run; left out: 1")
     parser.add_argument("--no-governing-run", action="store_true", help="does not repeat it")
+    parser.add_argument("--all-bounds", action="store_true", help="all pages of each file; left out: of files of one "
+                        "structure, such as bounds of its stiffness, only of the one with the greatest utilisation")
     group = parser.add_argument_group("need for a dynamic analysis", "The flow chart of EN 1991-2 figure 6.9.")
     group.add_argument("--line-speed", metavar="SPEED", help="maximum line speed at the site, such as 250 km/h")
     group.add_argument("--torsional-frequency", metavar="HZ", help="first natural frequency of torsion")
@@ -151,14 +153,15 @@ def least_bearing_of_runs(source, governing, arguments, scratch):
     return uplift.least_of_runs(source, repeat)
 
 
-def add_pages(report, entry, asked, program):
+def add_pages(report, entry, asked, program, group):
+    """All pages of a file. group: the entries of its structure in this report, this one first."""
     source, limits, verdicts, governing = entry
     front_sheet.sheet(report, source, verdicts, governing)
     if not source.is_screen:  # its bridges and formations are in its tables
         assumptions_sheet.sheet(report, source)
         loads_sheet.sheet(report, source)
     if source.is_verification:
-        checks_sheet.sheet(report, source, verdicts)
+        checks_sheet.sheet(report, source, bounds.worst_of(group), [other for other, *_ in group[1:]])
     norm_sheet.sheet(report, source)
     static_sheet.sheet(report, source)
     rail_sheet.sheet(report, source)
@@ -205,15 +208,22 @@ def entry_of(source, arguments, scratch):
     return source, limits, verdicts, governing
 
 
-def report_of(entries, title, lines, colour, asked, program=None):
-    """The pages: title, contents, comparison of several files, and the pages of each file."""
+def report_of(groups, title, lines, colour, asked, program=None):
+    """The pages: title, contents, comparison of several files, and the pages of the first file of each group; each other
+    one has one page. groups: lists of entries."""
+    entries = [entry for group in groups for entry in group]
     sources = [source for source, *_ in entries]
-    report, first_pages = Report(f"traverse {sources[0].file.attrs.get('version', '')}"), []
-    for number, entry in enumerate(entries, 1):
-        report.part("" if len(entries) == 1 else f"{entry[0].title()} ({entry[0].path.name})", number)
-        before = len(report.pages)
-        add_pages(report, entry, asked, program)
-        first_pages.append(report.pages[before])
+    report, first_pages, number = Report(f"traverse {sources[0].file.attrs.get('version', '')}"), [], 0
+    for group in groups:
+        of_governing = number + 1
+        for number, entry in enumerate(group, of_governing):
+            report.part("" if len(entries) == 1 else f"{entry[0].title()} ({entry[0].path.name})", number)
+            before = len(report.pages)
+            if number == of_governing:
+                add_pages(report, entry, asked, program, group)
+            else:
+                bound_sheet.sheet(report, entry, group[:number - of_governing], of_governing)
+            first_pages.append(report.pages[before])
     if len(entries) > 1:
         report.part("", 0)
         report.annex()
@@ -221,7 +231,8 @@ def report_of(entries, title, lines, colour, asked, program=None):
     report.part("", 0)
     own, report.pages = report.pages, []
     if len(entries) > 1:
-        comparison_sheet.sheet(report, [(source, verdicts) for source, _, verdicts, _ in entries], first_pages)
+        comparison_sheet.sheet(report, [(source, verdicts) for source, _, verdicts, _ in entries], first_pages,
+                               len(groups) < len(entries))
     compared, report.pages = report.pages, []
     title_sheet.title_page(report, title, sources, lines, colour)
     title_sheet.contents_page(report, compared)
@@ -261,8 +272,10 @@ def run(words):
             folder = pathlib.Path(scratch) / str(number)
             folder.mkdir()
             entries.append(entry_of(source, arguments, folder))
+        groups = [[entry] for entry in entries] if arguments.all_bounds else bounds.groups_of(entries)
+        entries = [entry for group in groups for entry in group]
         lines, colour = comparison_sheet.headline([(source, verdicts) for source, _, verdicts, _ in entries])
-        report = report_of(entries, title, lines, colour, asked, program_beside(arguments.program))
+        report = report_of(groups, title, lines, colour, asked, program_beside(arguments.program))
         try:
             title_sheet.save(report, paths[0], title)
             workbook_sheets.write(paths[1], title, lines, entries, asked, program_beside(arguments.program))

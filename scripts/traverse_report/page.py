@@ -64,15 +64,19 @@ class Page:
         """Adds axes of this height within the margins, with space for a title, labels and names."""
         bottom = self.y - above - height
         self.y = bottom - below
-        ax = self.figure.add_axes([(LEFT + left) / WIDTH, bottom / HEIGHT, (RIGHT - right - LEFT - left) / WIDTH,
-                                   height / HEIGHT])
+        return self.framed(LEFT + left, bottom, RIGHT - right - LEFT - left, height)
+
+    def framed(self, left, bottom, width, height):
+        """Adds axes at this place; numbers at their ticks are in the language of the report."""
+        ax = self.figure.add_axes([left / WIDTH, bottom / HEIGHT, width / WIDTH, height / HEIGHT])
         for axis in (ax.xaxis, ax.yaxis):
             axis.set_major_formatter(Ticks())
         return ax
 
 
 class Reference:
-    """A cell with the number of a page: of the page itself, or of an anchor of the report."""
+    """A cell with the number of a page: of the page itself, or of an anchor of this part of the report, or of ("", anchor)
+    without a part."""
 
     def __init__(self, target):
         self.target = target
@@ -127,7 +131,7 @@ class Report:
     def refer(self, reference, artist):
         """Writes the number of a page into a text when all pages are known."""
         target = reference.target
-        self.references.append((target if isinstance(target, Page) else (self.prefix, target), artist))
+        self.references.append(((self.prefix, target) if isinstance(target, str) else target, artist))
 
     def number_of(self, target):
         page = target if isinstance(target, Page) else self.anchors.get(target)

@@ -6,7 +6,7 @@ import pathlib
 from PIL import Image
 
 from .language import t
-from .page import HEIGHT, LEFT, RIGHT, WIDTH
+from .page import LEFT, RIGHT
 from .source import ReportError
 
 LARGEST_FILE = 10_000_000  # bytes
@@ -69,7 +69,7 @@ def draw_cross_section(page, picture):
     inches = min((RIGHT - LEFT) / picture.width, TALLEST / picture.height)
     width, height = inches * picture.width, inches * picture.height
     page.text(LEFT, t("Cross-section"), size=8)
-    ax = page.figure.add_axes([LEFT / WIDTH, (page.y - height) / HEIGHT, width / WIDTH, height / HEIGHT])
+    ax = page.framed(LEFT, page.y - height, width, height)
     ax.imshow(picture, aspect="auto", interpolation="none")
     ax.axis("off")
     page.y -= height + 0.15

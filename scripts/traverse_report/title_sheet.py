@@ -10,7 +10,7 @@ from output_files import written
 
 from . import norm_sheet, structure
 from .language import capital, t
-from .page import AMBER, GREEN, GREY, HEIGHT, INK, LEFT, PALE, RED, RIGHT, WIDTH, Reference, table
+from .page import AMBER, GREEN, GREY, INK, LEFT, PALE, RED, RIGHT, Reference, table
 
 FIELDS = ("project", "structure", "line", "author", "checker", "revision", "date", "note", "logo", "norm_edition",
           "national_annex", "language")
@@ -69,7 +69,7 @@ def draw_logo(page, picture):
     """Draws the logo at the top right, as large as it fits."""
     inches = min(LOGO_WIDTH / picture.width, LOGO_HEIGHT / picture.height)
     width, height = inches * picture.width, inches * picture.height
-    ax = page.figure.add_axes([(RIGHT - width) / WIDTH, (11.2 - height) / HEIGHT, width / WIDTH, height / HEIGHT])
+    ax = page.framed(RIGHT - width, 11.2 - height, width, height)
     ax.imshow(picture, aspect="auto", interpolation="none")
     ax.axis("off")
 

@@ -37,7 +37,7 @@ class Answers(Reported):
         """The entry of a file, and the pages of its report by their headings."""
         entries, _ = self.entries_of([name], *words)
         lines, colour = comparison_sheet.headline([(one, verdicts) for one, _, verdicts, _ in entries])
-        report = main.report_of(entries, title_sheet.Title(structure="S", date="2026"), lines, colour,
+        report = main.report_of([[entry] for entry in entries], title_sheet.Title(structure="S", date="2026"), lines, colour,
                                 fatigue_sheet.Asked())
         found = {}
         for sheet in report.pages:

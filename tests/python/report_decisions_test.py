@@ -187,7 +187,7 @@ class LargerEffect(Computations):
 class Annex(Computations):
     def whole(self, names):
         entries, arguments = self.entries_of(names)
-        report = main.report_of(entries, title_sheet.Title(structure="S", date="2026"), ["line"], page.GREEN,
+        report = main.report_of([[entry] for entry in entries], title_sheet.Title(structure="S", date="2026"), ["line"], page.GREEN,
                                 fatigue_sheet.Asked(), BINARY)
         report.fill_references()
         return entries, report
@@ -255,7 +255,7 @@ class Annex(Computations):
         one.summary.update(peak_uncertainty=0.004, peak_uncertainty_of="end rotation of A8", speeds_added=7)
         rows = {words: (value, place) for words, value, place in assumptions_sheet.of_accuracy(one)}
         self.assertEqual(rows["relative error of the peaks over the speed, requested"][0], "1.0 %")
-        self.assertEqual(rows["the same, achieved"][0],
+        self.assertEqual(rows["relative error of the peaks over the speed, achieved"][0],
                          "0.4 % (greatest rotation of the deck ends of A8); 7 speeds added")
 
     def test_dates_are_those_of_the_language(self):

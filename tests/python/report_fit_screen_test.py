@@ -58,7 +58,7 @@ class Pages(Reported):
         """The pages behind the title page of the report of a file by their headings, and the lines of its title page."""
         entries, _ = self.entries_of([name], *words)
         lines, colour = comparison_sheet.headline([(one, verdicts) for one, _, verdicts, _ in entries])
-        report = main.report_of(entries, title_sheet.Title(structure="S", date="2026"), lines, colour,
+        report = main.report_of([[entry] for entry in entries], title_sheet.Title(structure="S", date="2026"), lines, colour,
                                 fatigue_sheet.Asked())
         found = {}
         for sheet in report.pages[1:]:

@@ -91,7 +91,7 @@ class Pages(Reported):
         """The results of a file, and all axes of its report."""
         entries, _ = self.entries_of([name], "--limits", "limits.yml", *words)
         lines, colour = comparison_sheet.headline([(one, verdicts) for one, _, verdicts, _ in entries])
-        report = main.report_of(entries, title_sheet.Title(structure="S", date="2026"), lines, colour,
+        report = main.report_of([entries], title_sheet.Title(structure="S", date="2026"), lines, colour,
                                 fatigue_sheet.Asked())
         report.fill_references()
         return entries[0][0], [ax for sheet in report.pages for ax in sheet.figure.axes]

@@ -110,7 +110,7 @@ class Whole(Reported):
         title = title_sheet.title_of(sources, main.given_title(arguments), None)
         structure.read(sources, main.given_title(arguments), self.folder)
         lines, colour = comparison_sheet.headline([(one, verdicts) for one, _, verdicts, _ in entries])
-        report = main.report_of(entries, title, lines, colour, fatigue_sheet.Asked())
+        report = main.report_of([[entry] for entry in entries], title, lines, colour, fatigue_sheet.Asked())
         report.fill_references()
         return report, title
 
