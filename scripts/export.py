@@ -4,7 +4,8 @@
 The script writes a CSV file for each name: a time series such as probes/deflection, a group of them such as vehicles/0,
 sweep, study, sensitivity, rail_forces/stress, or another table listed by --list. Without names it writes all of them. The heads
 contain names and units; the first column is the time, or the position along the rails. --xdmf writes the bridge and
-the vehicles over time for ParaView, or the envelopes along the rails: NAME.xdmf, with its data in NAME.xdmf.h5.
+the vehicles over time for ParaView, the envelopes along the rails, or sweeps, studies, searches, screens and fits as
+points, surfaces and lines: NAME.xdmf, with its data in NAME.xdmf.h5.
 """
 
 import argparse
@@ -13,6 +14,7 @@ import signal
 import sys
 
 import export_tables
+import export_xdmf_tables
 import h5py
 import output_files
 from checked_results import in_one_line, opened
@@ -42,6 +44,15 @@ def csv_file(folder, name):
     return folder / f"{name.strip('/').replace('/', '_')}.csv"
 
 
+def xdmf(file, path, given):
+    """Writes the motion of a run, or all that has no time history."""
+    if "rail_forces" in file:
+        return write_rail_xdmf(file, path)
+    if "time" not in file and (grids := export_xdmf_tables.grids_of(file)):
+        return export_xdmf_tables.write_tables(grids, path)
+    return write_xdmf(Results(file), path, given.exaggeration, given.every)
+
+
 def export(given):
     """Writes the requested files and returns their paths, or the lines of --list."""
     with opened(given.results) as file:
@@ -62,8 +73,7 @@ def export(given):
             output_files.write_table(one, table.heads, table.rows())
         written = list(tables)
         if given.xdmf:
-            written += (write_rail_xdmf(file, path) if "rail_forces" in file else
-                        write_xdmf(Results(file), path, given.exaggeration, given.every))
+            written += xdmf(file, path, given)
         return written
 
 

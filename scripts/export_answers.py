@@ -1,5 +1,5 @@
-"""Tables of searches, sensitivity analyses, fits, screens, natural modes and static effects for export.py, one row for each
-answer, effect, estimate, value, pair, mode or station."""
+"""Tables of searches, sensitivity analyses, fits, screens, verdicts, natural modes and static effects for export.py, one
+row for each answer, effect, estimate, value, pair, limit, mode or station."""
 
 import numpy as np
 
@@ -8,11 +8,27 @@ def texts(file, name):
     return file[name].asstr()[:]
 
 
+def named(names, numbers):
+    """The names with these numbers, which count from 0; empty for NaN."""
+    return [names[int(number)] if np.isfinite(number) and 0 <= number < len(names) else "" for number in numbers]
+
+
+def add_existing(file, group, names, add):
+    """Adds those of these datasets of a group that the file has."""
+    for name in names:
+        if f"{group}/{name}" in file:
+            add(name, file[f"{group}/{name}"].attrs["unit"], file[f"{group}/{name}"][:])
+
+
 def of_find(file, add):
-    """A row for each value of the searched option: its greatest ratio to the bound for each answer."""
+    """A row for each value of the searched option: its greatest ratio to the bound for each answer, with the run and the
+    limit of this ratio."""
     add(str(file["find"].attrs["option"]), file["find/value"].attrs["unit"], file["find/value"][:])
-    for answer, ratio in zip(texts(file, "answer"), file["find/ratio"][:]):
-        add(f"ratio of {answer}", "1", ratio)
+    for i, answer in enumerate(texts(file, "answer")):
+        add(f"ratio of {answer}", "1", file["find/ratio"][i])
+        add(f"run of {answer}", "", [int(run) if np.isfinite(run) else "" for run in file["find/run"][i]])
+        if "criterion" in file:
+            add(f"limit of {answer}", "text", named(texts(file, "criterion"), file["find/limit"][i]))
 
 
 def of_intervals(file, add):
@@ -44,6 +60,35 @@ def of_estimates(file, add):
     add("at_bound", "1", file["fit/at_bound"][:].astype(int))
 
 
+def of_correlations(file, add):
+    """A row and a column for each unknown of a fit."""
+    names = texts(file, "unknown")
+    add("unknown", "text", names)
+    for name, column in zip(names, file["fit/correlation"][:].T):
+        add(f"correlation with {name}", "1", column)
+
+
+def of_starts(file, add):
+    """A row for each minimisation of a fit: its misfit and its estimates."""
+    estimates = file["fit/starts/estimate"]
+    add("misfit", "1", file["fit/starts/misfit"][:])
+    for name, unit, column in zip(texts(file, "unknown"), str(estimates.attrs["unit"]).split(", "), estimates[:].T):
+        add(name, unit, column)
+
+
+def of_frequencies(file, add):
+    """A row for each measured frequency of a fit."""
+    add("frequency", "text", texts(file, "measured_frequency"))
+    add_existing(file, "fit/frequencies", ("measured", "computed", "sd"), add)
+
+
+def of_deviations(file, add):
+    """A row for each series of a fit: the standard deviation of a value."""
+    add("series", "text", texts(file, "measured_series"))
+    add("unit", "text", str(file["fit/series_sd"].attrs["unit"]).split(", "))
+    add("standard_deviation", "", file["fit/series_sd"][:])
+
+
 def of_pairs(file, add):
     """A row for each bridge and formation of a screen."""
     bridges, formations = texts(file, "bridge"), texts(file, "formation")
@@ -53,13 +98,50 @@ def of_pairs(file, add):
         add(name, file[f"screen/{name}"].attrs["unit"], file[f"screen/{name}"][:].ravel())
 
 
+def of_bridges(file, add):
+    """A row for each bridge of a screen, with the formation that governs it."""
+    add("bridge", "text", texts(file, "bridge"))
+    add_existing(file, "screen", ("bridge_length", "bridge_frequency", "bridge_damping", "bridge_speed", "bridge_ratio"),
+                 add)
+    add("governing_formation", "text", named(texts(file, "formation"), file["screen/governing_formation"][:]))
+
+
+def of_formations(file, add):
+    """A row for each formation of a screen, with the bridge that it governs most."""
+    add("formation", "text", texts(file, "formation"))
+    add_existing(file, "screen", ("formation_speed", "formation_ratio"), add)
+    add("governing_bridge", "text", named(texts(file, "bridge"), file["screen/governing_bridge"][:]))
+
+
+def of_verdicts(file, add):
+    """A row for each limit; value and limit are in the unit of the row."""
+    for name, parts in (("quantity", ("quantity", "unit")), ("clause", ("clause", "text")),
+                        ("verdict", ("verdict", "place"))):
+        for part, column in zip(parts, texts(file, f"verdicts/{name}").T):
+            add(part, "text", column)
+    for name in ("value", "limit", "factor", "margin", "time", "runs", "broken_in"):
+        if f"verdicts/{name}" in file:
+            add(name, "s" if name == "time" else "", file[f"verdicts/{name}"][:])
+
+
+def of_norm(file, add):
+    """A row for each effect of the verdict of EN 1991-2, 6.4.6.5; effects are in the unit of the row."""
+    effects = texts(file, "norm/effect")
+    add("effect", "text", effects[:, 0])
+    add("unit", "text", effects[:, 1])
+    for name in ("train", "model", "governs"):
+        add(name, "text", texts(file, f"norm/{name}")[:, 0])
+    for name, data in file["norm"].items():
+        if data.shape == (len(effects),) and data.dtype.kind == "f":
+            unit = str(data.attrs["unit"])
+            add(name, "" if unit.startswith("as /") else unit, data[:])
+
+
 def of_modes(first, *others):
     """The table of natural modes: a row for each mode with those of these quantities that the file has."""
     def table(file, add):
         add("mode", "", np.arange(len(file[f"modes/{first}"])) + 1)
-        for name in (first, *others):
-            if f"modes/{name}" in file:
-                add(name, file[f"modes/{name}"].attrs["unit"], file[f"modes/{name}"][:])
+        add_existing(file, "modes", (first, *others), add)
     return table
 
 
@@ -92,7 +174,12 @@ def of_series(name):
 
 TABLES = {"find/ratios": ("find/value", of_find), "find/intervals": ("find/interval", of_intervals),
           "sensitivity": ("sensitivity/units", of_sensitivity), "fit/estimates": ("fit/estimate", of_estimates),
-          "screen": ("screen/ratio", of_pairs), "modes/shapes": ("modes/x", of_shapes),
+          "fit/correlations": ("fit/correlation", of_correlations), "fit/starts": ("fit/starts/misfit", of_starts),
+          "fit/frequencies": ("fit/frequencies/measured", of_frequencies),
+          "fit/deviations": ("fit/series_sd", of_deviations), "screen": ("screen/ratio", of_pairs),
+          "screen/bridges": ("screen/bridge_length", of_bridges),
+          "screen/formations": ("screen/formation_ratio", of_formations),
+          "verdicts": ("verdicts/limit", of_verdicts), "norm": ("norm/effect", of_norm), "modes/shapes": ("modes/x", of_shapes),
           "modes/undamped": ("modes/frequency", of_modes("frequency", "modal_damping_ratio", "modal_mass", "axial")),
           "modes/damped": ("modes/damped_frequency",
                            of_modes("damped_frequency", "damping_ratio", "decay_rate", "damped_axial")),

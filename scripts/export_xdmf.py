@@ -2,6 +2,7 @@
 
 import contextlib
 import pathlib
+import re
 import xml.etree.ElementTree as tree
 
 import h5py
@@ -55,25 +56,28 @@ def add_item(parent, file, place, values):
     item.text = f"{file.attrs['name']}:/{place}"
 
 
-def add_grid(parent, name, topology, data, file, row):
-    """Adds the points of one instant with their data, in separate datasets, because some readers read no parts."""
+def add_grid(parent, name, topology, data, file, row, cells=None):
+    """Adds the points of one instant with their data, in separate datasets, because some readers read no parts. cells: of a
+    surface, the points of each."""
     grid = tree.SubElement(parent, "Grid", Name=name, GridType="Uniform")
     count = data["points"].shape[1]
-    shape = (1, count) if topology == "Polyline" else (count, 1)
-    cells = tree.SubElement(grid, "Topology", TopologyType=topology, NumberOfElements=str(shape[0]),
-                            NodesPerElement=str(shape[1]))
-    add_item(cells, file, f"{name}/cells", np.arange(count).reshape(shape))
+    if cells is None:
+        cells = np.arange(count).reshape((1, count) if topology == "Polyline" else (count, 1))
+    item = tree.SubElement(grid, "Topology", TopologyType=topology, NumberOfElements=str(cells.shape[0]),
+                           NodesPerElement=str(cells.shape[1]))
+    add_item(item, file, f"{name}/cells", cells)
     add_item(tree.SubElement(grid, "Geometry", GeometryType="XYZ"), file, f"{name}/{row}/points", data["points"][row])
-    for what, values in data.items():
+    for number, (what, values) in enumerate(data.items()):
         if what != "points":
             kind = "Vector" if values.ndim == 3 else "Scalar"
             attribute = tree.SubElement(grid, "Attribute", Name=what, AttributeType=kind, Center="Node")
-            add_item(attribute, file, f"{name}/{row}/{path_of(what)}", values[row])
+            place = f"{name}/{row}/{path_of(what)}"
+            add_item(attribute, file, f"{place} {number}" if place in file else place, values[row])
 
 
 def path_of(what):
-    """The name of a dataset without its unit."""
-    return what.split(" (")[0]
+    """The name of a dataset without its unit, and without characters that separate parts of a path."""
+    return re.sub(r"[^\w -]", "_", what.split(" (")[0])
 
 
 def along_rail(group, at, quantity):

@@ -157,11 +157,13 @@ class Tables(Files):
     def test_wrong_input(self):
         (self.folder / "text.h5").write_text("no HDF5")
         h5py.File(self.folder / "empty.h5", "w").close()
+        with h5py.File(self.folder / "bare.h5", "w") as file:
+            put(file, "sweep/peak_deflection", np.zeros((1, 1, 1)), "m")
         for words, complaint in ((("none.h5",), "none.h5: is no results file that can be read"),
                                  (("text.h5", "--list"), "is no results file that can be read"),
                                  (("empty.h5",), "holds no series over time and no table"),
                                  (("run.h5", "--series", "probes", "probes/shear"), "no series or table probes"),
-                                 (("sweep.h5", "--xdmf"), "no deflections of a bridge over time: it is that of"),
+                                 (("bare.h5", "--xdmf"), "no deflections of a bridge over time: it is that of"),
                                  (("run.h5", "--xdmf", "--every", "0"), "--every: a number of samples from 1")):
             self.assertIn(complaint, self.refused("export", *words))
         self.assertEqual(list(self.folder.glob("*.csv")) + list(self.folder.glob("*.xdmf*")), [])
@@ -203,12 +205,44 @@ class Xdmf(Files):
             for attribute in vehicles.findall("Attribute"):
                 self.assertEqual(len(self.item(attribute)), 4)
 
+    def test_a_sweep_is_a_surface_for_each_train(self):
+        self.made("export", "sweep.h5", "--xdmf", "-o", "out")
+        grids = tree.parse(self.folder / "out" / "sweep.xdmf").getroot().findall("Domain/Grid/Grid")
+        self.assertEqual([grid.get("Name") for grid in grids], ["A3", "A7"])
+        for k, grid in enumerate(grids):
+            points = self.item(grid.find("Geometry"))  # three speeds of two stations each, 5 m from each other
+            np.testing.assert_allclose(points, [[x, y, 5.0 * k] for y in (0.0, 2.5, 5.0) for x in (5.0, 10.0)])
+            self.assertEqual(self.item(grid.find("Topology")).tolist(), [[0, 1, 3, 2], [2, 3, 5, 4]])
+            values = {one.get("Name"): self.item(one).tolist() for one in grid.findall("Attribute")}
+            self.assertEqual(values, {"place (m)": [5.0, 10.0] * 3, "speed (m/s)": [40.0, 40.0, 50.0, 50.0, 60.0, 60.0],
+                                      "peak_deflection (m)": [6.0 * k + i for i in range(6)]})
+
+    def test_the_runs_of_a_study_are_points(self):
+        with h5py.File(self.folder / "study.h5", "a") as file:
+            file["study"].attrs["dimensions"] = "load_speed"
+        self.made("export", "study.h5", "--xdmf", "-o", "out")
+        grid, = tree.parse(self.folder / "out" / "study.xdmf").getroot().findall("Domain/Grid/Grid")
+        self.assertEqual(self.item(grid.find("Geometry")).tolist(), [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]])
+        values = {one.get("Name"): self.item(one) for one in grid.findall("Attribute")}
+        self.assertEqual(values["study/load_speed (m/s)"].tolist(), [40.0, 50.0, 60.0])
+        self.assertEqual(values["study/peak_moment at probe 2 (N m)"][1], 4.0)
+        self.assertTrue(np.isnan(values["study/peak_moment at probe 2 (N m)"][2]))
+
     def test_readers_of_vtk_read_it(self):
         try:
             from vtkmodules import vtkIOXdmf2, vtkIOXdmf3
         except ImportError as error:
             self.skipTest(f"VTK's XDMF readers are not installed (Debian: python3-paraview): {error}")
         self.made("export", "run.h5", "--xdmf", "-o", "out")
+        self.made("export", "sweep.h5", "--xdmf", "-o", "out")
+        for reader in (vtkIOXdmf2.vtkXdmfReader(), vtkIOXdmf3.vtkXdmf3Reader()):
+            reader.SetFileName(str(self.folder / "out" / "sweep.xdmf"))
+            reader.Update()
+            walk = reader.GetOutputDataObject(0).NewIterator()
+            walk.InitTraversal()
+            surface = walk.GetCurrentDataObject()
+            self.assertEqual((surface.GetNumberOfCells(), surface.GetCell(0).GetClassName()), (2, "vtkQuad"))
+            self.assertEqual(surface.GetPointData().GetArray("peak_deflection (m)").GetValue(5), 5.0)
         for reader in (vtkIOXdmf2.vtkXdmfReader(), vtkIOXdmf3.vtkXdmf3Reader()):
             reader.SetFileName(str(self.folder / "out" / "run.xdmf"))
             reader.UpdateInformation()

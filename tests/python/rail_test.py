@@ -64,7 +64,8 @@ class Rail(Computed):
 
     def test_tables(self):
         named = self.run_script(SCRIPTS / "export.py", "rail.h5", "--list").split()
-        self.assertEqual(named, [f"rail_forces/{name}" for name in ("stress", "slip", "bearings", "devices", "peaks")])
+        self.assertEqual(named, [*(f"rail_forces/{name}" for name in ("stress", "slip", "bearings", "devices", "peaks")),
+                                 "verdicts"])
         self.run_script(SCRIPTS / "export.py", "rail.h5", "-o", "tables")
         with h5py.File(self.folder / "rail.h5") as file:
             group = file["rail_forces"]
