@@ -93,18 +93,14 @@ class Words:
 
 def ratio_rows(source):
     """Head and rows: the searched values, and the ratio of each answer to the bound."""
-    if not source.is_search:
-        return [], []
     words = Words(source)
-    heads = [words.label(), *(f"{t('Ratio to the bound')}: {words.name(answer)}" for answer in words.search.answers)]
+    heads = [words.label(), *(words.name(answer) for answer in words.search.answers)]
     columns = [words.factor * words.search.value, *(answer.ratio for answer in words.search.answers)]
     return heads, [[None if np.isnan(value) else float(value) for value in row] for row in zip(*columns)]
 
 
 def interval_rows(source):
     """Head and rows: first and last value of each interval within the bound, and what governs beyond them."""
-    if not source.is_search:
-        return [], []
     words = Words(source)
     unit = f" ({words.unit})" if words.unit else ""
     rows = [[words.name(answer), *(words.factor * end for end in interval.ends), words.beyond(answer)]

@@ -188,24 +188,42 @@ def series_rows(source):
 
 def workbook_rows(source):
     """Head and rows of the unknowns."""
-    if not source.is_fit:
-        return [], []
     return head(), [[one.words, one.unit or "1", one.estimate, one.error, one.low, one.high, one.start,
                      t("at a bound") if one.at_bound else ""] for one in unknowns_of(source.file)]
 
 
 def workbook_frequencies(source):
     """Head and rows of the measured frequencies."""
-    return (frequency_head(), frequencies_of(source.file)) if source.is_fit else ([], [])
+    return frequency_head(), frequencies_of(source.file)
+
+
+def workbook_correlations(source):
+    """Head and rows: a row and a column for each unknown."""
+    names = [one.words for one in unknowns_of(source.file)]
+    return [t("correlation"), *names], [[name, *map(float, row)] for name, row in
+                                        zip(names, source.file["fit/correlation"][:])]
+
+
+def workbook_starts(source):
+    """Head and rows of the minimisations: misfit and estimates."""
+    starts, unknowns = source.file["fit/starts"], unknowns_of(source.file)
+    units = str(starts["estimate"].attrs["unit"]).split(", ")
+    factors = [unknown_in_words(str(name), unit, source.file.get("fit/series", {}))[2]
+               for name, unit in zip(source.file["unknown"].asstr()[:], units)]
+    return [t("start of the fit"), t("misfit"), *(one.name() for one in unknowns)], [
+        [number, float(misfit), *(factor * float(value) for factor, value in zip(factors, values))]
+        for number, (misfit, values) in enumerate(zip(starts["misfit"][:], starts["estimate"][:]), 1)]
 
 
 def workbook_series(source):
-    """Head and rows of all values of the series, one below the other."""
-    if not source.is_fit:
-        return [], []
-    names = [t("series"), t("unit"), t("time of the measurement (s)"), t("measured"), t("computed")]
-    return names, [[one.name, one.unit or "1", *map(float, row)] for one in series_of(source.file)
-                   for row in zip(one.time, one.measured, one.computed)]
+    """(series, head, rows) of each series."""
+    def column(words, unit):
+        return f"{words} ({unit})" if unit else words
+
+    return [(one, [t("time of the measurement (s)"),
+                   *(column(words, one.unit) for words in (t("measured"), t("computed"), t("residual")))],
+             np.stack([one.time, one.measured, one.computed, one.computed - one.measured], axis=1).tolist())
+            for one in series_of(source.file)]
 
 
 def sheet(report, source):

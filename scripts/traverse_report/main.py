@@ -73,6 +73,7 @@ def arguments_of(given):
                         "slope:M,RANGE,CYCLES, in the stress's unit")
     parser.add_argument("--passages", type=positive, default=1.0, metavar="A_DAY", help="of the run; left out: 1")
     parser.add_argument("--no-governing-run", action="store_true", help="does not repeat it")
+    parser.add_argument("--no-pdf", action="store_true", help="writes the workbook only")
     parser.add_argument("--all-bounds", action="store_true", help="all pages of each file; left out: of files of one "
                         "structure, such as bounds of its stiffness, only of the one with the greatest utilisation")
     group = parser.add_argument_group("need for a dynamic analysis", "The flow chart of EN 1991-2 figure 6.9.")
@@ -241,14 +242,15 @@ def report_of(groups, title, lines, colour, asked, program=None):
 
 
 def checked_outputs(arguments):
-    """The names of the PDF and the XLSX file, which may be written."""
+    """{kind: name} of the files that may be written: the PDF, unless it is not wanted, and the XLSX file."""
     out = pathlib.Path(arguments.output or arguments.results[0])
     stem = out.with_suffix("") if out.suffix in (".pdf", ".xlsx", ".h5") else out
     inputs = [path for path in (*arguments.results, arguments.limits, arguments.logo,
                               arguments.cross_section) if path]
-    for kind in ("pdf", "xlsx"):
-        output_files.check(f"{stem}.{kind}", kind, inputs)
-    return [f"{stem}.pdf", f"{stem}.xlsx"]
+    paths = {kind: f"{stem}.{kind}" for kind in (("xlsx",) if arguments.no_pdf else ("pdf", "xlsx"))}
+    for kind, path in paths.items():
+        output_files.check(path, kind, inputs)
+    return paths
 
 
 def run(words):
@@ -275,13 +277,16 @@ def run(words):
         groups = [[entry] for entry in entries] if arguments.all_bounds else bounds.groups_of(entries)
         entries = [entry for group in groups for entry in group]
         lines, colour = comparison_sheet.headline([(source, verdicts) for source, _, verdicts, _ in entries])
-        report = report_of(groups, title, lines, colour, asked, program_beside(arguments.program))
+        program, made = program_beside(arguments.program), paths["xlsx"]
         try:
-            title_sheet.save(report, paths[0], title)
-            workbook_sheets.write(paths[1], title, lines, entries, asked, program_beside(arguments.program))
+            if "pdf" in paths:
+                report = report_of(groups, title, lines, colour, asked, program)
+                title_sheet.save(report, paths["pdf"], title)
+                made = f"{paths['pdf']} ({len(report.pages)} pages), {made}"
+            workbook_sheets.write(paths["xlsx"], title, lines, entries, asked, program)
         except OSError as error:
-            raise ReportError(f"{error.filename or paths[0]}: {error.strerror}") from None
-    print(f"report  {paths[0]} ({len(report.pages)} pages), {paths[1]}")
+            raise ReportError(f"{error.filename or paths['xlsx']}: {error.strerror}") from None
+    print(f"report  {made}")
 
 
 def main():

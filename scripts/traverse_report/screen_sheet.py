@@ -130,18 +130,25 @@ def shortened(count, most):
 
 def workbook_bridges(source):
     """Head and rows of all bridges."""
-    if not source.is_screen:
-        return [], []
     unit, factor = shown("speed")
     return [*head()[:-1], f"{head()[-1]} ({unit})", t("remark")], [
         [*row[:-1], factor * row.speed, permitted_in_words(row.speed) if not row.speed > 0.0 else ""]
         for row in bridge_rows(Screen(source.file))]
 
 
+def workbook_formations(source):
+    """Head and rows of all formations, those with the largest ratio first, with the bridge that governs each."""
+    (unit, factor), group = shown("speed"), source.file["screen"]
+    screen, speed, ratio, bridge = Screen(source.file), *(group[name][:] for name in (
+        "formation_speed", "formation_ratio", "governing_bridge"))
+    order = np.argsort(-np.nan_to_num(ratio, nan=-np.inf), kind="stable")
+    return [t("formation"), f"{t('greatest speed')} ({unit})", t("ratio"), t("governing bridge")], [
+        [screen.formations[i], factor * speed[i], ratio[i],
+         screen.bridges[int(bridge[i])] if np.isfinite(bridge[i]) else ""] for i in order]
+
+
 def workbook_pairs(source):
     """Head and rows of the pairs with a ratio, those with the largest one first."""
-    if not source.is_screen:
-        return [], []
     screen, (unit, factor) = Screen(source.file), shown("speed")
     names = [t("bridge"), t("formation"), t("ratio"), f"{t('permitted speed')} ({unit})",
              f"{t('speed of the ratio')} ({unit})", t("decided by")]

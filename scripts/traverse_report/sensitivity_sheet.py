@@ -59,8 +59,6 @@ class Words:
 
 def workbook_rows(source):
     """Head and rows: each quantity with each option, the measures and the ends of their intervals."""
-    if not source.is_sensitivity:
-        return [], []
     words, rows = Words(source), []
     names = [t(names[words.method]) for names in (MAIN, SECOND) if words.method in names]
     for quantity in words.analysis.units:

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import openpyxl
 import output_files
-from openpyxl.chart import Reference, ScatterChart, Series
+from openpyxl.chart import BarChart, Reference, ScatterChart, Series
 from openpyxl.styles import Alignment, Font, PatternFill
 from openpyxl.utils import get_column_letter
 
@@ -100,6 +100,21 @@ def add_chart(sheet, title, x_title, y_title, columns, place, limits=()):
             series.graphicalProperties.line.dashStyle = "dash"
         chart.series.append(series)
     chart.x_axis.scaling.min, chart.x_axis.scaling.max = bounds(sheet)
+    sheet.add_chart(chart, place)
+
+
+def add_bars(sheet, title, y_title, names, column, rows, place):
+    """Adds a chart of bars of a column (numbers from 1) in these rows (first, last), with the names in another column."""
+    chart = BarChart()
+    chart.type, chart.title, chart.style, chart.legend = "bar", title, 13, None
+    chart.height, chart.width, chart.gapWidth = 11.0, 20.0, 40
+    chart.y_axis.title = y_title
+    chart.x_axis.delete = chart.y_axis.delete = False
+    chart.x_axis.scaling.orientation = "maxMin"  # the first row is on top
+    chart.y_axis.number_format = "General"
+    first, last = rows
+    chart.series.append(Series(Reference(sheet, min_col=column, min_row=first, max_row=last), title=y_title))
+    chart.set_categories(Reference(sheet, min_col=names, min_row=first, max_row=last))
     sheet.add_chart(chart, place)
 
 

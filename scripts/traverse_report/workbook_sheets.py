@@ -3,8 +3,7 @@
 from openpyxl.styles import Font, PatternFill
 
 from . import (
-    annex_sheet, assumptions_sheet, checks_sheet, find_sheet, fit_sheet, loads_sheet, norm_sheet, rail_sheet,
-    screen_sheet, sensitivity_sheet, workbook_results)
+    annex_sheet, assumptions_sheet, checks_sheet, loads_sheet, norm_sheet, rail_sheet, workbook_answers, workbook_results)
 from .front_sheet import WORDS, peak_rows
 from .language import known, t
 from .limits import stored
@@ -58,17 +57,10 @@ def add_source(book, prefix, entry, asked, program):
     for name, (head, rows) in (("EN 1991-2 6.4.6.5", norm_sheet.workbook_rows(source)),
                                (t("static effects"), norm_sheet.static_rows(source)),
                                (t("track and bridge"), rail_sheet.rows(source)),
-                               (t("rail stresses"), rail_sheet.envelope_rows(source)),
-                               (t("Search for values"), find_sheet.interval_rows(source)),
-                               (t("Ratio to the bound"), find_sheet.ratio_rows(source)),
-                               (t("Sensitivity analysis"), sensitivity_sheet.workbook_rows(source)),
-                               (t("Fit to measurements"), fit_sheet.workbook_rows(source)),
-                               (t("measured frequencies"), fit_sheet.workbook_frequencies(source)),
-                               (t("Measured and computed"), fit_sheet.workbook_series(source)),
-                               (t("bridges"), screen_sheet.workbook_bridges(source)),
-                               (t("pairs"), screen_sheet.workbook_pairs(source))):
+                               (t("rail stresses"), rail_sheet.envelope_rows(source))):
         if rows:
             book.add(f"{prefix}{name}", head, rows)
+    workbook_answers.add_answers(book, prefix, source)
     if source.runs is not None:
         workbook_results.add_lines(book, f"{prefix}{t('cases')}", source, limits)
         workbook_results.add_runs(book, f"{prefix}{t('runs')}", source)

@@ -102,13 +102,19 @@ class Answers(Reported):
         np.testing.assert_allclose(found["Greatest (km/h)"], 3.6 * file["find/interval"][:, 1])
         ratios = self.columns(book["Ratio to the bound"])
         np.testing.assert_allclose(ratios["Speed (km/h)"], 3.6 * file["find/value"][:])
-        np.testing.assert_allclose(ratios["Ratio to the bound: all runs"], file["find/ratio"][-1])
+        np.testing.assert_allclose(ratios["All runs"], file["find/ratio"][-1])
+        chart, = book["Ratio to the bound"]._charts
+        self.assertEqual(len(chart.series), len(file["answer"]) + 1)  # and the bound
         file = self.results("morris")
         found = self.columns(self.book_of("morris", "--no-governing-run")["Sensitivity analysis"])
         expected = 1e3 * file["sensitivity/effect_magnitude_high"][0]  # mm
         order = np.argsort(-file["sensitivity/effect_magnitude"][0])
         np.testing.assert_allclose(found["Size of the effect, greatest"][:2], expected[order])
         self.assertEqual(found["Unit"][:2], ["mm", "mm"])
+        bars = self.book_of("morris", "--no-governing-run")["Sensitivity analysis"]._charts
+        factors = len(file["factor"])
+        self.assertEqual([one.series[0].val.numRef.f.split("!")[1] for one in bars],
+                         [f"$D${2 + i * factors}:$D${1 + (i + 1) * factors}" for i in range(len(file["quantity"]))])
 
     def test_the_pages_have_the_curve_and_the_tables(self):
         found, file = data.collect(self.folder / "search.h5"), self.results("search")

@@ -144,10 +144,36 @@ class Pages(Reported):
         found = self.columns(book["Fit to measurements"])
         np.testing.assert_allclose(found["Estimate"], file["fit/estimate"][:] * [1e-6, 1e-3, 3.6, 1.0, 1e3])
         self.assertEqual(found["Remark"][:2], ["at a bound", None])
-        np.testing.assert_allclose(self.columns(book["Measured and computed"])["Computed"],
-                                   1e3 * file["fit/series/midspan/computed"][:])
+        series = self.columns(book["Series 1"])
+        for name in ("measured", "computed"):
+            np.testing.assert_allclose(series[f"{name.capitalize()} (mm)"], 1e3 * file[f"fit/series/midspan/{name}"][:])
+        self.assertEqual(self.charted(book["Series 1"]), [["Time of the measurement (s)", "Measured (mm)", "Computed (mm)",
+                                                           "Residual (mm)"]])
+        np.testing.assert_allclose(np.array(self.columns(book["Correlations"])["Mass per length"], dtype=float),
+                                   file["fit/correlation"][1])
+        np.testing.assert_allclose(self.columns(book["Starts of the fit"])["Speed (km/h)"],
+                                   3.6 * file["fit/starts/estimate"][:, 2])
         self.assertAlmostEqual(self.columns(book["Measured frequencies"])["Computed (Hz)"][0],
                                file["fit/frequencies/computed"][0])
+
+    def charted(self, sheet):
+        """The heads of the columns of each chart, that of the first axis first."""
+        def head(reference):
+            return sheet[re.search(r"!\$([A-Z]+)\$", reference)[1] + "1"].value
+
+        return [[head(chart.series[0].xVal.numRef.f), *(head(one.yVal.numRef.f) for one in chart.series)]
+                for chart in sheet._charts]
+
+    def test_the_workbook_of_a_screen_has_formations_and_bars(self):
+        file, book = self.results("screen"), self.book_of("screen")
+        rows = self.columns(book["Formations"])
+        ratio = dict(zip(file["formation"].asstr()[:], file["screen/formation_ratio"][:]))
+        np.testing.assert_allclose(rows["Ratio"], [ratio[name] for name in rows["Formation"]])
+        self.assertEqual(rows["Ratio"], sorted(rows["Ratio"], reverse=True))
+        for name, count in (("Bridges", len(file["bridge"])), ("Formations", len(file["formation"]))):
+            sheet, (bars,) = book[name], book[name]._charts
+            column = re.fullmatch(rf"'{name}'!\$([A-Z])\$2:\$\1\${count + 1}", bars.series[0].val.numRef.f)
+            self.assertEqual(sheet[f"{column[1]}1"].value, "Ratio")
 
     def test_texts_stay_on_the_page_in_every_language(self):
         for name in ("fit", "screen"):

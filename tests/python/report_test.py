@@ -223,6 +223,16 @@ class ComfortAndCycles(Reported):
         self.assertNotIn("Comfort", book.sheetnames)
 
 
+class WorkbookAlone(Reported):
+    def test_there_is_no_pdf(self):
+        (self.folder / "alone.pdf").write_text("of somebody else", encoding="utf-8")
+        status, said, error = self.command("judged.h5", "-o", "alone", "--no-pdf", "--no-governing-run")
+        self.assertEqual((status, said, error), (0, "report  alone.xlsx\n", ""))
+        self.assertEqual((self.folder / "alone.pdf").read_text(encoding="utf-8"), "of somebody else")
+        whole = self.book_of("judged", "--no-governing-run")
+        self.assertEqual(openpyxl.load_workbook(self.folder / "alone.xlsx").sheetnames, whole.sheetnames)
+
+
 class BadInput(Reported):
     def refused(self, *words):
         status, said, error = self.command(*words)
