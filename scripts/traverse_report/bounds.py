@@ -8,7 +8,8 @@ def structure_of(source):
     """What files of one structure share; None: the file has all pages in any case."""
     if source.is_search or source.is_sensitivity or (source.runs is None and not source.is_static):
         return None
-    return source.title(), source.is_static, tuple(source.model.span_ends), tuple(source.model.supports)
+    name = source.replaced.get("report_structure") or source.title()
+    return name, source.is_static, tuple(source.model.span_ends), tuple(source.model.supports)
 
 
 def utilisation_of(verdicts):

@@ -39,13 +39,13 @@ def found(name, places):
 def picture(option, given, own, sources, folder):
     """The picture given on the command line, or that which a scene names; None without one, and with a message if that of
     a scene is elsewhere now."""
-    if given:
-        return found(given, ["."])
-    if not own:
+    if not given and not own:
         return None
     try:
-        return found(own, [folder or ".", *(source.path.parent for source in sources)])
+        return found(given, ["."]) if given else found(own, [folder or ".", *(source.path.parent for source in sources)])
     except ReportError as error:
+        if given:
+            raise ReportError(f"--{option} {error}") from None
         print(f"the report has no {option.replace('-', ' ')}: {error}; --{option} or --folder names it")
         return None
 
@@ -53,7 +53,7 @@ def picture(option, given, own, sources, folder):
 def read(sources, given, folder):
     """Gives each source its texts and its picture: those of the command line replace those of the scene."""
     for source in sources:
-        source.replaced = {f"report_{name}": given[name] for name in TEXTS if given.get(name)}
+        source.replaced = {f"report_{name}": given[name] for name in ("structure", *TEXTS) if given.get(name)}
         source.cross_section = picture("cross-section", given.get("cross_section"),
                                        source.options.get("report_cross_section"), [source], folder)
 

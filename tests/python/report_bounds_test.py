@@ -56,6 +56,12 @@ class Bounds(Reported):
             groups = sorted(map(self.names, bounds.groups_of(self.entries(*order))))
             self.assertEqual(groups, [["elsewhere"], ["soft", "stiff"]])
 
+    def test_the_command_may_name_the_structure_of_all_files(self):
+        entries = self.entries("stiff", "elsewhere", "soft")
+        for source, *_ in entries:
+            source.replaced = {"report_structure": "Bridge"}
+        self.assertEqual([self.names(group) for group in bounds.groups_of(entries)], [["elsewhere", "stiff", "soft"]])
+
     def test_each_other_file_has_one_page(self):
         entries = self.entries("stiff", "soft", "elsewhere")
         report = self.made(bounds.groups_of(entries))
