@@ -28,15 +28,15 @@ def groups_of(entries):
 
 
 def worst_of(group):
-    """The verdict with the greatest utilisation of each limit of the first file, with the name of another file."""
-    def named(verdict, source):
-        return verdict if source is group[0][0] else verdict._replace(file=source.path.name)
-
-    found = {key_of(verdict.limit): verdict for verdict in group[0][2]}
+    """The verdicts of the first file; where another file has a greater utilisation or another limit, its verdict with
+    the name of the file."""
+    worst = list(group[0][2])
     for source, _, verdicts, _ in group[1:]:
-        for verdict in verdicts:
-            known = found.get(key_of(verdict.limit))
-            if verdict.word != "not judged" and (known is None or known.word == "not judged"
-                                                 or verdict.utilisation > known.utilisation):
-                found[key_of(verdict.limit)] = named(verdict, source)
-    return list(found.values())
+        others = {key_of(verdict.limit): verdict for verdict in verdicts if verdict.word != "not judged"}
+        for i, known in enumerate(worst):
+            other = others.get(key_of(known.limit))
+            if other is not None and (known.word == "not judged" or other.utilisation > known.utilisation):
+                worst[i] = other._replace(file=source.path.name)
+        listed = {key_of(verdict.limit) for verdict in worst}
+        worst += [verdict._replace(file=source.path.name) for key, verdict in others.items() if key not in listed]
+    return worst

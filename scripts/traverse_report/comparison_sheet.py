@@ -54,6 +54,7 @@ def sheet(report, entries, first_pages, shortened=False):
         page.text(LEFT, t("Of the files of one structure, the one with the greatest utilisation has all pages and "
                           "each other one has one page. The workbook has all numbers of all files."), colour=GREY,
                   size=8)
+    differing = differences([source for source, _ in entries])
     for start in range(0, len(entries), FILES_A_TABLE):
         some = entries[start:start + FILES_A_TABLE]
         limits = list(dict.fromkeys(key_of(verdict.limit) for _, verdicts in some for verdict in verdicts
@@ -61,18 +62,20 @@ def sheet(report, entries, first_pages, shortened=False):
         width = (RIGHT - LEFT - FIRST_COLUMN) / len(some)
         columns = [("", FIRST_COLUMN, "left")] + [(str(start + i), width, "left") for i in range(1, len(some) + 1)]
         page.y -= 0.08
-        page = table(report, page, columns, rows_of(some, limits, first_pages[start:start + FILES_A_TABLE]), size=7)
+        page = table(report, page, columns, rows_of(some, limits, first_pages[start:start + FILES_A_TABLE],
+                                                      [[words, *cells[start:start + FILES_A_TABLE]]
+                                                       for words, *cells in differing]), size=7)
 
 
-def rows_of(entries, limits, first_pages):
-    """Rows of the comparison: what the files are, then the utilisation of each limit."""
+def rows_of(entries, limits, first_pages, differing):
+    """Rows of the comparison: what the files are and how they differ, then the utilisation of each limit."""
     sources, worst = [source for source, _ in entries], [worst_of([entry]) for entry in entries]
     rows = [[t("structure"), *(source.title() for source in sources)],
             [t("results file"), *(source.path.name for source in sources)],
             [t("page"), *(Reference(first) for first in first_pages)],
             [t("traffic load"), *(source.train_in_words() for source in sources)],
             [t("computation"), *(source.kind_in_words() for source in sources)],
-            *differences(sources),
+            *differing,
             [t("result"), *(outcome_of(*entry) for entry in entries)],
             [t("run with the greatest utilisation"), *(found[0].run or found[0].where if found else "" for found in worst)],
             [t("greatest utilisation"), *(utilisation_cell(found[0]) if found else "" for found in worst)]]

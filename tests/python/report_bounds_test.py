@@ -100,6 +100,9 @@ class Bounds(Reported):
             self.assertEqual(one.value, max(values.values()))
             self.assertEqual(values[one.file or "soft.h5"], one.value)
         self.assertEqual([one.file for one in worst], ["", "stiff.h5", ""])
+        left = [(*group[0][:2], group[0][2][:1], None), group[1]]
+        self.assertEqual([(one.limit.clause, one.file) for one in bounds.worst_of(left)],
+                         [("rule 1", ""), ("rule 2", "stiff.h5")])
         rows = {requirement: results for requirement, _, results in checks_sheet.rows_of(group[0][0], worst)}
         said, = (results for requirement, results in rows.items() if "acceleration of the deck" in requirement)
         self.assertEqual([(words, anchor) for words, *_, anchor in said],
