@@ -44,7 +44,7 @@ def headline(entries):
     return lines, max(colours, key=SEVERITY.index)
 
 
-def sheet(report, entries, first_pages, shortened=False):
+def sheet(report, entries, first_pages, shortened):
     """Adds the comparison at the end of the report, one column for each file. entries: (source, verdicts); shortened: some
     of them have one page."""
     page = report.page(t("Comparison of the results"), numbered=False)

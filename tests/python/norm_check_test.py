@@ -203,6 +203,11 @@ class Scenes(unittest.TestCase):
         self.assertEqual(self.options(ask("--report-project", hostile))["report"]["project"], hostile)
         self.assertEqual(self.options(ask("--report-note", "a\udcffb"))["report"]["note"], "a?b")
 
+    def test_the_scene_names_drawings_and_the_picture_of_the_cross_section(self):
+        report = self.options(ask("--folder", "results/x", "--report-drawings", "B-101, B-102", "--report-cross-section",
+                                  "section.png"))["report"]
+        self.assertEqual((report["drawings"], report["cross_section"]), ("B-101, B-102", "../../section.png"))
+
 
 class Commands(unittest.TestCase):
     def setUp(self):
