@@ -15,8 +15,8 @@ from traverse_check.rules import CheckError
 
 from . import (
     annex_sheet, assumptions_sheet, bound_sheet, bounds, checks_sheet, comfort_sheet, comparison_sheet, curve_sheet,
-    decisions, fatigue_sheet, find_sheet, fit_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet, screen_sheet,
-    sensitivity_sheet, static_sheet, statistics, structure, title_sheet, uplift, workbook_sheets)
+    decisions, fatigue_sheet, find_sheet, fit_sheet, front_sheet, loads_sheet, norm_sheet, rail_sheet, run_sheet,
+    screen_sheet, sensitivity_sheet, static_sheet, statistics, structure, title_sheet, uplift, workbook_sheets)
 from . import governing as again
 from . import limits as judging
 from .language import LANGUAGES, choose, t
