@@ -112,6 +112,7 @@ TorsionMatrices torsion_matrices(const BeamModel& model, const Element& e) {
   m.stiffness = axial_stiffness_of(torsion.GJ, e);
   m.mass = mean_of_lumped(axial_bed(torsion.inertia, e));
   if (torsion.mass_centre == 0.0) return m;
+  // The mass between deflection and twist is a mean of both matrices, too.
   const Axial of_mass = mean_of_lumped(axial_bed(model.mass, e));
   for (std::size_t i = 0; i < of_mass.size(); ++i) m.mass[i] += torsion.mass_centre * torsion.mass_centre * of_mass[i];
   integrate(model.mass, e.x, e.x + e.length, [&](double x, double weight) {
@@ -119,7 +120,8 @@ TorsionMatrices torsion_matrices(const BeamModel& model, const Element& e) {
     const auto psi = hermite(xi, e.length, e.shear).value;
     const auto phi = linear(xi);
     for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 2; ++j) m.coupling[2 * i + j] += torsion.mass_centre * weight * psi[i] * phi[j];
+      for (std::size_t j = 0; j < 2; ++j) m.coupling[2 * i + j] += 0.5 * torsion.mass_centre * weight * psi[i] * phi[j];
+    for (std::size_t j = 0; j < 2; ++j) m.coupling[5 * j] += 0.5 * torsion.mass_centre * weight * phi[j];
   });
   return m;
 }

@@ -7,6 +7,20 @@
 #include "assembly.hpp"
 
 namespace traverse::beam {
+namespace {
+
+/// Whether elements of equal length have the same stiffness.
+bool is_uniform(const BeamModel& model) {
+  return model.EI.uniform() && (!model.GA || model.GA->uniform()) && (!model.axial || model.EA.uniform()) &&
+         (!model.torsion || model.torsion->GJ.uniform());
+}
+
+/// T of InternalForces.
+double twisting(const BeamModel& model, const Element& element) {
+  return model.torsion ? torsion_matrices(model, element).stiffness[1] : 0.0;
+}
+
+}  // namespace
 
 InternalForces::InternalForces(const Beam& beam) : block_(beam.block()), local_(beam.local_columns()) {
   if (local_ == 0) return;
@@ -19,8 +33,9 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
   run.u = line.place[0];
   run.v = line.place[1];
   run.theta = line.place[2];
+  run.twist = line.place[5];
   const BeamModel& model = line.model;
-  const bool uniform = model.EI.uniform() && (!model.GA || model.GA->uniform()) && (!model.axial || model.EA.uniform());
+  const bool uniform = is_uniform(model);
   const auto [first, past] = line.elements_at(beam.first_column(), local_);
   double length = 0.0;
   Stiffness s{};
@@ -30,7 +45,15 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
     if (run.elements.empty()) run.first = column;
     if (!uniform || element.length != length) {
       const ElementMatrices m = element_matrices(model, element);
-      s = {element.length, m.stiffness[2], m.stiffness[3], m.stiffness[6], m.stiffness[7], m.axial_stiffness[1], 0, 0};
+      s = {element.length,
+           m.stiffness[2],
+           m.stiffness[3],
+           m.stiffness[6],
+           m.stiffness[7],
+           m.axial_stiffness[1],
+           twisting(model, element),
+           0,
+           0};
     }
     length = element.length;
     s.theta1 = line.mesh.hinged(element.left) ? line.place[3] : line.place[2];
@@ -78,6 +101,22 @@ void InternalForces::add_run(const Run& run, double sign, const double* x, const
 }
 
 template <class Real>
+void InternalForces::add_twist(const Run& run, double sign, const double* x, const double* left, const double* right,
+                               double* r) const {
+  const std::ptrdiff_t b = block_, twist = run.twist, past = run.first + std::ssize(run.elements);
+  const double* x1 = run.first < 0 ? left : x + run.first * b;
+  for (std::ptrdiff_t column = run.first; column < past; ++column) {
+    const double* x2 = column + 1 < local_ ? x + (column + 1) * b : right;
+    const Stiffness& s = run.elements[static_cast<std::size_t>(column - run.first)];
+    const double moment =
+        s.T == 0.0 ? 0.0 : sign * static_cast<double>(Real(s.T) * (Real(x2[twist]) - Real(x1[twist])));
+    if (column >= 0) r[column * b + twist] += moment;
+    if (column + 1 < local_) r[(column + 1) * b + twist] -= moment;
+    x1 = x2;
+  }
+}
+
+template <class Real>
 void InternalForces::add(double sign, const double* x, const double* left, const double* right, double* r) const {
   for (const Run& run : runs_) {
     if (run.u >= 0) {
@@ -85,6 +124,7 @@ void InternalForces::add(double sign, const double* x, const double* left, const
     } else {
       add_run<Real, false>(run, sign, x, left, right, r);
     }
+    if (run.twist >= 0) add_twist<Real>(run, sign, x, left, right, r);
   }
 }
 
@@ -102,19 +142,20 @@ ElementRows::Run ElementRows::run_of(const Beam& beam, const Line& line) {
   std::vector<Numbers> all(static_cast<std::size_t>(beam.local_columns()) + 1, Numbers{});
   const BeamModel& model = line.model;
   const auto [from, past] = line.elements_at(beam.first_column(), beam.local_columns());
-  const bool uniform = model.EI.uniform() && (!model.GA || model.GA->uniform()) && (!model.axial || model.EA.uniform());
+  const bool uniform = is_uniform(model);
   double length = 0.0;
   Numbers c{};
   for (int e = from; e < past; ++e) {
     const Element& element = line.mesh.element(e);
     if (!uniform || element.length != length) {
       const ElementMatrices m = element_matrices(model, element);
-      c = {element.length, m.stiffness[2], m.stiffness[3], m.stiffness[6], m.stiffness[7], m.axial_stiffness[1]};
+      c = {element.length, m.stiffness[2],       m.stiffness[3],          m.stiffness[6],
+           m.stiffness[7], m.axial_stiffness[1], twisting(model, element)};
     }
     length = element.length;
     all[static_cast<std::size_t>(line.first_column + element.left - beam.first_column() + 1)] = c;
   }
-  Run run{line.place[0], line.place[1], line.place[2], {}, {}};
+  Run run{line.place[0], line.place[1], line.place[2], line.place[5], {}, {}};
   const auto hash = [&](std::ptrdiff_t j) { return solve::hash_of(0, all[static_cast<std::size_t>(j)]); };
   const auto same = [&](std::ptrdiff_t i, std::ptrdiff_t j) {
     return all[static_cast<std::size_t>(i)] == all[static_cast<std::size_t>(j)];
@@ -159,9 +200,21 @@ void ElementRows::add_run(const Run& run, int first, int past, const Planes& x, 
   }
 }
 
+void ElementRows::add_twist(const Run& run, int first, int past, const Planes& x, const Planes& r) {
+  const int nodes = past - first;
+  const double* const twist = x[run.twist];
+  std::array<double, tile + 1> moment;  // on the left end of each element
+  for (int j = 0; j <= nodes; ++j)
+    moment[j] = run.coefficients[6][run.stored.at(first + j).storage_index(first + j)] * (twist[j + 1] - twist[j]);
+  double* const to = r[run.twist];
+  for (int i = 0; i < nodes; ++i) to[i] += moment[i + 1] - moment[i];
+}
+
 void ElementRows::add(int first, int past, const Planes& x, const Planes& r) const {
-  for (const Run& run : runs_)
+  for (const Run& run : runs_) {
     run.u >= 0 ? add_run<true>(run, first, past, x, r) : add_run<false>(run, first, past, x, r);
+    if (run.twist >= 0) add_twist(run, first, past, x, r);
+  }
 }
 
 }  // namespace traverse::beam

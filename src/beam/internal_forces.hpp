@@ -26,19 +26,22 @@ class InternalForces {
 
  private:
   /// Forces and moment at the left end from t = (v2 - v1 - h theta1, theta2 - theta1): {A, B; C, D} t; N and N m.
-  /// Along x: S (u2 - u1). All zero between separate spans.
+  /// Along x: S (u2 - u1). Of the twist: T (twist2 - twist1), N m. All zero between separate spans.
   struct Stiffness {
-    double h, A, B, C, D, S;
+    double h, A, B, C, D, S, T;
     std::ptrdiff_t theta1, u1;  // indices in the left column, which differ at a hinge or an expansion device
   };
   struct Run {
     int first = 0;  // local column of its first element's left node; -1: a column of the neighbour rank
-    int u = -1, v = 0, theta = 0;
+    int u = -1, v = 0, theta = 0, twist = -1;
     std::vector<Stiffness> elements;
   };
   Run run_of(const Beam& beam, const Line& line) const;
   template <class Real, bool axial>
   void add_run(const Run& run, double sign, const double* x, const double* left, const double* right, double* r) const;
+  template <class Real>
+  void add_twist(const Run& run, double sign, const double* x, const double* left, const double* right,
+                 double* r) const;
 
   int block_, local_;
   std::vector<Run> runs_;
@@ -60,17 +63,18 @@ class ElementRows {
   void add(int first, int past, const Planes& x, const Planes& r) const;
 
  private:
-  // The coefficients h, A, B, C, D and S of InternalForces for each element. Element j is between the local nodes
+  // The coefficients h, A, B, C, D, S and T of InternalForces for each element. Element j is between the local nodes
   // j - 1 and j; its coefficients are zero if there is no element.
-  static constexpr int numbers = 6;
+  static constexpr int numbers = 7;
   struct Run {
-    int u, v, theta;  // places in a column
+    int u, v, theta, twist;  // places in a column
     std::array<std::vector<double>, numbers> coefficients;
     solve::StoredSequence stored;
   };
   static Run run_of(const Beam& beam, const Line& line);
   template <bool axial>
   static void add_run(const Run& run, int first, int past, const Planes& x, const Planes& r);
+  static void add_twist(const Run& run, int first, int past, const Planes& x, const Planes& r);
 
   std::vector<Run> runs_;
 };

@@ -14,10 +14,7 @@ namespace {
 /// The element of length h whose left node is at x.
 Element element_of(const BeamModel& model, int left, int span, double x, double h) {
   const double middle = x + 0.5 * h, EI = model.EI.at(middle, x);
-  const double shear = model.GA ? 12.0 * EI / (model.GA->at(middle, x) * h * h) : 0.0;
-  const double turning =
-      model.torsion ? model.torsion->track * model.torsion->track * h / model.torsion->GJ.at(middle, x) : 0.0;
-  return {left, span, x, h, EI, shear, turning};
+  return {left, span, x, h, EI, model.GA ? 12.0 * EI / (model.GA->at(middle, x) * h * h) : 0.0};
 }
 
 /// Whether the beam's first (or last) end remains at the height of the ground beside it.

@@ -20,9 +20,6 @@ struct Element {
   double length = 0.0;  // m
   double EI = 0.0;      // at its middle, N m2
   double shear = 0.0;   // 12 EI/(GA length^2) at its middle; 0: no shear deformation
-  /// Deflection of a track by the twist of the element under a unit force on it: e^2 length/GJ at its middle, m/N; 0
-  /// for a track at the shear centre. At xi the twist between the nodes has the part xi (1 - xi) of it.
-  double turning = 0.0;
 };
 
 /// A station inside an element.

@@ -15,12 +15,12 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 WheelPatches patches_of(const train::WheelContact& c) {
   WheelPatches patches;
   patches.candidates = c.candidates;
-  if (c.candidates == 0) patches.patch[0] = {-1, 0.0, 1.0, 0.0, 0.0, 0.0, -infinite, infinite};
+  if (c.candidates == 0) patches.patch[0] = {-1, 0.0, 1.0, 0.0, 0.0, -infinite, infinite};
   for (int k = 0; k < c.candidates; ++k) {
     const train::Patch& p = c.patches[static_cast<std::size_t>(k)];
-    patches.patch[k] =
-        p.element < 0 ? WheelPatches::Patch{-1, 0.0, 1.0, 0.0, 0.0, 0.0, p.low, p.high}
-                      : WheelPatches::Patch{p.element, p.x, p.length, p.shear, p.compliance, p.turning, p.low, p.high};
+    patches.patch[k] = p.element < 0
+                           ? WheelPatches::Patch{-1, 0.0, 1.0, 0.0, 0.0, p.low, p.high}
+                           : WheelPatches::Patch{p.element, p.x, p.length, p.shear, p.compliance, p.low, p.high};
   }
   return patches;
 }
@@ -35,7 +35,6 @@ void copy_patches(const WheelPatches& patches, train::WheelContact& c) {
     p.length = from.length;
     p.shear = from.shear;
     p.compliance = from.flexibility;
-    p.turning = from.turning;
     p.low = from.low;
     p.high = from.high;
     p.start = c.touch.station;

@@ -343,8 +343,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   for (SurfacePatch& p : task.patch) {
     p.slot = add_integers(wheels * lanes);
     p.slot_order = add_integers(wheels);
-    for (double** of : {&p.x, &p.length, &p.per_length, &p.shear, &p.flexibility, &p.turning, &p.low, &p.high})
-      *of = add(wheels);
+    for (double** of : {&p.x, &p.length, &p.per_length, &p.shear, &p.flexibility, &p.low, &p.high}) *of = add(wheels);
     for (double*& entry : p.compliance) entry = add(wheels);
     for (double* of : {p.length, p.per_length}) std::fill_n(of, wheels * lanes, 1.0);
     const bool first = &p == task.patch;

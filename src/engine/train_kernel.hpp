@@ -108,8 +108,7 @@ TRAVERSE_INLINE ContactRow on_patch(const SurfacePatch& p, int i, const Touched&
     for (int b = a; b < 4; ++b, ++k) sum += rows(p.compliance[k])[i] * s.value[b];
     structure += sum * s.value[a];
   }
-  const auto local_compliance =
-      train::local_compliance_at<kind>(at.xi, length, shear, rows(p.flexibility)[i], rows(p.turning)[i]);
+  const auto local_compliance = train::local_compliance_at<kind>(at.xi, length, shear, rows(p.flexibility)[i]);
   return {at, structure, local_compliance.value, local_compliance.by_x};
 }
 

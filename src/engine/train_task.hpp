@@ -62,7 +62,6 @@ struct SurfacePatch {
          *per_length = nullptr;            // left end, length and 1/length of the element; m, m, 1/m
   double* shear = nullptr;                 // 12 EI/(GA length^2)
   double* flexibility = nullptr;           // length^3/(3 EI), m/N, if the local compliance is included
-  double* turning = nullptr;               // of beam::Element, likewise
   double *low = nullptr, *high = nullptr;  // m: first and last station of the piece
   // Displacement of (v, theta) of the element's nodes per force and moment on them: the upper half of a symmetric
   // matrix, row by row; off-diagonal entries twice.
@@ -135,9 +134,8 @@ struct TrainTask {
 /// The patches under a wheel whose centre is between two stations.
 struct WheelPatches {
   struct Patch {
-    int element = -1;  // -1: rigid ground
-    double x = 0.0, length = 1.0, shear = 0.0, flexibility = 0.0, turning = 0.0, low = 1.0,
-           high = -1.0;  // SurfacePatch
+    int element = -1;                                                                      // -1: rigid ground
+    double x = 0.0, length = 1.0, shear = 0.0, flexibility = 0.0, low = 1.0, high = -1.0;  // SurfacePatch
   };
   double from = 0.0, to = 0.0;  // m
   int candidates = 0;
@@ -181,7 +179,6 @@ inline void set_patches(TrainTask& train, int at, const WheelPatches& patches) {
     p.per_length[at] = 1.0 / from.length;
     p.shear[at] = from.shear;
     p.flexibility[at] = from.flexibility;
-    p.turning[at] = from.turning;
     p.low[at] = from.low;
     p.high[at] = from.high;
   }

@@ -145,7 +145,8 @@ QuickerModes required_modes(const beam::Beam& beam) {
   std::vector<double> frequencies;  // Hz, bending modes
   const modes::Modes found = modes::natural_modes(beam, max_required, false);
   for (std::size_t i = 0; i < found.omega.size(); ++i)
-    if (found.axial[i] == 0 && found.omega[i] > 0.0) frequencies.push_back(found.omega[i] / (2.0 * std::numbers::pi));
+    if (found.motion[i] != modes::Motion::along && found.omega[i] > 0.0)
+      frequencies.push_back(found.omega[i] / (2.0 * std::numbers::pi));
   if (frequencies.empty()) throw SolverError("the bridge has no mode of bending");
   const double wanted = std::max(code_frequency, code_factor * frequencies.front());
   const auto count_below = std::upper_bound(frequencies.begin(), frequencies.end(), wanted) - frequencies.begin();

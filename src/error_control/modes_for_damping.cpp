@@ -27,7 +27,7 @@ std::size_t count_up_to(const beam::Beam& beam, double limit) {
     const modes::Modes found = modes::natural_modes(beam, wanted, false);
     std::size_t count = 0;
     for (std::size_t i = 0; i < found.omega.size(); ++i)
-      if (found.axial[i] == 0 && found.omega[i] <= largest) ++count;
+      if (found.motion[i] != modes::Motion::along && found.omega[i] <= largest) ++count;
     const bool complete = found.omega.size() < static_cast<std::size_t>(wanted) || found.omega.back() > largest;
     if (complete || count > most_modes) return count;
   }

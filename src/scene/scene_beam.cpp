@@ -79,6 +79,8 @@ void read_torsion(const Options& o, beam::BeamModel& beam) {
   torsion.inertia = read_distribution(o, "beam_polar_inertia");
   torsion.mass_centre = o.number("beam_mass_centre") - o.number("beam_shear_centre");
   torsion.track = o.number("track_eccentricity") - o.number("beam_shear_centre");
+  if (torsion.track != 0.0 && o.choice("scene_analysis") == "transient" && !o.has("model_modes"))
+    o.refuse("model_modes", "missing: a bridge with a track beside its shear centre is computed by modes; such as 40");
   const std::size_t ends = beam.supports.size();
   const std::vector<std::string> words = o.texts("support_torsion", ends, "one per span end, or one for all");
   for (std::size_t end = 0; end < ends; ++end)

@@ -35,6 +35,7 @@ ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, modes::B
                          const std::vector<double>& ratios)
     : beam_(beam), statics_(statics), basis_(std::move(basis)) {
   set_damping(ratios);
+  smooth_track();
   influence_ = influence_of(lines_of_modes(), {});
 }
 
@@ -53,8 +54,51 @@ std::vector<ModalBridge::Line> ModalBridge::lines_of_modes() const {
   for (const auto& shape : basis_.shape) {
     lines.emplace_back().nodal = shape;
     for (double& value : lines.back().nodal) value = -value;
+    if (!beside_axis()) continue;
+    lines.back().share.assign(modes(), 0.0);
+    lines.back().share[lines.size() - 1] = -1.0;
   }
   return lines;
+}
+
+/// The splines end where supports hold the twist, and at the ends of the beam's parts.
+void ModalBridge::smooth_track() {
+  const beam::Line& line = beam_.bridge();
+  if (line.eccentricity() == 0.0) return;
+  const beam::Mesh& mesh = line.mesh;
+  std::vector<char> ends(static_cast<std::size_t>(mesh.nodes()), 0);
+  for (int end = 0; end <= mesh.spans(); ++end) {
+    const auto [left, right] = mesh.nodes_at(end);
+    const bool held = line.model.torsion->held[static_cast<std::size_t>(end)] != 0;
+    for (const int node : {left, right})
+      if (held || left != right) ends[static_cast<std::size_t>(node)] = 1;
+  }
+  ends.front() = ends.back() = 1;
+  for (const std::vector<double>& shape : basis_.shape) {
+    std::vector<double>& bends = bend_of_track_.emplace_back(2 * static_cast<std::size_t>(mesh.elements()), 0.0);
+    std::vector<double> x, twist;
+    int first = 0;  // element of the first node
+    for (int e = 0; e < mesh.elements(); ++e) {
+      const auto unknowns = line.twists(e);
+      if (x.empty()) {
+        first = e;
+        x.push_back(mesh.element(e).x);
+        twist.push_back(shape[static_cast<std::size_t>(unknowns[0])]);
+      }
+      x.push_back(mesh.element(e).x + mesh.element(e).length);
+      twist.push_back(shape[static_cast<std::size_t>(unknowns[1])]);
+      if (ends[static_cast<std::size_t>(mesh.element(e).left) + 1] == 0) continue;
+      const std::vector<double> slope = beam::spline_slopes(x, twist);
+      for (int k = first; k <= e; ++k) {
+        const auto i = static_cast<std::size_t>(k - first);
+        const double straight = (twist[i + 1] - twist[i]) / mesh.element(k).length;
+        for (std::size_t end = 0; end < 2; ++end)
+          bends[2 * static_cast<std::size_t>(k) + end] = line.eccentricity() * (slope[i + end] - straight);
+      }
+      x.clear();
+      twist.clear();
+    }
+  }
 }
 
 const double* ModalBridge::shape(std::size_t mode) const {
@@ -209,14 +253,23 @@ ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, double gravity
   return slopes;
 }
 
+/// What bend_of_track adds to phi_i at a station.
+double ModalBridge::bend_at(std::size_t mode, double x) const {
+  if (!beside_axis()) return 0.0;
+  const beam::Station at = beam_.mesh().locate(x);
+  const beam::Element& element = beam_.mesh().element(at.element);
+  const auto psi = beam::hermite(at.xi, element.length, element.shear).value;
+  return psi[1] * bend_of_track(mode, at.element, 0) + psi[3] * bend_of_track(mode, at.element, 1);
+}
+
 void ModalBridge::record_forms(recovery::Recovery& recovery) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
   std::vector<recovery::Response> responses;
   for (std::size_t i = 0; i < modes(); ++i) {
     recovery.evaluate(shape(i), zero.data(), zero.data(), {}, responses);
-    for (const recovery::Response& r : responses) {
-      probes_.deflection.push_back(r.deflection);
-      probes_.moment.push_back(r.moment);
+    for (std::size_t p = 0; p < responses.size(); ++p) {
+      probes_.deflection.push_back(responses[p].deflection + bend_at(i, recovery.stations()[p]));
+      probes_.moment.push_back(responses[p].moment);
     }
     recovery.evaluate(zero.data(), zero.data(), shape(i), {}, responses);
     const double squared = basis_.omega[i] * basis_.omega[i];  // adds inertia: the mode's shape, also on a bed
@@ -302,6 +355,7 @@ ModalBridge::Line ModalBridge::line_of(const std::vector<double>& load,
   for (std::size_t i = 0; i < modes(); ++i) {
     const double share = form(i) / (basis_.omega[i] * basis_.omega[i]);
     for (std::size_t k = 0; k < line.nodal.size(); ++k) line.nodal[k] += share * basis_.shape[i][k];
+    if (beside_axis()) line.share.push_back(share);
   }
   return line;
 }
@@ -338,7 +392,10 @@ PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const s
       influence.coefficients.resize(piece + 4 * lines.size());
       for (std::size_t channel = 0; channel < lines.size(); ++channel) {
         const Line& line = lines[channel];
-        const std::array<double, 4> nodal = transverse_values(line.nodal, e);
+        std::array<double, 4> nodal = transverse_values(line.nodal, e);
+        for (std::size_t i = 0; i < line.share.size(); ++i)
+          for (int end = 0; end < 2; ++end)
+            nodal[static_cast<std::size_t>(2 * end + 1)] += line.share[i] * bend_of_track(i, e, end);
         beam::Cubic cubic = beam::shifted(beam::hermite_cubic(nodal, element.length, element.shear), left);
         if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
           const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {

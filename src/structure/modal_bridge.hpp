@@ -126,20 +126,31 @@ class ModalBridge {
   const beam::Beam& beam() const { return beam_; }
   /// phi_i, this rank's unknowns.
   const double* shape(std::size_t mode) const;
+  /// Whether the track is beside the shear centre, so that bend_of_track() is not zero.
+  bool beside_axis() const { return !bend_of_track_.empty(); }
+  /// By how much the slope of phi_i along the track exceeds that of a twist that is linear along the element, at its
+  /// left (0) or right (1) end. The twist is a cubic spline there: a load that passes the kinks of straight pieces
+  /// would excite the bridge.
+  double bend_of_track(std::size_t mode, int element, int end) const {
+    return bend_of_track_[mode][2 * static_cast<std::size_t>(element) + static_cast<std::size_t>(end)];
+  }
 
  private:
   /// Values of a response under a unit downward force along x: the nodal values of an influence line, and the direct
   /// response if the force is inside the probe's element.
   struct Line {
     std::vector<double> nodal;  // all ranks' unknowns
+    std::vector<double> share;  // of each mode's shape in them; empty: none
     std::size_t probe = 0;
     double recovery::Response::*direct = nullptr;  // null: none
   };
+  void smooth_track();
   Eigen::MatrixXd on_shapes(Mat matrix) const;
   Eigen::MatrixXd share_of_modes(const Eigen::MatrixXd& forces) const;
   void set_damping(const std::vector<double>& ratios);
   void set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share);
   void add_given_probes(const std::vector<double>& stations);
+  double bend_at(std::size_t mode, double x) const;
   void record_forms(recovery::Recovery& recovery);
   void record_others(recovery::Recovery& recovery);
   void record_weight(recovery::Recovery& recovery, double gravity);
@@ -161,6 +172,7 @@ class ModalBridge {
   mutable std::optional<ComplexModes> complex_modes_;
   ModalProbes probes_;
   PiecewiseCubic influence_;
+  std::vector<std::vector<double>> bend_of_track_;  // [mode][2*element + end]; empty on the line of shear centres
 };
 
 }  // namespace traverse::structure

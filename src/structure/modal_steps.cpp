@@ -98,8 +98,9 @@ void ModalStructure::ModalCompliance::prepare(const std::vector<int>& elements) 
   loaded_shapes_.resize(static_cast<std::size_t>(m_) * structure_.modes_);
   for (int b = 0; b < count; ++b) {
     responses_[b] = {0, count, static_cast<std::size_t>(b) * elements_.size() * size};
+    const auto unknowns = structure_.line_.unknowns(elements_[b]);
     for (int k = 0; k < m_; ++k)
-      structure_.divide(structure_.shapes(elements_[b], k, shape_),
+      structure_.divide(structure_.shapes(elements_[b], k, unknowns),
                         &loaded_shapes_[static_cast<std::size_t>(k) * structure_.modes_]);
     for (int a = 0; a < count; ++a) {
       double* to = blocks_.data() + block_at(a, b, count);
@@ -111,9 +112,10 @@ void ModalStructure::ModalCompliance::prepare(const std::vector<int>& elements) 
   }
 }
 
-void ModalStructure::ModalCompliance::fill(int a, double* to) {
+void ModalStructure::ModalCompliance::fill(int a, double* to) const {
+  const auto unknowns = structure_.line_.unknowns(elements_[a]);
   for (int k = 0; k < m_; ++k) {
-    const double* phi = structure_.shapes(elements_[a], k, shape_);
+    const double* phi = structure_.shapes(elements_[a], k, unknowns);
     for (int j = 0; j < m_; ++j) {
       const double* loaded = &loaded_shapes_[static_cast<std::size_t>(j) * structure_.modes_];
       double sum = 0.0;

@@ -26,6 +26,7 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
   by_unknown_.resize(modes_ * shape.front().size());
   for (std::size_t i = 0; i < modes_; ++i)
     for (std::size_t u = 0; u < shape[i].size(); ++u) by_unknown_[u * modes_ + i] = shape[i][u];
+  if (bridge_.beside_axis()) find_shapes_of_track();
   for (const std::vector<double>& nodal : shape)
     mode_extents_.push_back(extent_of(nodal.data(), beam_.layout(), static_cast<int>(nodal.size())));
 
@@ -58,40 +59,45 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
   factorise();
 }
 
+void ModalStructure::find_shapes_of_track() {
+  const auto values = 2 * static_cast<std::size_t>(per_node());
+  by_element_.assign(values * static_cast<std::size_t>(line_.mesh.elements()) * modes_, 0.0);
+  for (int element = 0; element < line_.mesh.elements(); ++element) {
+    const auto phi = [&](int k) {
+      return &by_element_[(values * static_cast<std::size_t>(element) + static_cast<std::size_t>(k)) * modes_];
+    };
+    line_.for_unknowns(element, [&](int k, int unknown, double factor) {
+      for (std::size_t i = 0; i < modes_; ++i) phi(k)[i] += factor * shapes(unknown)[i];
+    });
+    for (std::size_t i = 0; i < modes_; ++i)
+      for (int end = 0; end < 2; ++end) phi((end + 1) * per_node() - 1)[i] += bridge_.bend_of_track(i, element, end);
+  }
+}
+
 // --- loads and states ----------------------------------------------------------------------------------------------
 
 void ModalStructure::load(const std::vector<recovery::ElementLoad>& forces) {
   forces_ = forces;
   std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
   for (const recovery::ElementLoad& force : forces_) {
+    const auto unknowns = line_.unknowns(force.element);
     const auto parts = on_unknowns(line_, force);
-    line_.for_unknowns(force.element, [&](int k, int unknown, double factor) {
-      const double* phi = shapes(unknown);
-      const double part = factor * parts[static_cast<std::size_t>(k)];
-      for (std::size_t i = 0; i < modes_; ++i) modal_force_[i] += phi[i] * part;
-    });
+    for (int k = 0; k < 2 * per_node(); ++k) {
+      const double* phi = shapes(force.element, k, unknowns);
+      for (std::size_t i = 0; i < modes_; ++i) modal_force_[i] += phi[i] * parts[static_cast<std::size_t>(k)];
+    }
   }
-}
-
-const double* ModalStructure::shapes(int element, int k, std::vector<double>& work) const {
-  if (line_.eccentricity() == 0.0) return shapes(line_.unknowns(element)[static_cast<std::size_t>(k)]);
-  work.assign(modes_, 0.0);
-  line_.for_unknowns(element, [&](int value, int unknown, double factor) {
-    if (value != k) return;
-    const double* phi = shapes(unknown);
-    for (std::size_t i = 0; i < modes_; ++i) work[i] += factor * phi[i];
-  });
-  return work.data();
 }
 
 void ModalStructure::add_modal_forces(const ElementLoads& contacts, double* to) const {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   for (std::size_t a = 0; a < contacts.elements.size(); ++a) {
-    line_.for_unknowns(contacts.elements[a], [&](int k, int unknown, double factor) {
-      const double* phi = shapes(unknown);
-      const double force = factor * contacts.values[a * m + static_cast<std::size_t>(k)];
+    const auto unknowns = line_.unknowns(contacts.elements[a]);
+    for (std::size_t k = 0; k < m; ++k) {
+      const double* phi = shapes(contacts.elements[a], static_cast<int>(k), unknowns);
+      const double force = contacts.values[a * m + k];
       for (std::size_t i = 0; i < modes_; ++i) to[i] += phi[i] * force;
-    });
+    }
   }
 }
 
@@ -134,16 +140,21 @@ void ModalStructure::add_values(const std::vector<int>& elements, const double* 
   if (n_ == 0) return;
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   for (std::size_t a = 0; a < elements.size(); ++a) {
+    const auto unknowns = line_.unknowns(elements[a]);
+    std::array<double, 6> of_weight{};
     line_.for_unknowns(elements[a], [&](int k, int unknown, double factor) {
-      const double* phi = shapes(unknown);
-      double value = weight_displacement_[static_cast<std::size_t>(unknown)], rate = 0.0;
+      of_weight[static_cast<std::size_t>(k)] += factor * weight_displacement_[static_cast<std::size_t>(unknown)];
+    });
+    for (std::size_t k = 0; k < m; ++k) {
+      const double* phi = shapes(elements[a], static_cast<int>(k), unknowns);
+      double value = of_weight[k], rate = 0.0;
       for (std::size_t i = 0; i < modes_; ++i) {
         value += phi[i] * (v != nullptr ? v[i] : v_predicted_[i] + z_[i]);
         rate += phi[i] * (v != nullptr ? w[i] : w_predicted_[i] + shift_ * z_[i]);
       }
-      v_elements[a * m + static_cast<std::size_t>(k)] += factor * value;
-      w_elements[a * m + static_cast<std::size_t>(k)] += factor * rate;
-    });
+      v_elements[a * m + k] = value;
+      w_elements[a * m + k] = rate;
+    }
   }
 }
 

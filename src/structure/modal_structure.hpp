@@ -62,21 +62,24 @@ class ModalStructure final : public MovingStructure {
     void prepare(const std::vector<int>& elements);
 
    private:
-    void fill(int a, double* to);
+    void fill(int a, double* to) const;
     const ModalStructure& structure_;
     std::vector<int> elements_, elements_before_, previous_index_;
     double shift_ = -1.0, shift2_ = -1.0;  // shifts of the stage for which the blocks were computed
     std::vector<double> blocks_before_;
     std::vector<double> loaded_shapes_;  // S^-1 times the shapes of the loaded element: [unknown][mode]
-    std::vector<double> shape_;          // of a nodal value
   };
 
-  /// The values of nodal value k of an element of the track in every mode: those of an unknown, or their sum in `work`.
-  const double* shapes(int element, int k, std::vector<double>& work) const;
+  /// Nodal value k of an element of the track in every mode; unknowns: of the element.
+  const double* shapes(int element, int k, const std::array<int, 6>& unknowns) const {
+    const auto value = 2 * static_cast<std::size_t>(per_node() * element) + static_cast<std::size_t>(k);
+    return by_element_.empty() ? shapes(unknowns[static_cast<std::size_t>(k)]) : &by_element_[value * modes_];
+  }
   /// The values of an unknown of the beam, counted over all ranks, in every mode.
   const double* shapes(int unknown) const { return &by_unknown_[static_cast<std::size_t>(unknown) * modes_]; }
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                   double* w_elements) const override;
+  void find_shapes_of_track();
   void add_modal_forces(const ElementLoads& contacts, double* to) const;
   double work_rate(const double* w) const;
   double damping(const double* w) const;
@@ -89,6 +92,7 @@ class ModalStructure final : public MovingStructure {
   const ModalBridge& bridge_;
   std::size_t modes_;
   std::vector<double> by_unknown_;             // [unknown][mode]
+  std::vector<double> by_element_;             // [nodal value of each element][mode]; only of a track beside the axis
   std::vector<double> weight_displacement_;    // v_0, of all ranks' unknowns
   std::vector<double> weight_;                 // phi^T of the self-weight, N
   double weight_work_ = 0.0;                   // J, self-weight times v_0

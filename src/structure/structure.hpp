@@ -91,11 +91,10 @@ class Structure {
   /// Nodal forces of the self-weight and the strains of the beam, this rank's unknowns of the beam.
   const std::vector<double>& dead_load() const { return dead_load_; }
   /// Whether the deflection of an element between its nodes is included under a wheel. Never by modes; otherwise always
-  /// for a rail, which bends there, and for an element with shear or a twist under its track, whose deflection has a
-  /// kink under a wheel but not at the nodes; otherwise if requested.
+  /// for a rail, which bends there, and for an element with shear, whose deflection has a kink under a wheel but not at
+  /// the nodes; otherwise if requested.
   bool uses_local_compliance(bool requested) const {
-    return mode_extents_.empty() &&
-           (requested || beam_.rail() != nullptr || beam_.model().GA.has_value() || line_.eccentricity() != 0.0);
+    return mode_extents_.empty() && (requested || beam_.rail() != nullptr || beam_.model().GA.has_value());
   }
   /// Whether the structure is deformed without vehicles and moving forces.
   bool deformed_without_traffic() const { return gravity_ != 0.0 || beam_.model().strained(); }

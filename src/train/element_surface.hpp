@@ -118,8 +118,7 @@ template <Surface kind, class Number>
 }
 
 /// The compliance of an element clamped at its nodes for a force between them, m/N, and its derivative over x. With u =
-/// xi (1 - xi), s = 12 EI/(GA h^2) and the flexibility h^3/(3 EI) it is h^3/(12 EI) ((4 u^3 + s u^2)/(1 + s) + s u),
-/// and turning*u by the twist below a track beside the shear centre (beam::Element).
+/// xi (1 - xi), s = 12 EI/(GA h^2) and the flexibility h^3/(3 EI) it is h^3/(12 EI) ((4 u^3 + s u^2)/(1 + s) + s u).
 template <class Number>
 struct LocalCompliance {
   Number value, by_x;
@@ -127,14 +126,13 @@ struct LocalCompliance {
 
 template <Surface kind, class Number>
 [[gnu::always_inline]] inline LocalCompliance<Number> local_compliance_at(Number xi, Number length, Number s,
-                                                                          Number flexibility, Number turning) {
+                                                                          Number flexibility) {
   const Number u = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / length;
-  const LocalCompliance<Number> stiff = {flexibility * u * u * u + turning * u,
-                                         flexibility * 3.0 * u * u * by_x + turning * by_x};
+  const LocalCompliance<Number> stiff = {flexibility * u * u * u, flexibility * 3.0 * u * u * by_x};
   if constexpr (kind == Surface::flat) return stiff;
   const Number quarter = 0.25 * flexibility;
-  const Number sheared = quarter * u * ((4.0 * u + s) * u / (1.0 + s) + s) + turning * u;
-  const Number sheared_by_x = (quarter * ((12.0 * u + 2.0 * s) * u / (1.0 + s) + s) + turning) * by_x;
+  const Number sheared = quarter * u * ((4.0 * u + s) * u / (1.0 + s) + s);
+  const Number sheared_by_x = quarter * ((12.0 * u + 2.0 * s) * u / (1.0 + s) + s) * by_x;
   const auto is_stiff = s == 0.0;
   return {is_stiff ? stiff.value : sheared, is_stiff ? stiff.by_x : sheared_by_x};
 }

@@ -28,8 +28,6 @@ void Fleet::add_patch(WheelContact& c, int element, double start, double low, do
   patch.x = e.x;
   patch.length = e.length;
   patch.shear = e.shear;
-  patch.turning = 0.0;
-  if (uses_local_compliance_) patch.turning = e.turning;
   if (uses_local_compliance_) patch.compliance = e.length * e.length * e.length / (3.0 * e.EI);
 }
 

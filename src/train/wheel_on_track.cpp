@@ -104,8 +104,7 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
   out.normal_on_body = {-n.x(), -n.y(), 0.0};
   out.tangent_on_body = {tau.x(), tau.y(), distance};
   if (patch.element < 0) return true;
-  const auto local =
-      local_compliance_at<Surface::general>(s.xi, patch.length, patch.shear, patch.compliance, patch.turning);
+  const auto local = local_compliance_at<Surface::general>(s.xi, patch.length, patch.shear, patch.compliance);
   out.local_compliance = local.value;
   out.local_compliance_by_x = local.by_x;
   const auto shapes = shapes_at<Surface::general>(s.xi, patch.length, patch.shear);

@@ -24,7 +24,6 @@ struct Patch {
   int element = -1;                    // -1: rigid ground
   double x = 0.0, length = 0.0;        // left end and length of the element, m
   double shear = 0.0;                  // 12 EI/(GA length^2)
-  double turning = 0.0;                // of beam::Element, m/N, if the local compliance is included
   double height = 0.0;                 // height of the surface above the beam's neutral axis, m
   double compliance = 0.0;             // length^3/(3 EI), m/N, if the local compliance is included
   double low = 0.0, high = 0.0;        // ends of the piece, m; a wheel outside touches its corner

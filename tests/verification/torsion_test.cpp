@@ -8,6 +8,7 @@
 #include "support/curve.hpp"
 #include "support/folders.hpp"
 #include "support/message.hpp"
+#include "support/record.hpp"
 
 namespace traverse::test {
 namespace {
@@ -63,7 +64,7 @@ TEST(Torsion, FrequenciesOfACantileverAndOfThreeSpans) {
         "support: {types: [pinned, roller, roller, roller], torsion: [held, " +
         std::string(forks ? "held, held" : "free, free") + ", held]}\nscene: {analysis: modes}\nmodes: {count: 10}\n");
     EXPECT_NEAR(frequencies_where(run, "/modes/twisting").front(),
-                1.0 / (2.0 * (forks ? 14.0 : 34.0)) * std::sqrt(GJ / inertia), 1e-4);
+                1.0 / (2.0 * (forks ? 14.0 : 34.0)) * std::sqrt(GJ / inertia), 3e-4);
   }
 }
 
@@ -101,12 +102,12 @@ TEST(Torsion, CoupledFrequencies) {
 
 /// At rest on the track over midspan, by modes with static correction and by elements, in an element or at a node.
 TEST(Torsion, AForceBesideTheAxis) {
-  for (const char* model : {"model: {modes: 6, damping_ratios: 0.02}\n", "ts: {dt: 0.01}\n"})
+  for (const char* model : {"model: {modes: 6, damping_ratios: 0.02}\n", "ts_dt: 0.01\n"})
     for (const double x : {12.0, 11.3}) {
       Results run =
-          run_yaml(bridge(", elements_per_span: 12, damping_ratios: 0.02",
+          run_yaml(bridge(std::string(", elements_per_span: 12") + (model[0] == 't' ? ", damping_ratios: 0.02" : ""),
                           std::string(model) + "track: {eccentricity: 2.25}\nload: {forces: 2.0e5, speed: 0}\n"
-                                               "ts: {max_time: 60}\noutput: {probes: [6, 12, 11.3]}\n"),
+                                               "ts_max_time: 60\noutput: {probes: [6, 12, 11.3]}\n"),
                    {{"load_positions", text(x)}, {"output_interval", "60"}});
       const auto last = [&](const char* name, std::size_t i) { return run.column(name, i).back(); };
       const double twist = -F * e * (L - x) * 6.0 / (GJ * L), under = -F * e * (L - x) * x / (GJ * L);
@@ -120,42 +121,60 @@ TEST(Torsion, AForceBesideTheAxis) {
     }
 }
 
-/// Deflection and acceleration of the track at midspan under a force at the speed v from the left end, by the modal
-/// series without damping.
+/// The coordinate of a damped mode under amplitude*sin(W t) from rest; where it creeps, at rest under the force.
+double coordinate(double omega, double zeta, double W, double amplitude, double t) {
+  if (zeta >= 1.0) return amplitude / (omega * omega) * std::sin(W * t);
+  const double below = omega * omega - W * W, drag = 2.0 * zeta * omega * W, D = below * below + drag * drag;
+  const double a = below / D, b = -drag / D, d = zeta * omega, damped = omega * std::sqrt(1.0 - zeta * zeta);
+  return amplitude * (a * std::sin(W * t) + b * std::cos(W * t) -
+                      std::exp(-d * t) * (b * std::cos(damped * t) + (a * W + d * b) / damped * std::sin(damped * t)));
+}
+
+/// Deflection of the axis and twist at midspan under a force at the speed v from the left end, by the modal series with
+/// the Rayleigh damping of 2 % in the first two modes of bending.
 std::array<double, 2> series(double v, double t) {
-  double deflection = 0.0, acceleration = 0.0;
-  const auto add = [&](double omega, double W, double shape, double amplitude) {
-    const double factor = amplitude * shape / (omega * omega - W * W);
-    deflection += factor * (std::sin(W * t) - W / omega * std::sin(omega * t));
-    acceleration += factor * (-W * W * std::sin(W * t) + W * omega * std::sin(omega * t));
-  };
-  for (int n = 1; n <= 801; ++n) {
+  const double w1 = omega_of_bending(1), w2 = omega_of_bending(2), b = 2.0 * 0.02 / (w1 + w2), a = w1 * w2 * b;
+  const auto zeta = [&](double omega) { return 0.5 * (a / omega + b * omega); };
+  std::array<double, 2> sum{};
+  for (int n = 1; n <= 3001; n += 2) {
     const double W = n * pi * v / L, shape = std::sin(0.5 * n * pi);
-    add(omega_of_bending(n), W, shape, -2.0 * F / (mass * L));
-    add(omega_of_twist(n), W, shape, -2.0 * F * e * e / (inertia * L));
+    const double bending = omega_of_bending(n), twist = omega_of_twist(n);
+    sum[0] += shape * coordinate(bending, zeta(bending), W, -2.0 * F / (mass * L), t);
+    sum[1] += shape * coordinate(twist, zeta(twist), W, -2.0 * F * e / (inertia * L), t);
   }
-  return {deflection, acceleration};
+  return sum;
+}
+
+/// The largest errors of the track's deflection and of the twist at midspan, relative to the largest values.
+std::array<double, 2> errors_of_passage(int elements, const std::string& model) {
+  const std::string beam = ", damping_ratios: 0.02, elements_per_span: " + std::to_string(elements);
+  Results run = run_yaml(bridge(beam, model + "track: {eccentricity: 2.25}\nload: {forces: 2.0e5, speed: 40}\n"
+                                              "ts_max_time: 0.6\noutput: {probes: 12, interval: 0.01}\n"));
+  const std::vector<double> time = run.time(), found = run.column("/probes/deflection"),
+                            twist = run.column("/probes/twist");
+  std::array<double, 2> worst{}, largest{};
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const std::array<double, 2> exact = series(40.0, time[i]);
+    const std::array<double, 2> both = {exact[0] + e * exact[1], exact[1]}, computed = {found[i], twist[i]};
+    for (std::size_t k = 0; k < 2; ++k) {
+      worst[k] = std::max(worst[k], std::abs(computed[k] - both[k]));
+      largest[k] = std::max(largest[k], std::abs(both[k]));
+    }
+  }
+  return {worst[0] / largest[0], worst[1] / largest[1]};
 }
 
 TEST(Torsion, AMovingForceBesideTheAxis) {
-  const std::string rest =
-      "track: {eccentricity: 2.25}\nload: {forces: 2.0e5, speed: 40}\nts: {max_time: 0.6}\n"
-      "output: {probes: 12, interval: 0.01}\n";
-  const auto error = [&](const std::string& more, const std::string& model) {
-    Results run = run_yaml(bridge(more, model + rest));
-    const std::vector<double> time = run.time(), found = run.column("/probes/deflection");
-    double worst = 0.0, largest = 0.0;
-    for (std::size_t i = 0; i < time.size(); ++i) {
-      const double exact = series(40.0, time[i])[0];
-      worst = std::max(worst, std::abs(found[i] - exact));
-      largest = std::max(largest, std::abs(exact));
-    }
-    return worst / largest;
-  };
-  const double by_modes = error(", elements_per_span: 64, rayleigh: [0, 0]", "model: {modes: 60}\n"),
-               by_elements = error(", elements_per_span: 64, rayleigh: [0, 0]", "ts: {dt: 5e-5}\n");
-  EXPECT_LT(by_modes, 1e-4);
-  EXPECT_LT(by_elements, 3e-4);
+  const std::array by_modes = errors_of_passage(64, "model: {modes: 60}\n"),
+                   by_elements = errors_of_passage(64, "ts_dt: 5e-5\n"),
+                   coarse = errors_of_passage(16, "ts_dt: 1e-4\n");
+  record("by_modes", by_modes[0]);
+  record("by_elements", by_elements[0]);
+  record("twist", by_elements[1]);
+  EXPECT_LT(by_modes[0], 1e-4);
+  EXPECT_LT(by_elements[0], 1e-4);
+  EXPECT_LT(by_elements[1], 3e-4);
+  EXPECT_LT(coarse[0], 1e-3);
 }
 
 /// A sprung mass on the track: by modes and by elements, with a linear vehicle and as a mechanism.
