@@ -50,8 +50,14 @@ def series_names(file):
 def names(file):
     """Names of all time series and of the other tables."""
     others = ["sweep", *OVER_RUNS]
-    return (series_names(file) + [name for name in others if datasets(file, name)] + rail_names(file) +
-            list(export_answers.tables(file)))
+    return (series_names(file) + [name for name in others if datasets(file, name)] + profile_names(file) +
+            rail_names(file) + list(export_answers.tables(file)))
+
+
+def profile_names(file):
+    """Names of the running surfaces of output_profile."""
+    of_trains = [f"track/profile_of/{train}" for train in file.get("track/profile_of", ())]
+    return [name for name in ["track/profile", *of_trains] if name in file]
 
 
 def rail_names(file):
@@ -163,6 +169,14 @@ def over_runs(file, group):
     return table
 
 
+def of_profile(file, name):
+    """A table that track_profile can read."""
+    table = Table()
+    for column in ("x", "height"):
+        table.add(column, *units(file[name][column]), file[name][column][:])
+    return table
+
+
 def of_rail(file, name):
     """A table of all cases along the track, or of the peaks: one row per case, with position and front of the train."""
     group, table = file["rail_forces"], Table()
@@ -188,6 +202,8 @@ def table_of(file, name):
         return of_sweep(file)
     if name in OVER_RUNS and datasets(file, name):
         return over_runs(file, name)
+    if name in profile_names(file):
+        return of_profile(file, name)
     if name in rail_names(file):
         return of_rail(file, name)
     if write := export_answers.tables(file).get(name):

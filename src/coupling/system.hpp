@@ -63,6 +63,7 @@ struct SystemInput {
   bool self_weight = false;       // gravity acts on the beam too
   int impact_steps = 20;          // least number of steps in an impact; 0: no limit
   bool local_compliance = false;  // whether a bridge's elements deflect between their nodes under wheels
+  bool contact_points = false;    // observations of everything contain the contact points
   bool only_on_bridge = false;    // trains in steady motion beside the bridge, or behind it, are not computed
 };
 
@@ -74,6 +75,12 @@ struct Energy {
   double largest_work = 0.0;
 };
 
+/// The point of the running surface under the centre of a wheel: x and y, and their rates along the wheel's path. NaN
+/// where there is no surface.
+struct ContactPoint {
+  std::array<double, 2> position{}, velocity{}, acceleration{};  // m, m/s, m/s2
+};
+
 /// An accepted instant, complete on every rank except for the nodal values.
 struct Observation {
   structure::NodalMotion beam;
@@ -81,6 +88,7 @@ struct Observation {
   /// All concentrated loads on the bridge: `loads` if they run on the bridge, and the nonlinear foundation. Inside an
   /// element a bed is represented by forces at its integration points.
   std::vector<recovery::ElementLoad> bridge_loads;
+  std::vector<ContactPoint> contact_points;  // of each of Fleet::wheels, if the input wants them; further ones unused
   Energy energy;
 };
 
@@ -296,6 +304,8 @@ class System {
   bool is_driven(int wheel) const;
   double surface_height() const;
   double moment_about_axis(const train::WheelContact& c) const;
+  void find_contact_points(const double* y, Observation& out);
+  std::vector<double> values_on(const std::vector<int>& elements, const double* nodal) const;
   bool uses_local_compliance() const;
   void record_weights();
   void share_coordinates(const double* y);

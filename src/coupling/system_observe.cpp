@@ -47,7 +47,9 @@ void System::observe(double t, const double* y, const double* a, Observation& ou
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
     out.bridge_loads.insert(out.bridge_loads.end(), out.beam.foundation_loads.begin(), out.beam.foundation_loads.end());
   }
-  if (all) out.energy = energy(y);
+  if (!all) return;
+  out.energy = energy(y);
+  if (input_.contact_points) find_contact_points(y, out);
 }
 
 /// The moment of a wheel's force on the beam about the point of the axis at its station, from the work of the force in

@@ -61,7 +61,7 @@ constexpr Relation relations[] = {
   {Related::scene, "track_ballast_own_mass track_shear_k track_shear_c", needs_all, "track_ballast_k track_subballast_k", "needs ballast masses that move separately: track_ballast_k, track_ballast_mass and track_subballast_k"},
   {Related::scene, "track_dips*", needs, "track_dips_x", "belongs to dips, which need track_dips_x"},
   {Related::scene, "output_probes output_probes_spacing", needs, "beam_spans bridge_modes_file", "needs a beam (beam_spans)"},
-  {Related::scene, "output_sleepers", needs, "track_rail_EI", "needs a layered track (track_rail_EI)"},
+  {Related::scene, "output_rail output_sleepers", needs, "track_rail_EI", "needs a layered track (track_rail_EI)"},
   {Related::scene, "model_additional_damping", needs, "model_damping_bound", "needs model_damping_bound, to which it is added"},
   {Related::scene, "model_damping_ratios", excludes, "beam_damping_ratios beam_rayleigh", "give either these or Rayleigh damping (beam_damping_ratios, beam_rayleigh)"},
   {Related::scene, "model_damping_bound", needs, "beam_spans", "needs a bridge (beam_spans)"},

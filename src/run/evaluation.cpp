@@ -61,7 +61,9 @@ Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, cons
     }
     if (wants.stored && !scene.output.sleepers.empty()) now_.sleepers.emplace(*beam, scene.output.sleepers);
     if (beam->rail() != nullptr) {
-      rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
+      std::vector<double> stations = scene.output.probes;
+      stations.insert(stations.end(), scene.output.rail.begin(), scene.output.rail.end());
+      rail_recovery_.emplace(*beam, *beam->rail(), std::move(stations), 0.0);
       if (wants.stored) now_.devices.emplace(*beam);
     }
   }
@@ -75,6 +77,7 @@ Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, cons
   peaks_ = peaks_for(scene, wheel_count_, lag);
   wheels_ = WheelExtremes(wheel_count_, system.surface_kinks());
   if (wants.stored && !scene.output.passages.empty()) axle_passages_ = {scene, plan.time_step};
+  if (wants.stored && scene.output.profile != 0.0) profiles_ = {scene, system.fleet(), plan.end_time};
   if (wants.limits) limit_check_.emplace(scene, system.fleet(), beam);
   set_up_filters(plan, notes);
 }
@@ -129,6 +132,7 @@ void Evaluation::sample(const integrate::Instant& instant) {
   record_largest_deflection();
   if (limit_check_) limit_check_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
+  profiles_.add(system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == train::Drive::free) paths_.add(instant.time, system_.fleet());
   if (stored) store();
 }
@@ -290,7 +294,7 @@ void Evaluation::keep(base::Archive& archive) {
   if (movement_) archive.same(*movement_);
   if (lag_) archive.same(*lag_);
   if (limit_check_) archive.same(*limit_check_);
-  archive.same(axle_passages_, exits_);
+  archive.same(axle_passages_, exits_, profiles_);
   if (now_.dampers) archive.same(*now_.dampers);
   // The first rank only stores the deck's accelerations.
   deck_ ? archive.same(*deck_) : archive.same();
@@ -366,6 +370,7 @@ void Evaluation::record_once(Result& result) {
     add(axle_passages_.datasets());
     result.tables.emplace_back("/passages/wheel", axle_passages_.wheels(system_.fleet()));
   }
+  add(profiles_.datasets());
   if (!exits_.empty()) {
     add(exits_.datasets());
     result.tables.emplace_back("/exit/body", exits_.bodies(system_.fleet()));

@@ -22,6 +22,7 @@
 #include "run/moving_probes.hpp"
 #include "run/outputs.hpp"
 #include "run/plan.hpp"
+#include "run/profile_record.hpp"
 #include "run/response_extremes.hpp"
 #include "run/wheel_unloading.hpp"
 #include "traverse/scene/scene.hpp"
@@ -116,6 +117,7 @@ class Evaluation {
   std::optional<FilteredWheels> filtered_wheels_;
   AxleLoadRecords axle_passages_;
   ExitStates exits_;
+  ProfileRecord profiles_;
   train::WheelPaths paths_;  // if wheels may change their distances
   MovingProbes moving_probes_;
   std::vector<double> wheel_forces_;

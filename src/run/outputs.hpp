@@ -30,8 +30,9 @@ struct EnergyTerms {
 
 /// The values at a stored instant.
 struct Observed {
-  std::vector<recovery::Response> probes, rail;  // at the scene's probes; empty without a bridge or a rail
-  std::vector<std::array<double, 3>> supports;   // fx, fy, moment on the beam, at the ends of spans
+  std::vector<recovery::Response> probes;                          // empty without a bridge
+  std::vector<recovery::Response> rail;                            // at the probes, then at the stations of output_rail
+  std::vector<std::array<double, 3>> supports;                     // fx, fy, moment on the beam, at the ends of spans
   std::array<std::vector<structure::Movement>, 2> support_motion;  // of the supports there, upward and along the beam
   coupling::Observation motion;
   std::optional<recovery::GroundForces> ground;     // with a bridge

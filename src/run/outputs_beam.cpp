@@ -148,8 +148,15 @@ void add_dampers(const Source& source, Outputs& outputs) {
 
 void add_rail(const Source& source, Outputs& outputs) {
   if (source.beam->rail() == nullptr) return;
-  outputs.add_each("/rail/", motion_rows, source.scene.output.probes.size(), rail);
-  outputs.add_each("/rail/", force_rows, source.scene.output.probes.size(), rail);
+  const std::size_t probes = source.scene.output.probes.size();
+  outputs.add_each("/rail/", motion_rows, probes, rail);
+  outputs.add_each("/rail/", force_rows, probes, rail);
+  if (const std::vector<double>& x = source.scene.output.rail; !x.empty()) {
+    const auto at_station = [probes](const Observed& now, std::size_t i) { return now.rail[probes + i]; };
+    outputs.add_constant("/rail/stations/x", x, "m");
+    outputs.add_each("/rail/stations/", motion_rows, x.size(), at_station);
+    outputs.add_each("/rail/stations/", force_rows, x.size(), at_station);
+  }
   const std::vector<double> devices = recovery::RailDevices(*source.beam).x();
   if (devices.empty()) return;
   outputs.add_constant("/rail/devices/x", devices, "m");

@@ -25,6 +25,12 @@ constexpr Row<train::WheelLoad> wheel_rows[] = {
     {"penetration", "m", of<&train::WheelLoad::penetration>},
 };
 
+constexpr Row<coupling::ContactPoint> contact_point_rows[] = {
+    {"contact_position", "m, m", of<&coupling::ContactPoint::position>},
+    {"contact_velocity", "m/s, m/s", of<&coupling::ContactPoint::velocity>},
+    {"contact_acceleration", "m/s2, m/s2", of<&coupling::ContactPoint::acceleration>},
+};
+
 // A point of a body: x'' = x_b'' + phi'' k x r - phi'^2 r with r from the centre of mass, in the ground's axes.
 struct SensorMotion {
   double x = 0.0, y = 0.0;                            // m
@@ -77,9 +83,10 @@ double spring_tension(const train::MovingVehicle& unit, int spring) {
 /// The outputs of one vehicle of the train.
 class VehicleOutputs {
  public:
-  VehicleOutputs(const train::Fleet& fleet, std::size_t number, Outputs& outputs)
-      : fleet_(fleet),
-        member_(fleet.members[number]),
+  VehicleOutputs(const Source& source, std::size_t number, Outputs& outputs)
+      : fleet_(source.fleet),
+        contact_points_(source.scene.output.contact_points),
+        member_(fleet_.members[number]),
         unit_(static_cast<std::size_t>(member_.unit)),
         group_("/vehicles/" + std::to_string(number) + "/"),
         outputs_(outputs) {}
@@ -114,9 +121,14 @@ class VehicleOutputs {
   void add_contacts() {
     const train::MovingVehicle& unit = fleet_.vehicles[unit_];
     std::size_t wheel = unit.first_wheel + member_.first_wheel, pair = unit.first_pair + member_.first_contact;
-    for (const train::Wheel& w : member_.type->wheels)
+    for (const train::Wheel& w : member_.type->wheels) {
       outputs_.add(group(w.name), wheel_rows,
-                   [&fleet = fleet_, i = wheel++](const Observed&) { return fleet.load(fleet.wheels[i]); });
+                   [&fleet = fleet_, i = wheel](const Observed&) { return fleet.load(fleet.wheels[i]); });
+      if (contact_points_)
+        outputs_.add(group(w.name), contact_point_rows,
+                     [i = wheel](const Observed& now) { return now.motion.contact_points[i]; });
+      ++wheel;
+    }
     for (const contact::BodyContact& c : member_.type->contacts)
       outputs_.add(group(c.name), wheel_rows, [&fleet = fleet_, i = pair++](const Observed&) {
         const train::Contact& now = fleet.pairs[i];
@@ -149,6 +161,7 @@ class VehicleOutputs {
   }
 
   const train::Fleet& fleet_;
+  bool contact_points_;
   const train::Member& member_;
   std::size_t unit_;  // index in fleet.vehicles, whose address may change
   std::string group_;
@@ -158,7 +171,7 @@ class VehicleOutputs {
 }  // namespace
 
 void add_vehicles(const Source& source, Outputs& outputs) {
-  for (std::size_t k = 0; k < source.fleet.members.size(); ++k) VehicleOutputs(source.fleet, k, outputs).add();
+  for (std::size_t k = 0; k < source.fleet.members.size(); ++k) VehicleOutputs(source, k, outputs).add();
 }
 
 void add_couplers(const Source& source, Outputs& outputs) {

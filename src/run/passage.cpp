@@ -130,6 +130,7 @@ std::vector<double> crossing_times(const scene::Scene& scene, const Plan& plan) 
 coupling::SystemInput system_input(const scene::Scene& scene, bool static_only) {
   coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,         scene.profile,
                                  scene.gravity,  scene.self_weight, scene.impact_steps, scene.model.local_compliance};
+  input.contact_points = scene.output.contact_points;
   input.only_on_bridge = !scene.output.series && scene.start == scene::Start::equilibrium;
   if (!static_only) {
     const auto own = integrate::own_method(scene.model.method);

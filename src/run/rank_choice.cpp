@@ -195,11 +195,13 @@ bool shares_trains(const scene::Scene& scene) {
   const bool only_trains = scene.load.forces.empty() && scene.train.courses.size() > 1 &&
                            std::all_of(scene.train.courses.begin(), scene.train.courses.end(),
                                        [](const train::Course& c) { return c.drive == train::Drive::constant; });
+  const bool of_all_wheels = scene.output.contact_points || scene.output.profile != 0.0;
   const bool own_steps =
       integrate::own_method(model.method).has_value() && std::ranges::none_of(scene.options, [](const auto& option) {
         return option.first == "ts_adapt_type" && option.second != "none";
       });
-  return plain_bridge && by_window && only_trains && own_steps && model.vehicles == scene::VehicleModel::linear;
+  return plain_bridge && by_window && only_trains && !of_all_wheels && own_steps &&
+         model.vehicles == scene::VehicleModel::linear;
 }
 
 void WaitingRanks::call(const scene::NumericalModel& model) {

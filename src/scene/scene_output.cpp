@@ -128,13 +128,28 @@ void read_passages(const Options& o, Scene& scene) {
   scene.output.passages = places;
 }
 
-void read_sleepers(const Options& o, Scene& scene) {
-  if (!o.has("output_sleepers")) return;
+/// Whether an option of stations on a layered track has an effect; otherwise a note says so.
+bool stores_track(const Options& o, const char* option, Scene& scene) {
+  if (!o.has(option)) return false;
   const bool runs = scene.analysis == Analysis::transient || scene.analysis == Analysis::static_response;
-  if (!runs || scene.sweep || describes_study(o)) {
-    scene.notes.emplace_back("output_sleepers has no effect: it is for a single transient or static run");
-    return;
-  }
+  if (runs && !scene.sweep && !describes_study(o) && scene.output.series) return true;
+  scene.notes.push_back(fmt::format("{} has no effect: it is for a single transient or static run{}", option,
+                                    scene.output.series ? "" : " with output_series"));
+  return false;
+}
+
+void read_rail_stations(const Options& o, Scene& scene) {
+  if (!stores_track(o, "output_rail", scene)) return;
+  const beam::RailMesh rail = beam::rail_mesh(*scene.beam);
+  scene.output.rail = o.numbers("output_rail");
+  for (const double x : scene.output.rail)
+    if (!(x >= rail.start && x <= rail.x(rail.elements)))
+      o.refuse("output_rail", fmt::format("there is no track at x = {:g} m; allowed: from {:g} to {:g} m", x,
+                                          rail.start, rail.x(rail.elements)));
+}
+
+void read_sleepers(const Options& o, Scene& scene) {
+  if (!stores_track(o, "output_sleepers", scene)) return;
   const beam::LayeredTrack& track = *scene.beam->track;
   const beam::RailMesh rail = beam::rail_mesh(*scene.beam);
   const int last = rail.elements / track.elements_per_bay;
@@ -152,6 +167,21 @@ void read_sleepers(const Options& o, Scene& scene) {
                fmt::format("names the sleeper at x = {:g} m twice; allowed: each sleeper once", station));
     chosen.push_back(station);
   }
+}
+
+void read_surfaces(const Options& o, Scene& scene) {
+  const bool points = o.flag("output_contact_points"),
+             profile = o.has("output_profile") && o.text("output_profile") != "none";
+  const bool single = scene.analysis == Analysis::transient && !scene.sweep && !describes_study(o);
+  const bool of_wheels = single && !wheels_at_start(scene).empty();
+  scene.output.contact_points = points && of_wheels && scene.output.series;
+  if (profile && of_wheels) scene.output.profile = o.optional_number("output_profile");
+  if (points && !scene.output.contact_points)
+    scene.notes.emplace_back(
+        "output_contact_points has no effect: it is for a single transient run of vehicles with wheels and with "
+        "output_series");
+  if (profile && !of_wheels)
+    scene.notes.emplace_back("output_profile has no effect: it is for a single transient run of vehicles with wheels");
 }
 
 bool has_control_character(const std::string& text) {
@@ -204,7 +234,9 @@ void read_output(const Options& o, Scene& scene) {
   read_filter(o, scene);
   read_wheel_filter(o, scene);
   read_passages(o, scene);
+  read_rail_stations(o, scene);
   read_sleepers(o, scene);
+  read_surfaces(o, scene);
 }
 
 }  // namespace traverse::scene

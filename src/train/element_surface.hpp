@@ -137,5 +137,12 @@ template <Surface kind, class Number>
   return {is_stiff ? stiff.value : sheared, is_stiff ? stiff.by_x : sheared_by_x};
 }
 
+/// The second derivative of that compliance over x, 1/(N m).
+inline double local_compliance_by_xx(double xi, double length, double s, double flexibility) {
+  const double u = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / length;
+  const double slope = (12.0 * u + 2.0 * s) * u / (1.0 + s) + s, curvature = (24.0 * u + 2.0 * s) / (1.0 + s);
+  return 0.25 * flexibility * (curvature * by_x * by_x - 2.0 * slope / (length * length));
+}
+
 }  // namespace
 }  // namespace traverse::train

@@ -81,6 +81,10 @@ struct Output {
   double unloading_level = 0.6;     // lost fraction of its force from which on a wheel counts as unloaded
   std::vector<double> passages;     // m: places at which the force of each passing wheel is stored
   std::vector<double> sleepers;     // m: stations of the sleepers whose forces are stored
+  std::vector<double> rail;         // m: further stations of the rail, also beyond the bridge
+  bool contact_points = false;      // the motion of the running surface under each wheel is stored
+  /// m: distance of the stations at which the running surface's height is stored; 0: none; empty: selected.
+  std::optional<double> profile = 0.0;
 };
 
 /// A random running surface with a given spectrum.
