@@ -15,6 +15,8 @@ install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfo
         scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_answers.py
         scripts/export_tables.py scripts/export_xdmf_tables.py
         scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/traffic.py
+        scripts/export_tables.py
+        scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/track_quality.py scripts/traffic.py
         scripts/checked_results.py scripts/input_files.py scripts/output_files.py
         scripts/search_answers.py scripts/sensitivity_measures.py
         DESTINATION ${share}/python)
