@@ -14,6 +14,7 @@
 #include "results/stage.hpp"
 #include "run/exit_states.hpp"
 #include "run/process.hpp"
+#include "run/profile_record.hpp"
 #include "structure/active_window.hpp"
 #include "structure/modal_structure.hpp"
 #include "traverse/base/error.hpp"
@@ -167,6 +168,7 @@ Passage::Passage(const scene::Scene& scene, const SharedBeam& shared, std::vecto
   if (!static_only_) {
     plan_ = make_plan(scene, system_, shared.first_period(), notes);
     check_table_ends(scene, plan_.end_time, notes);
+    if (scene.output.profile != 0.0) ProfileRecord(scene, system_.fleet(), plan_.end_time);  // throws if it is too fine
   }
   if (earlier != nullptr) {
     plan_.time_step = earlier->time_step;

@@ -180,6 +180,9 @@ void read_surfaces(const Options& o, Scene& scene) {
     scene.notes.emplace_back(
         "output_contact_points has no effect: it is for a single transient run of vehicles with wheels and with "
         "output_series");
+  const auto own_surface = [](const train::Course& course) { return course.profile && !course.profile->level(); };
+  if (profile && of_wheels && scene.profile.level() && std::ranges::none_of(scene.train.courses, own_surface))
+    scene.notes.emplace_back("output_profile has no effect: the track is level (track_profile)");
   if (profile && !of_wheels)
     scene.notes.emplace_back("output_profile has no effect: it is for a single transient run of vehicles with wheels");
 }

@@ -215,5 +215,47 @@ TEST(ContactPoints, RatesOfSeriesOnABridgeByModes) {
   expect_rates(run, "modes", {1e-6, 5e-4});
 }
 
+// On a level track the wheel at a station of the rail, here 14 m before the bridge, has the deflection that is stored
+// for this station, which contains that under the wheel's force.
+TEST(ContactPoints, AreTheRailAtItsStations) {
+  const std::string track = track_of(zhai_layers, "  approach: 40.0\n  offset: 0.1\n  elements_per_bay: 4\n");
+  Results run = run_yaml(coach(track), {{"train_positions", "-9.22"},  // the last wheel at -20 m
+                                        {"output_rail", "-14.0,20.0"},
+                                        {"output_interval", "0.02"},
+                                        {"ts_dt", "1e-4"}});
+  const std::size_t sample = 5;
+  const std::vector<double> x = run.column("/vehicles/0/wheel_4/contact_position"),
+                            y = run.column("/vehicles/0/wheel_4/contact_position", 1),
+                            rail = run.column("/rail/stations/deflection");
+  EXPECT_EQ(run("/rail/stations/x"), std::vector<double>({-14.0, 20.0}));
+  ASSERT_NEAR(x[sample], -14.0, 1e-4);  // the bogie has turned a little
+  EXPECT_LT(rail[sample], -3e-4);
+  EXPECT_NEAR(y[sample], rail[sample], 1e-5 * std::abs(rail[sample]));
+}
+
+// The stored profile of the track and of trains with surfaces of their own: exact heights, where their wheels have run.
+TEST(StoredProfiles, AreThoseUnderTheWheels) {
+  Results run = run_yaml(on_bump("speed: 20"), {{"output_profile", "0.25"}});
+  const std::vector<double> x = run("/track/profile/x"), height = run("/track/profile/height");
+  EXPECT_NEAR(x.front(), -2.0, 1e-12);
+  EXPECT_NEAR(x.back(), 20.0 * 0.9 + 2.0, 0.25);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_NEAR(x[i], x.front() + 0.25 * static_cast<double>(i), 1e-12);
+    const double inside = x[i] > 5.0 && x[i] < 15.0 ? 0.01 * (1.0 - std::cos(2.0 * pi * (x[i] - 5.0) / 10.0)) : 0.0;
+    EXPECT_NEAR(height[i], inside, 1e-15);
+  }
+  const std::string bumps = on_bump("speed: 20");
+  Results two = run_yaml(bumps.substr(0, bumps.find("train:")) +
+                             "trains: [up, down]\n"
+                             "up: {vehicles: mass, positions: 0.0, speed: 20}\n"
+                             "down: {vehicles: mass, positions: 30.0, speed: -10, profile: bump, bump_start: 22.0,"
+                             " bump_length: 4.0, bump_height: -0.004}\n",
+                         {{"output_profile", "auto"}});
+  const std::vector<double> of_track = two("/track/profile/height"), of_train = two("/track/profile_of/down/height");
+  EXPECT_NEAR(*std::max_element(of_track.begin(), of_track.end()), 0.02, 1e-12);
+  EXPECT_NEAR(*std::min_element(of_train.begin(), of_train.end()), -0.004, 1e-6);
+  EXPECT_NEAR(two("/track/profile_of/down/x").front(), 30.0 - 10.0 * 0.9 - 2.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace traverse::test
