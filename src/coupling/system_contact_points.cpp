@@ -95,7 +95,7 @@ void System::find_contact_points(const double* y, Observation& out) {
     structure_->gather(elements, y, y + n_, v, w);
     a = values_on(elements, out.beam.a);
   }
-  out.contact_points.resize(at.size());
+  out.contact_points.assign(at.size(), {});
   std::size_t first = per_node() - 2;  // index of the deflection of the left node among the values
   for (std::size_t i = 0; i < at.size(); ++i) {
     const train::WheelContact& c = fleet_.wheels[i];
@@ -121,8 +121,12 @@ void System::find_contact_points(const double* y, Observation& out) {
     } else if (line_ != nullptr) {
       add_ground(structure_->support_motion(), line_->mesh, x[0], surface);
     }
+    if (share_.distributed() && !fleet_.owns(c)) continue;  // the rank of the vehicle knows its contacts
     out.contact_points[i] = {{x[0], surface[0]}, {x[1], surface[1]}, {x[2], surface[2]}};
   }
+  if (!share_.distributed()) return;
+  static_assert(sizeof(ContactPoint) == 6 * sizeof(double));
+  MPI_Allreduce(MPI_IN_PLACE, out.contact_points.data(), 6 * static_cast<int>(at.size()), MPI_DOUBLE, MPI_SUM, comm_);
 }
 
 }  // namespace traverse::coupling

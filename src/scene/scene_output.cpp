@@ -170,21 +170,24 @@ void read_sleepers(const Options& o, Scene& scene) {
 }
 
 void read_surfaces(const Options& o, Scene& scene) {
-  const bool points = o.flag("output_contact_points"),
-             profile = o.has("output_profile") && o.text("output_profile") != "none";
-  const bool single = scene.analysis == Analysis::transient && !scene.sweep && !describes_study(o);
-  const bool of_wheels = single && !wheels_at_start(scene).empty();
-  scene.output.contact_points = points && of_wheels && scene.output.series;
-  if (profile && of_wheels) scene.output.profile = o.optional_number("output_profile");
-  if (points && !scene.output.contact_points)
-    scene.notes.emplace_back(
-        "output_contact_points has no effect: it is for a single transient run of vehicles with wheels and with "
-        "output_series");
-  const auto own_surface = [](const train::Course& course) { return course.profile && !course.profile->level(); };
-  if (profile && of_wheels && scene.profile.level() && std::ranges::none_of(scene.train.courses, own_surface))
-    scene.notes.emplace_back("output_profile has no effect: the track is level (track_profile)");
-  if (profile && !of_wheels)
+  const bool of_wheels =
+      scene.analysis == Analysis::transient && !scene.sweep && !describes_study(o) && !wheels_at_start(scene).empty();
+  if (o.flag("output_contact_points")) {
+    scene.output.contact_points = of_wheels && scene.output.series;
+    if (!scene.output.contact_points)
+      scene.notes.emplace_back(
+          "output_contact_points has no effect: it is for a single transient run of vehicles with wheels and with "
+          "output_series");
+  }
+  if (!o.has("output_profile") || o.text("output_profile") == "none") return;
+  if (!of_wheels) {
     scene.notes.emplace_back("output_profile has no effect: it is for a single transient run of vehicles with wheels");
+    return;
+  }
+  scene.output.profile = o.optional_number("output_profile");
+  const auto own_surface = [](const train::Course& course) { return course.profile && !course.profile->level(); };
+  if (scene.profile.level() && std::ranges::none_of(scene.train.courses, own_surface))
+    scene.notes.emplace_back("output_profile has no effect: the track is level (track_profile)");
 }
 
 bool has_control_character(const std::string& text) {

@@ -108,5 +108,21 @@ TEST(Ranks, ExpansionDeviceAndABearingThatSlides) {
                            22, 1e-6);
 }
 
+// Each rank knows the contacts of its own vehicles only. Accelerations of the rail differ as the wheel forces do.
+TEST(Ranks, ContactPointsOnTheRail) {
+  expect_same_on_all_ranks("r8_ballasted_bridge",
+                           {{"train_vehicles", "coach*2"},
+                            {"train_positions", "-15,-40"},
+                            {"track_profile", "german_low"},
+                            {"track_elements_per_bay", "2"},
+                            {"model_vehicles", "full"},
+                            {"output_contact_points", "true"},
+                            {"output_rail", "-20,60"},
+                            {"ts_dt", "5e-4"},
+                            {"ts_max_time", "0.2"},
+                            {"output_interval", "0.01"}},
+                           40, 1e-6);
+}
+
 }  // namespace
 }  // namespace traverse::test
