@@ -36,6 +36,15 @@ WAYS = [
             "Sensors.AccelerationIsThatOfThePath", [Check("EXPECT_LT(off, {}) << sensor;", ".*_0.000125.*")]),
         Row("wheel forces at positions between samples", "the cubic through the neighbouring samples",
             "AxleLoadRecords.HaveTimeSpeedAndForce", [Check("EXPECT_LT(worst_force, {});", "force")]),
+        Row("the surface under a wheel with a constant force on a simple span, along its path", "closed form: 400 modes",
+            "ContactPoints.UnderAConstantForceOnASimpleSpan", [
+                Check("EXPECT_LT(error[0], {});", "contact_position.*", "height"),
+                Check("EXPECT_LT(error[1], {});", "contact_velocity.*", "velocity"),
+                Check("EXPECT_LT(error[2], {});", "contact_acceleration.*_160", "acceleration")]),
+        Row("the surface under a wheel on a sine, at constant and at changing speed", "closed form",
+            "ContactPoints.OnASineOfARigidTrack", [Check("EXPECT_LT(error, {});", "contact_.*")]),
+        Row("the rail under a wheel 14 m before the bridge", "the deflection of the rail at this station",
+            "ContactPoints.AreTheRailAtItsStations", [Check("rail[sample], {} * std::abs(rail[sample]));", "difference")]),
     ]),
     ("Linear vehicles", [
         Row("two coaches over three spans", "the mechanisms", "LinearVehicle.CoachesOverThreeSpans", [
@@ -171,6 +180,8 @@ WAYS = [
             [Check("20, {});")]),
         Row("a track with stretches and hanging sleepers", "the same scene on one rank", "Ranks.TrackByStretch",
             [Check("20, {});")]),
+        Row("contact points of two coaches on a rail", "the same scene on one rank", "Ranks.ContactPointsOnTheRail",
+            [Check("40, {});")]),
         Row("sleepers that slide along the track", "the same scene on one rank", "Ranks.SleepersThatSlide",
             [Check("20, {});")]),
         Row("expansion devices and a sliding bearing", "the same scene on one rank",
