@@ -109,10 +109,12 @@ def spectrum_of(height, spacing):
         return None
     power = np.concatenate([[0.0], np.cumsum(0.5 * (g[1:] + g[:-1]) * np.diff(n))])
     means = np.diff(np.interp(edges, n, power)) / np.diff(edges)
-    if not np.all(means > 0.0):
+    x = np.log(np.sqrt(edges[1:] * edges[:-1]) / N0)
+    levels = means * np.exp(2.0 * x)
+    used = levels > np.median(levels) / LARGEST_DROP  # the profile may end at some wavelength
+    if np.count_nonzero(used) < FEWEST_BANDS:
         return None
-    x, y = np.log(np.sqrt(edges[1:] * edges[:-1]) / N0), np.log(means)
-    used = y + 2.0 * x > np.median(y + 2.0 * x) - np.log(LARGEST_DROP)  # the profile may end at some wavelength
+    y = np.log(np.maximum(means, np.finfo(float).tiny))
     x, y, first, last = x[used], y[used], np.argmax(used), len(used) - np.argmax(used[::-1])
     return Spectrum(np.exp(np.mean(y + 2.0 * x)), -np.polyfit(x, y, 1)[0], 1.0 / edges[first], 1.0 / edges[last])
 

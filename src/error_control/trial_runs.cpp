@@ -154,10 +154,11 @@ RunPeaks TrialRuns::computed(const Discretisation& model) {
   return result;
 }
 
-// The step is doubled, because the error of linear vehicles hardly depends on it.
+// The step is doubled, because the error of linear vehicles hardly depends on it, unless it resolves the waves of a track.
 void TrialRuns::measure_linearisation(const Discretisation& model) {
   measured_linearisation_ = true;
-  residual_limit_ = measured_residual_limit(comm_, with_model({model.elements, 2.0 * model.step}));
+  const double step = std::isfinite(scene::shortest_wave(scene_)) ? model.step : 2.0 * model.step;
+  residual_limit_ = measured_residual_limit(comm_, with_model({model.elements, step}));
 }
 
 }  // namespace traverse::error_control

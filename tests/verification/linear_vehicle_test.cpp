@@ -121,6 +121,16 @@ TEST(LinearVehicle, IsKeptWhereWhatItNeglectsChangesNoPeak) {
   }
 }
 
+// The trial runs that compare it with mechanisms resolve the waves of the track.
+TEST(LinearVehicle, IsTriedOnARoughTrack) {
+  Results run = run_scene("three_span_train", {{"train_vehicles", "coach"},
+                                               {"track_profile", "german_low"},
+                                               {"track_wavelengths", "2,80"},
+                                               {"accuracy_cache", "false"}});
+  EXPECT_GT(run.attribute("/summary", "linear_defect"), 0.0);
+  EXPECT_LT(run.attribute("/summary", "expected_error_wheel_force"), 1e-3);
+}
+
 // Taken where the trial runs find that it serves; repeated with the mechanism where the run shows that it did not.
 TEST(LinearVehicle, AsTheAccuracyAllows) {
   const Values open = {{"model_vehicles", "auto"}};
