@@ -29,6 +29,18 @@ Path along(const Path& x, const Path& fixed, double slope, double slope_rate, do
           fixed[2] + 2.0 * x[1] * slope_rate + x[1] * x[1] * curvature + x[2] * slope};
 }
 
+/// The path of an element's deflection, from the values, rates and accelerations of its unknowns.
+Path deflection_along(const Path& x, const beam::Element& element, double xi, int per_node, const double* v,
+                      const double* w, const double* a) {
+  const beam::Hermite shape = beam::hermite(xi, element.length, element.shear);
+  const auto sum = [per_node](const std::array<double, 4>& form, const double* values) {
+    const double *left = values + per_node - 2, *right = left + per_node;  // (v, theta) of both nodes
+    return form[0] * left[0] + form[1] * left[1] + form[2] * right[0] + form[3] * right[1];
+  };
+  return along(x, {sum(shape.value, v), sum(shape.value, w), sum(shape.value, a)}, sum(shape.slope, v),
+               sum(shape.slope, w), sum(shape.curvature, v));
+}
+
 /// The penetration's second rate of a wheel out of round by its shape alone, m/s2.
 double shape_acceleration(const train::Fleet& fleet, const train::WheelContact& c) {
   const train::Wheel& wheel = fleet.wheel(c);
@@ -96,7 +108,7 @@ void System::find_contact_points(const double* y, Observation& out) {
     a = values_on(elements, out.beam.a);
   }
   out.contact_points.assign(at.size(), {});
-  std::size_t first = per_node() - 2;  // index of the deflection of the left node among the values
+  std::size_t first = 0;  // index of the element's values
   for (std::size_t i = 0; i < at.size(); ++i) {
     const train::WheelContact& c = fleet_.wheels[i];
     if (c.is_further) continue;
@@ -106,14 +118,8 @@ void System::find_contact_points(const double* y, Observation& out) {
     Path surface = along(x, {h.value, 0.0, 0.0}, h.slope, 0.0, h.curvature);
     const train::Patch& patch = c.patches[c.active];
     if (at[i].element >= 0) {
-      const beam::Element& element = line_->mesh.element(at[i].element);
-      const beam::Hermite shape = beam::hermite(at[i].xi, element.length, element.shear);
-      const auto sum = [&](const std::array<double, 4>& form, const std::vector<double>& values) {
-        const double *left = &values[first], *right = left + per_node();
-        return form[0] * left[0] + form[1] * left[1] + form[2] * right[0] + form[3] * right[1];
-      };
-      const Path deflection = along(x, {sum(shape.value, v), sum(shape.value, w), sum(shape.value, a)},
-                                    sum(shape.slope, v), sum(shape.slope, w), sum(shape.curvature, v));
+      const Path deflection = deflection_along(x, line_->mesh.element(at[i].element), at[i].xi, per_node(), &v[first],
+                                               &w[first], &a[first]);
       for (std::size_t k = 0; k < surface.size(); ++k) surface[k] += deflection[k];
       if (patch.element == at[i].element && patch.compliance > 0.0)
         subtract_local_deflection(fleet_, c, patch, at[i].xi, x, accelerations[3 * c.body + 1], surface);

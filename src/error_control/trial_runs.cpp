@@ -154,7 +154,8 @@ RunPeaks TrialRuns::computed(const Discretisation& model) {
   return result;
 }
 
-// The step is doubled, because the error of linear vehicles hardly depends on it, unless it resolves the waves of a track.
+// The step is doubled, because the error of linear vehicles hardly depends on it, unless it resolves the waves of a
+// track.
 void TrialRuns::measure_linearisation(const Discretisation& model) {
   measured_linearisation_ = true;
   const double step = std::isfinite(scene::shortest_wave(scene_)) ? model.step : 2.0 * model.step;
