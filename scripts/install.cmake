@@ -13,10 +13,8 @@ install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_
 file(GLOB several CONFIGURE_DEPENDS scripts/picture*.py scripts/convert*.py)
 install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
         scripts/engineering_units.csv scripts/engineering_units.py scripts/export.py scripts/export_answers.py
-        scripts/export_tables.py scripts/export_xdmf_tables.py
-        scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/traffic.py
-        scripts/export_tables.py
-        scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py scripts/option_words.py scripts/page.py scripts/track_quality.py scripts/traffic.py
+        scripts/export_tables.py scripts/export_xdmf_tables.py scripts/decay.py scripts/export_xdmf.py scripts/fatigue.py
+        scripts/option_words.py scripts/page.py scripts/track_quality.py scripts/traffic.py
         scripts/checked_results.py scripts/input_files.py scripts/output_files.py
         scripts/search_answers.py scripts/sensitivity_measures.py
         DESTINATION ${share}/python)
