@@ -1,7 +1,6 @@
-// Modal damping from Rayleigh's damping and discrete dampers, and influence lines of modes and probes as piecewise
-// cubic functions, by the theorem of Maxwell and Betti. Modes that damping couples follow from the eigenvalue problem
-// of the first-order system in (Omega u, u'): one of each conjugate pair is kept, and the damping is perturbed slightly
-// where no complete set of eigenvectors exists.
+// Modal damping from Rayleigh's damping and discrete dampers, and the responses of probes by modes. Modes that damping
+// couples follow from the eigenvalue problem of the first-order system in (Omega u, u'): one of each conjugate pair is
+// kept, and the damping is perturbed slightly where no complete set of eigenvectors exists.
 #include "structure/modal_bridge.hpp"
 
 #include <Eigen/Dense>
@@ -47,58 +46,6 @@ ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int coun
   own_drag_.assign(modes(), 0.0);
   statics_.set_modal_flexibility(basis_.shape, basis_.omega, beam_.first_column() * beam_.block());
   influence_ = influence_of(lines_of_modes(), {});
-}
-
-std::vector<ModalBridge::Line> ModalBridge::lines_of_modes() const {
-  std::vector<Line> lines;
-  for (const auto& shape : basis_.shape) {
-    lines.emplace_back().nodal = shape;
-    for (double& value : lines.back().nodal) value = -value;
-    if (!beside_axis()) continue;
-    lines.back().share.assign(modes(), 0.0);
-    lines.back().share[lines.size() - 1] = -1.0;
-  }
-  return lines;
-}
-
-/// The splines end where supports hold the twist, and at the ends of the beam's parts.
-void ModalBridge::smooth_track() {
-  const beam::Line& line = beam_.bridge();
-  if (line.eccentricity() == 0.0) return;
-  const beam::Mesh& mesh = line.mesh;
-  std::vector<char> ends(static_cast<std::size_t>(mesh.nodes()), 0);
-  for (int end = 0; end <= mesh.spans(); ++end) {
-    const auto [left, right] = mesh.nodes_at(end);
-    const bool held = line.model.torsion->held[static_cast<std::size_t>(end)] != 0;
-    for (const int node : {left, right})
-      if (held || left != right) ends[static_cast<std::size_t>(node)] = 1;
-  }
-  ends.front() = ends.back() = 1;
-  for (const std::vector<double>& shape : basis_.shape) {
-    std::vector<double>& bends = bend_of_track_.emplace_back(2 * static_cast<std::size_t>(mesh.elements()), 0.0);
-    std::vector<double> x, twist;
-    int first = 0;  // element of the first node
-    for (int e = 0; e < mesh.elements(); ++e) {
-      const auto unknowns = line.twists(e);
-      if (x.empty()) {
-        first = e;
-        x.push_back(mesh.element(e).x);
-        twist.push_back(shape[static_cast<std::size_t>(unknowns[0])]);
-      }
-      x.push_back(mesh.element(e).x + mesh.element(e).length);
-      twist.push_back(shape[static_cast<std::size_t>(unknowns[1])]);
-      if (ends[static_cast<std::size_t>(mesh.element(e).left) + 1] == 0) continue;
-      const std::vector<double> slope = beam::spline_slopes(x, twist);
-      for (int k = first; k <= e; ++k) {
-        const auto i = static_cast<std::size_t>(k - first);
-        const double straight = (twist[i + 1] - twist[i]) / mesh.element(k).length;
-        for (std::size_t end = 0; end < 2; ++end)
-          bends[2 * static_cast<std::size_t>(k) + end] = line.eccentricity() * (slope[i + end] - straight);
-      }
-      x.clear();
-      twist.clear();
-    }
-  }
 }
 
 const double* ModalBridge::shape(std::size_t mode) const {
@@ -253,15 +200,6 @@ ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, double gravity
   return slopes;
 }
 
-/// What bend_of_track adds to phi_i at a station.
-double ModalBridge::bend_at(std::size_t mode, double x) const {
-  if (!beside_axis()) return 0.0;
-  const beam::Station at = beam_.mesh().locate(x);
-  const beam::Element& element = beam_.mesh().element(at.element);
-  const auto psi = beam::hermite(at.xi, element.length, element.shear).value;
-  return psi[1] * bend_of_track(mode, at.element, 0) + psi[3] * bend_of_track(mode, at.element, 1);
-}
-
 void ModalBridge::record_forms(recovery::Recovery& recovery) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
   std::vector<recovery::Response> responses;
@@ -319,97 +257,6 @@ void ModalBridge::record_weight(recovery::Recovery& recovery, double gravity) {
     probes_.weight_deflection.push_back(r.deflection);
     probes_.weight_moment.push_back(r.moment);
   }
-}
-
-/// The influence line of a response at a probe, minus the modes' share. By the theorem of Maxwell and Betti it is the
-/// deflection of the structure under a load. The nodal forces of this load are the coefficients of the nodal values of
-/// the probe's element in the response.
-ModalBridge::Line ModalBridge::correction_of(recovery::Recovery& recovery, std::size_t p,
-                                             double recovery::Response::*quantity) {
-  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
-  std::vector<recovery::Response> responses;
-  std::vector<double> load(basis_.shape.front().size(), 0.0);
-  const auto add_unit = [&](int unknown) {
-    std::vector<double> unit = zero;
-    if (beam_.local(unknown) >= 0) unit[static_cast<std::size_t>(beam_.local(unknown))] = 1.0;
-    recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, responses);
-    load[static_cast<std::size_t>(unknown)] = responses[p].*quantity;
-  };
-  const int element = beam_.mesh().locate(recovery.stations()[p]).element;
-  for (const int unknown : beam_.bridge().transverse(element)) add_unit(unknown);
-  if (beam_.bridge().eccentricity() != 0.0)
-    for (const int unknown : beam_.bridge().twists(element)) add_unit(unknown);
-  const std::vector<double>& form = quantity == &recovery::Response::deflection ? probes_.deflection : probes_.moment;
-  Line line = line_of(load, [&](std::size_t mode) { return form[mode * probes_.count + p]; });
-  line.probe = p;
-  line.direct = quantity;
-  return line;
-}
-
-/// The influence line of the sum of displacements times `load`, minus the modes' share; `form` is this sum for each
-/// mode shape.
-ModalBridge::Line ModalBridge::line_of(const std::vector<double>& load,
-                                       const std::function<double(std::size_t)>& form) {
-  Line line{static_solution(load)};
-  for (double& value : line.nodal) value = -value;
-  for (std::size_t i = 0; i < modes(); ++i) {
-    const double share = form(i) / (basis_.omega[i] * basis_.omega[i]);
-    for (std::size_t k = 0; k < line.nodal.size(); ++k) line.nodal[k] += share * basis_.shape[i][k];
-    if (beside_axis()) line.share.push_back(share);
-  }
-  return line;
-}
-
-/// The values v1, theta1, v2, theta2 of the track in an element, of values of all unknowns.
-std::array<double, 4> ModalBridge::transverse_values(const std::vector<double>& nodal, int element) const {
-  const beam::Line& line = beam_.bridge();
-  std::array<double, 4> values{};
-  line.for_unknowns(element, [&](int k, int unknown, double factor) {
-    const int place = k % line.per_node - (line.per_node - 2);
-    if (place < 0) return;  // along x
-    values[static_cast<std::size_t>(2 * (k / line.per_node) + place)] +=
-        factor * nodal[static_cast<std::size_t>(unknown)];
-  });
-  return values;
-}
-
-PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const {
-  const beam::Mesh& mesh = beam_.mesh();
-  std::vector<recovery::Recovery> recoveries;
-  for (const double x : stations) recoveries.emplace_back(beam_, std::vector<double>{x}, 0.0);
-  PiecewiseCubic influence = {{mesh.start()}, lines.size(), {}};
-  for (int e = 0; e < mesh.elements(); ++e) {
-    const beam::Element& element = mesh.element(e);
-    std::vector<double> ends = {element.length};  // right ends of the pieces, from the element's left end
-    for (const double x : stations)
-      if (x > element.x && x < element.x + element.length) ends.push_back(x - element.x);
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    double left = 0.0;
-    for (const double right : ends) {
-      const std::size_t piece = influence.coefficients.size();
-      influence.breaks.push_back(right == element.length ? mesh.x(element.left + 1) : element.x + right);
-      influence.coefficients.resize(piece + 4 * lines.size());
-      for (std::size_t channel = 0; channel < lines.size(); ++channel) {
-        const Line& line = lines[channel];
-        std::array<double, 4> nodal = transverse_values(line.nodal, e);
-        for (std::size_t i = 0; i < line.share.size(); ++i)
-          for (int end = 0; end < 2; ++end)
-            nodal[static_cast<std::size_t>(2 * end + 1)] += line.share[i] * bend_of_track(i, e, end);
-        beam::Cubic cubic = beam::shifted(beam::hermite_cubic(nodal, element.length, element.shear), left);
-        if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
-          const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {
-            const recovery::ElementLoad unit = {e, (left + x) / element.length, 0.0, -1.0, 0.0};
-            return recoveries[line.probe].inside_response(0, unit).*line.direct;
-          });
-          for (std::size_t k = 0; k < 4; ++k) cubic[k] += more[k];
-        }
-        for (std::size_t k = 0; k < 4; ++k) influence.coefficients[piece + k * lines.size() + channel] = cubic[k];
-      }
-      left = right;
-    }
-  }
-  return influence;
 }
 
 ComplexModes::ComplexModes(const std::vector<double>& omega, const std::vector<double>& sigma,

@@ -18,6 +18,7 @@ struct FitParameter {
   int entry = 0;                 // of a list, counted from 1; 0: the whole option
   std::vector<double> list;      // the scene's own list of which this is an entry
 
+  /// The option, with the number of the entry: load_forces_2.
   std::string name() const { return entry == 0 ? option : option + "_" + std::to_string(entry); }
 };
 
