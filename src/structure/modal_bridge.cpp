@@ -206,7 +206,7 @@ void ModalBridge::record_forms(recovery::Recovery& recovery) {
   for (std::size_t i = 0; i < modes(); ++i) {
     recovery.evaluate(shape(i), zero.data(), zero.data(), {}, responses);
     for (std::size_t p = 0; p < responses.size(); ++p) {
-      probes_.deflection.push_back(responses[p].deflection + bend_at(i, recovery.stations()[p]));
+      probes_.deflection.push_back(responses[p].deflection + bend_of_track(i, recovery.stations()[p]));
       probes_.moment.push_back(responses[p].moment);
     }
     recovery.evaluate(zero.data(), zero.data(), shape(i), {}, responses);

@@ -134,13 +134,15 @@ class ModalBridge {
   double bend_of_track(std::size_t mode, int element, int end) const {
     return bend_of_track_[mode][2 * static_cast<std::size_t>(element) + static_cast<std::size_t>(end)];
   }
+  /// What this adds to phi_i at x.
+  double bend_of_track(std::size_t mode, double x) const;
 
  private:
   /// Values of a response under a unit downward force along x: the nodal values of an influence line, and the direct
   /// response if the force is inside the probe's element.
   struct Line {
-    std::vector<double> nodal;  // all ranks' unknowns
-    std::vector<double> share;  // of each mode's shape in them; empty: none
+    std::vector<double> nodal;    // all ranks' unknowns
+    std::vector<double> share{};  // of each mode's shape in them; empty: none
     std::size_t probe = 0;
     double recovery::Response::*direct = nullptr;  // null: none
   };
@@ -150,7 +152,6 @@ class ModalBridge {
   void set_damping(const std::vector<double>& ratios);
   void set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share);
   void add_given_probes(const std::vector<double>& stations);
-  double bend_at(std::size_t mode, double x) const;
   void record_forms(recovery::Recovery& recovery);
   void record_others(recovery::Recovery& recovery);
   void record_weight(recovery::Recovery& recovery, double gravity);

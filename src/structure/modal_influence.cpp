@@ -61,8 +61,7 @@ void ModalBridge::smooth_track() {
   }
 }
 
-/// What bend_of_track adds to phi_i at a station.
-double ModalBridge::bend_at(std::size_t mode, double x) const {
+double ModalBridge::bend_of_track(std::size_t mode, double x) const {
   if (!beside_axis()) return 0.0;
   const beam::Station at = beam_.mesh().locate(x);
   const beam::Element& element = beam_.mesh().element(at.element);

@@ -177,6 +177,18 @@ StructureEnergy ModalStructure::energy(const double* v, const double* w) {
   return e;
 }
 
+/// The modal forces of loads on a track beside the axis are those of its smooth shapes.
+void ModalStructure::add_bends_of_track(const ElementLoads& contacts, double* modal) const {
+  const auto per = static_cast<std::size_t>(per_node());
+  const auto add = [&](int element, const double* parts) {
+    for (std::size_t i = 0; i < modes_; ++i)
+      for (int end = 0; end < 2; ++end)
+        modal[i] += parts[(static_cast<std::size_t>(end) + 1) * per - 1] * bridge_.bend_of_track(i, element, end);
+  };
+  for (const recovery::ElementLoad& force : forces_) add(force.element, on_unknowns(line_, force).data());
+  for (std::size_t a = 0; a < contacts.elements.size(); ++a) add(contacts.elements[a], &contacts.values[2 * per * a]);
+}
+
 void ModalStructure::observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
                              bool /*with_loads*/, NodalMotion& out) {
   const auto size = static_cast<std::size_t>(beam_.local_unknowns());
@@ -204,6 +216,7 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   const Eigen::Map<const ByRows> phi(by_unknown_.data() + first * modes_, rows, modes);
   Eigen::Map<Eigen::VectorXd>(share.data(), modes).noalias() =
       phi.transpose() * Eigen::Map<const Eigen::VectorXd>(static_displacement_.data(), rows);
+  if (n_ > 0 && bridge_.beside_axis()) add_bends_of_track(contacts, share.data());
   MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(modes_), MPI_DOUBLE, MPI_SUM, beam_.comm());
   if (bridge_.given()) {  // there are no other modes
     std::fill(static_displacement_.begin(), static_displacement_.end(), 0.0);
