@@ -4,6 +4,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -12,6 +13,10 @@ import h5py
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2])).resolve()
 BINARY = os.environ.get("TRAVERSE_BINARY", str(SOURCE / "build/traverse"))
 OPTIONS = SOURCE / "options"
+sys.path.insert(0, str(SOURCE / "scripts"))
+
+import axle_tables  # noqa: E402
+
 GRAVITY = 9.81  # m/s2
 TOLERANCE = 1e-3  # of each load: heads have whole newtons, and bodies turn a little on their springs
 BRIDGE = ("-beam_spans", "40", "-beam_EI", "1e13", "-beam_mass", "1e4", "-scene_analysis", "static")
@@ -146,6 +151,38 @@ class Loads(unittest.TestCase):
                 expected = expected_loads(path)
                 self.assertLess(furthest([load for load in loads if load > 0.0], [load for load in expected if load > 0.0]),
                                 TOLERANCE, f"{loads}, expected {expected}")
+
+
+class Formations(unittest.TestCase):
+    def stated(self, path):
+        """{name: (axles, N, m)} of the head of a table of formations."""
+        found = re.findall(r"^# (.+?): .+, (\d+) axles, ([\d.]+) (kN|t), ([\d.]+) m from the first axle to the last$",
+                           path.read_text(encoding="utf-8"), re.MULTILINE)
+        return {name: (int(axles), float(weight) * axle_tables.LOADS[f"load_{unit}"], float(length))
+                for name, axles, weight, unit, length in found}
+
+    def test_heads_state_axles_weight_and_length_of_each(self):
+        tables = sorted((OPTIONS / "loads").glob("*.csv"))
+        self.assertGreater(len(tables), 2)
+        for path in tables:
+            stated, formations = self.stated(path), axle_tables.formations(path)
+            self.assertEqual(list(stated), list(formations))
+            for name, (loads, distances) in formations.items():
+                with self.subTest(f"{path.name}, {name}"):
+                    self.assertEqual(len(loads), stated[name][0])
+                    self.assertAlmostEqual(sum(loads) / stated[name][1], 1.0, delta=1e-9)
+                    self.assertAlmostEqual(distances[-1], stated[name][2], delta=1e-9)
+                    self.assertEqual(list(distances), sorted(distances))
+
+    def test_first_fatigue_train_has_the_total_and_the_length_of_a_second_source(self):
+        """www.eurocode.us, ENV 1991-3 F.3: 6630 kN, 262.10 m, with 1.4 m before the first axle and 1.8 m behind the last."""
+        loads, distances = axle_tables.formations(OPTIONS / "loads/en1991_fatigue_trains.csv")["Type 1"]
+        self.assertAlmostEqual(sum(loads), 6630e3, delta=1.0)
+        self.assertAlmostEqual(distances[-1] + 1.4 + 1.8, 262.10, delta=1e-6)
+
+    def test_eurostar_has_the_axles_of_its_train(self):
+        _, forces = static("-options_file", OPTIONS / "loads/eurostar_axles.yml")
+        self.assertLess(furthest(forces, expected_loads(OPTIONS / "trains/eurostar.yml")), TOLERANCE)
 
 
 class Help(unittest.TestCase):
