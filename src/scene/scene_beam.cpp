@@ -15,7 +15,8 @@ namespace {
 
 using options::Options;
 
-constexpr double most_stations = 1e6;  // limit for equally spaced springs
+constexpr double elements_per_half_wave = 4.0;  // of the highest mode of a track beside the axis
+constexpr double most_stations = 1e6;           // limit for equally spaced springs
 
 /// The number of elements per span for the accuracy. It is even, so that midspan is a node. The error of deflections is
 /// of fourth order in the element length.
@@ -72,19 +73,27 @@ void read_supports(const Options& o, beam::BeamModel& beam) {
 }
 
 /// Reads the torsion of the beam; the supports must have been read.
-void read_torsion(const Options& o, beam::BeamModel& beam) {
+void read_torsion(const Options& o, Scene& scene) {
   if (!o.has("beam_GJ")) return;
+  beam::BeamModel& beam = *scene.beam;
   beam::Torsion torsion;
   torsion.GJ = read_distribution(o, "beam_GJ");
   torsion.inertia = read_distribution(o, "beam_polar_inertia");
   torsion.mass_centre = o.number("beam_mass_centre") - o.number("beam_shear_centre");
   torsion.track = o.number("track_eccentricity") - o.number("beam_shear_centre");
-  if (torsion.track != 0.0 && o.choice("scene_analysis") == "transient" && !o.has("model_modes"))
+  const bool by_modes = o.has("model_modes") && o.integer("model_modes") > 0;
+  if (torsion.track != 0.0 && o.choice("scene_analysis") == "transient" && !by_modes)
     o.refuse("model_modes", "missing: a bridge with a track beside its shear centre is computed by modes; such as 40");
   const std::size_t ends = beam.supports.size();
   const std::vector<std::string> words = o.texts("support_torsion", ends, "one per span end, or one for all");
   for (std::size_t end = 0; end < ends; ++end)
     torsion.held.push_back(beam::fixes_vertical(beam.supports[end]) && words[end] == "held" ? 1 : 0);
+  if (torsion.track != 0.0 && by_modes && scene.mesh_open) {
+    // The spans share the half waves of the modes; accelerations need more elements in each than frequencies do.
+    const int in_span = 2 * static_cast<int>(std::ceil(0.5 * elements_per_half_wave * o.integer("model_modes") /
+                                                       static_cast<double>(beam.spans.size())));
+    for (int& elements : beam.elements) elements = std::max(elements, in_span);
+  }
   beam.torsion = std::move(torsion);
 }
 
@@ -302,7 +311,7 @@ void read_beam(const Options& o, Scene& scene) {
   read_cracks(o, beam);
   read_masses(o, beam);
   read_supports(o, beam);
-  read_torsion(o, beam);
+  read_torsion(o, scene);
   beam.foundation = read_foundation(o, beam);
   read_tension(o, beam);
   read_bearings(o, beam);

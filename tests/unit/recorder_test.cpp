@@ -143,7 +143,7 @@ TEST_F(RecorderTest, WritesAttributesOptionsAndSummary) {
 TEST_F(RecorderTest, WritesModes) {
   auto recorder = open(small_layout());
   const modes::Modes modes = {.omega = {2.0 * std::numbers::pi, 30.0},
-                              .axial = {0, 1},
+                              .motion = {modes::Motion::bending, modes::Motion::along},
                               .shape = {{0.0, 1.0, 0.0}, {0.5, 0.0, -1.0}},
                               .x = {0.0, 5.0, 10.0}};
   recorder->modes(modes, 0.1, 0.002, 6.3, 30.0);
@@ -163,7 +163,7 @@ TEST_F(RecorderTest, WritesDampedModes) {
   auto recorder = open(small_layout());
   const double omega = 2.0 * std::numbers::pi;
   recorder->damped_modes({.lambda = {-2.0, {-0.6 * omega, 0.8 * omega}},
-                          .axial = {0, 1},
+                          .motion = {modes::Motion::bending, modes::Motion::along},
                           .shape = {{0.0, 1.0, 0.0}, {{0.5, 0.25}, 0.0, 1.0}}});
   recorder->finish({});
   const Reader reader(file_);

@@ -52,7 +52,9 @@ TEST(TerminalTest, SummaryLeavesOutWhatTheSceneHasNot) {
 
 TEST(TerminalTest, ModesArePrintedInHertz) {
   const std::string text = printed([] {
-    print_modes({.omega = {0.0, 31.41592653589793}, .axial = {0, 1}, .shape = {}}, 31.4159, 60.0, 0.5, 1e-3);
+    print_modes(
+        {.omega = {0.0, 31.41592653589793}, .motion = {modes::Motion::bending, modes::Motion::along}, .shape = {}},
+        31.4159, 60.0, 0.5, 1e-3);
   });
   EXPECT_TRUE(contains(text, "rigid")) << text;
   EXPECT_TRUE(contains(text, "31.4159   along x")) << text;
@@ -62,18 +64,25 @@ TEST(TerminalTest, ModesArePrintedInHertz) {
 
 TEST(TerminalTest, DampedModesStandBesideTheUndampedOnes) {
   const double omega = 31.41592653589793;
-  const modes::DampedModes same = {.lambda = {0.0, {-0.6 * omega, 0.8 * omega}}, .axial = {0, 1}, .shape = {}};
+  const modes::DampedModes same = {.lambda = {0.0, {-0.6 * omega, 0.8 * omega}},
+                                   .motion = {modes::Motion::bending, modes::Motion::along},
+                                   .shape = {}};
   const std::string text = printed([&] {
-    print_modes({.omega = {0.0, omega}, .axial = {0, 1}, .shape = {}}, omega, 60.0, 0.0, 0.0, same);
+    print_modes({.omega = {0.0, omega}, .motion = {modes::Motion::bending, modes::Motion::along}, .shape = {}}, omega,
+                60.0, 0.0, 0.0, same);
   });
   EXPECT_TRUE(contains(text, "damped (Hz)")) << text;
   EXPECT_TRUE(contains(text, "31.4159   along x                 4               0.6           18.8496   along x"))
       << text;
   EXPECT_FALSE(contains(text, "need not be")) << text;
 
-  const modes::DampedModes overdamped = {.lambda = {0.0, -20.0, {-1.0, 40.0}}, .axial = {0, 0, 1}, .shape = {}};
+  const modes::DampedModes overdamped = {
+      .lambda = {0.0, -20.0, {-1.0, 40.0}},
+      .motion = {modes::Motion::bending, modes::Motion::bending, modes::Motion::along},
+      .shape = {}};
   const std::string more = printed([&] {
-    print_modes({.omega = {0.0, omega}, .axial = {0, 1}, .shape = {}}, omega, 60.0, 0.0, 0.0, overdamped);
+    print_modes({.omega = {0.0, omega}, .motion = {modes::Motion::bending, modes::Motion::along}, .shape = {}}, omega,
+                60.0, 0.0, 0.0, overdamped);
   });
   EXPECT_TRUE(contains(more, " 1                20   overdamped")) << more;
   EXPECT_TRUE(contains(more, "   3                                      ")) << more;

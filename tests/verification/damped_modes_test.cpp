@@ -217,7 +217,7 @@ std::vector<Complex> axial_modes(double c, int elements) {
   const auto found = damped(model, 8);
   std::vector<Complex> lambda;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found.axial[i] != 0) lambda.push_back(found.lambda[i]);
+    if (found.motion[i] == modes::Motion::along) lambda.push_back(found.lambda[i]);
   }
   return lambda;
 }
