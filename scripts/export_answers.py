@@ -79,7 +79,7 @@ def of_starts(file, add):
 def of_frequencies(file, add):
     """A row for each measured frequency of a fit."""
     add("frequency", "text", texts(file, "measured_frequency"))
-    add_existing(file, "fit/frequencies", ("measured", "computed", "sd"), add)
+    add_existing(file, "fit/frequencies", ("measured", "computed", "sd", "mac"), add)
 
 
 def of_deviations(file, add):
@@ -164,10 +164,10 @@ def of_static_effects(x, quantities):
     return table
 
 
-def of_series(name):
-    """The table of a fitted series: measured and computed values by the clock of the measurement."""
+def of_compared(name, over):
+    """The table of a fitted series or mode shape: measured and computed values over time or x."""
     def table(file, add):
-        for column in ("time", "measured", "computed"):
+        for column in (over, "measured", "computed"):
             add(column, file[f"{name}/{column}"].attrs["unit"], file[f"{name}/{column}"][:])
     return table
 
@@ -180,9 +180,10 @@ TABLES = {"find/ratios": ("find/value", of_find), "find/intervals": ("find/inter
           "screen/bridges": ("screen/bridge_length", of_bridges),
           "screen/formations": ("screen/formation_ratio", of_formations),
           "verdicts": ("verdicts/limit", of_verdicts), "norm": ("norm/effect", of_norm), "modes/shapes": ("modes/x", of_shapes),
-          "modes/undamped": ("modes/frequency", of_modes("frequency", "modal_damping_ratio", "modal_mass", "axial")),
+          "modes/undamped": ("modes/frequency", of_modes("frequency", "modal_damping_ratio", "modal_mass", "axial", "twisting")),
           "modes/damped": ("modes/damped_frequency",
-                           of_modes("damped_frequency", "damping_ratio", "decay_rate", "damped_axial")),
+                           of_modes("damped_frequency", "damping_ratio", "decay_rate", "damped_axial",
+                                    "damped_twisting")),
           "static/effects": ("static/x", of_static_effects("x", ("deflection", "moment", "shear"))),
           "static/reactions": ("static/reaction", of_static_effects("reaction_x", ("reaction",))),
           "static/end_rotations": ("static/end_rotation", of_static_effects("end_rotation_x", ("end_rotation",)))}
@@ -191,6 +192,7 @@ TABLES = {"find/ratios": ("find/value", of_find), "find/intervals": ("find/inter
 def tables(file):
     """The tables of this file: name and function(file, add), with add(name, unit, values)."""
     found = {name: write for name, (dataset, write) in TABLES.items() if dataset in file}
-    for name in file.get("fit/series", ()):
-        found[f"fit/series/{name}"] = of_series(f"fit/series/{name}")
+    for group, over in (("fit/series", "time"), ("fit/shapes", "x")):
+        for name in file.get(group, ()):
+            found[f"{group}/{name}"] = of_compared(f"{group}/{name}", over)
     return found
