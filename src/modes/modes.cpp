@@ -220,7 +220,20 @@ Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoi
     const auto value = [&](int unknown) { return mode[static_cast<std::size_t>(unknown)]; };
     modes.shape.push_back(points.curve<double>(beam.bridge(), beam::Along::deflection, value));
     scale_to_one(modes.shape.back(), 0.0);
-    if (without_kinks(beam)) add_slopes(beam, points, mode, 1.0, modes);
+    const bool twists =
+        beam.model().torsion && std::ranges::all_of(modes.shape.back(), [](double y) { return y == 0.0; });
+    if (twists) {  // alone: excluded from the modes of bending
+      modes.motion[modes.shape.size() - 1] = Motion::twist;
+      modes.shape.back() = points.curve<double>(beam.bridge(), beam::Along::twist, value);
+      scale_to_one(modes.shape.back(), 0.0);
+    }
+    if (!without_kinks(beam)) continue;
+    if (twists) {
+      modes.slope.emplace_back(points.points().size(), 0.0);
+      modes.mass.push_back(1.0);
+    } else {
+      add_slopes(beam, points, mode, 1.0, modes);
+    }
   }
   return modes;
 }

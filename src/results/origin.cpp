@@ -201,8 +201,12 @@ std::string text_of(const std::string& path) {
   const std::string shapes = "/modes/shape", slopes = "/modes/slope";
   const Values frequency = file.values("/modes/frequency"), x = file.values("/modes/x"), shape = file.values(shapes);
   const std::size_t modes = frequency.numbers.size(), points = x.numbers.size();
-  const std::vector<double> axial =
-      file.has("/modes/axial") ? file.of_modes("/modes/axial", modes) : std::vector<double>(modes, 0.0);
+  std::vector<double> left_out(modes, 0.0);  // modes without a deflection
+  for (const char* name : {"/modes/axial", "/modes/twisting"}) {
+    if (!file.has(name)) continue;
+    const std::vector<double> marks = file.of_modes(name, modes);
+    for (std::size_t k = 0; k < modes; ++k) left_out[k] = std::max(left_out[k], marks[k]);
+  }
   const std::size_t rank = shape.shape.size();
   if (rank < 2 || rank > 3 || shape.shape[rank - 2] != modes || shape.shape[rank - 1] != points)
     file.refuse(shapes, fmt::format("wanted: [{0},{1}] or [tracks,{0},{1}], modes and stations", modes, points));
@@ -210,17 +214,17 @@ std::string text_of(const std::string& path) {
   Values slope;
   if (file.has(slopes)) slope = file.values(slopes);
   if (!slope.numbers.empty() && slope.shape != shape.shape) file.refuse(slopes, "its size is not that of /modes/shape");
-  std::string text = "# the group /modes of " + path + "\n" + row("frequency", frequency.numbers, axial) +
-                     row("modal_mass", file.of_modes("/modes/modal_mass", modes), axial) +
-                     row("damping_ratio", file.of_modes("/modes/modal_damping_ratio", modes), axial);
+  std::string text = "# the group /modes of " + path + "\n" + row("frequency", frequency.numbers, left_out) +
+                     row("modal_mass", file.of_modes("/modes/modal_mass", modes), left_out) +
+                     row("damping_ratio", file.of_modes("/modes/modal_damping_ratio", modes), left_out);
   for (const std::string& name : file.outputs()) {
     const std::string full = "/modes/outputs/" + name;
-    text += row(fmt::format("output, {}, {}", name, file.unit_of(full)), file.of_modes(full, modes), axial);
+    text += row(fmt::format("output, {}, {}", name, file.unit_of(full)), file.of_modes(full, modes), left_out);
   }
   for (std::size_t track = 0; track < tracks; ++track)
     text += fmt::format("track, {}\n", track + 1) +
             stations(x, shape.numbers.data() + track * modes * points,
-                     slope.numbers.empty() ? nullptr : slope.numbers.data() + track * modes * points, axial);
+                     slope.numbers.empty() ? nullptr : slope.numbers.data() + track * modes * points, left_out);
   return text;
 }
 

@@ -200,12 +200,17 @@ constexpr std::size_t points_per_call = 4000;  // points inside elements in one 
 
 using Point = beam::ShapePoints::Point;
 
-/// Collective. Adds the deflections of the nodes of all ranks.
+/// Collective. Adds the deflections of the track at the nodes of all ranks.
 void add_nodes(const beam::Beam& beam, const std::vector<double>& v, const std::vector<Point>& points,
                std::vector<double>& deflection) {
+  const beam::Line& line = beam.bridge();
+  const auto add = [&](std::size_t i, int component, double factor) {
+    const int local = points[i].node < 0 ? -1 : beam.local(line.unknown(points[i].node, component));
+    if (local >= 0) deflection[i] += factor * v[static_cast<std::size_t>(local)];
+  };
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const int local = points[i].node < 0 ? -1 : beam.local(beam.bridge().unknown(points[i].node, 1));
-    if (local >= 0) deflection[i] = v[static_cast<std::size_t>(local)];
+    add(i, 1, 1.0);
+    if (line.eccentricity() != 0.0) add(i, 5, line.eccentricity());
   }
   MPI_Allreduce(MPI_IN_PLACE, deflection.data(), static_cast<int>(deflection.size()), MPI_DOUBLE, MPI_SUM, beam.comm());
 }

@@ -22,7 +22,7 @@ inline std::vector<double> axial_frequencies(const beam::BeamModel& model, int c
   const auto found = modes::natural_modes(beam::Beam(PETSC_COMM_SELF, model), 1 << 20, false);
   std::vector<double> omega;
   for (std::size_t i = 0; i < found.omega.size() && static_cast<int>(omega.size()) < count; ++i) {
-    if (found.axial[i] != 0) omega.push_back(found.omega[i]);
+    if (found.motion[i] == modes::Motion::along) omega.push_back(found.omega[i]);
   }
   return omega;
 }
