@@ -2,6 +2,8 @@
 
 WORDS = {
     "beam_EI": "bending stiffness EI", "beam_EA": "axial stiffness EA", "beam_GA": "shear stiffness GA",
+    "beam_GJ": "torsional stiffness GJ",
+    "beam_polar_inertia": "polar moment of inertia per length", "track_eccentricity": "eccentricity of the track",
     "beam_mass": "mass per length", "beam_spans": "span lengths", "beam_tension": "tension of the beam",
     "beam_temperature_uniform": "temperature change of the beam",
     "beam_damping_ratios": "damping ratio", "model_damping_ratios": "damping ratio",
