@@ -33,7 +33,8 @@ class ForwardModel {
   std::size_t instants() const { return instants_; }
 
   /// For each point, one after another: the frequencies (Hz) of all measured frequencies, then the shapes of those that
-  /// have one, at their places, and the samples of each series. Throws the error of the first run that fails or ends early, with its values.
+  /// have one, at their places, and the samples of each series. Throws the error of the first run that fails or ends
+  /// early, with its values.
   std::vector<std::vector<double>> run(const std::vector<std::vector<double>>& points) const;
   /// The number of points that are computed together.
   std::size_t width() const;
