@@ -134,6 +134,7 @@ int main(int argc, char** argv) {
   traverse::run::set_cpu_limit_timer();
   traverse::run::print_signals(first_rank());
   traverse::app::start_lightly();
+  const traverse::app::OneThreadOfBlas one_thread;
   try {
     start_check(argc, argv);
     traverse::options::Input input = read_input(argc, argv);

@@ -2,6 +2,7 @@
 // stream of its own (fopencookie) that discards all output after the first failed write and keeps the error code.
 #include "process_start.hpp"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -39,6 +40,18 @@ void start_lightly() {
   setenv("OMPI_MCA_pml", "ob1", 0);
   setenv("OMPI_MCA_btl", "self", 1);  // without shared memory
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+}
+
+OneThreadOfBlas::OneThreadOfBlas() {
+  const auto get = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
+  const auto set = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+  if (get == nullptr || set == nullptr) return;
+  before_ = get();
+  set(1);
+}
+
+OneThreadOfBlas::~OneThreadOfBlas() {
+  if (before_ > 0) reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))(before_);
 }
 
 void started() { unsetenv(no_session_folder); }

@@ -1,11 +1,26 @@
-// The start of the program: settings of MPI before its initialisation, with which a single process starts fast, and
-// standard output whose failure (a full disk, a reader that has ended) does not affect the run and its results.
+// The start of the program: settings of MPI before its initialisation, with which a single process starts fast, one
+// thread of BLAS, and standard output whose failure (a full disk, a reader that has ended) does not affect the run and
+// its results.
 #pragma once
 
 namespace traverse::app {
 
 /// Call before MPI_Init. Sets the variables that are not set in the environment.
 void start_lightly();
+
+/// During its life OpenBLAS, where it is the library for BLAS, uses one thread: its results depend on the number of
+/// threads, which differs between a process alone and the ranks of mpirun, and its matrices are small here.
+class OneThreadOfBlas {
+ public:
+  OneThreadOfBlas();
+  ~OneThreadOfBlas();
+  OneThreadOfBlas(const OneThreadOfBlas&) = delete;
+  OneThreadOfBlas& operator=(const OneThreadOfBlas&) = delete;
+
+ private:
+  int before_ = 0;  // threads; 0: another library
+};
+
 /// Call after MPI_Init. Removes the variable that would prevent this process from starting mpirun.
 void started();
 

@@ -14,6 +14,7 @@
 #include "check/unusual.hpp"
 #include "ensemble/parallel_cases.hpp"
 #include "options/parse_number.hpp"
+#include "process_start.hpp"
 #include "run/process.hpp"
 #include "step_by_step.hpp"
 #include "study/prepared_study.hpp"
@@ -319,6 +320,7 @@ Extreme Result::largest(Extreme ProbeResult::*quantity) const {
 }
 
 std::vector<Result> simulate(std::span<const Case> cases, const Progress& progress, MPI_Comm comm) {
+  const app::OneThreadOfBlas one_thread;
   return Runs(cases, progress, comm).run();
 }
 
