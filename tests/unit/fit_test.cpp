@@ -39,9 +39,8 @@ TEST(Spline, HoldsItsEnds) {
 /// A fit of two options to as many frequencies as there are residuals.
 options::Fit two_options(std::size_t measurements) {
   options::Fit fit;
-  fit.parameters = {{"beam_EI", "N m2", 0.0, 10.0, 5.0, {}, {}}, {"beam_mass", "kg/m", 0.0, 2.0, 1.0, {}, {}}};
-  for (std::size_t i = 0; i < measurements; ++i)
-    fit.frequencies.push_back({"f", static_cast<int>(i) + 1, 1.0, 1.0, {}, {}});
+  fit.parameters = {{"beam_EI", "N m2", 0.0, 10.0, 5.0}, {"beam_mass", "kg/m", 0.0, 2.0, 1.0}};
+  for (std::size_t i = 0; i < measurements; ++i) fit.frequencies.push_back({"f", static_cast<int>(i) + 1, 1.0, 1.0});
   return fit;
 }
 

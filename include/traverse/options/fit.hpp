@@ -12,11 +12,11 @@ namespace traverse::options {
 struct FitParameter {
   std::string option;
   std::string unit;
-  double low = 0.0, high = 0.0;  // bounds
-  double start = 0.0;            // the scene's value, or the middle of the bounds
-  int copies = 1;                // numbers of the option, all with this value
-  int entry = 0;                 // of a list, counted from 1; 0: the whole option
-  std::vector<double> list;      // the scene's own list of which this is an entry
+  double low = 0.0, high = 0.0;   // bounds
+  double start = 0.0;             // the scene's value, or the middle of the bounds
+  int copies = 1;                 // numbers of the option, all with this value
+  int entry = 0;                  // of a list, counted from 1; 0: the whole option
+  std::vector<double> list = {};  // the scene's own list of which this is an entry
 
   /// The option, with the number of the entry: load_forces_2.
   std::string name() const { return entry == 0 ? option : option + "_" + std::to_string(entry); }
@@ -25,10 +25,10 @@ struct FitParameter {
 /// A measured natural frequency, with the shape of its mode if it was measured.
 struct MeasuredFrequency {
   std::string name;
-  int number = 1;                // 1: the lowest
-  double value = 0.0, sd = 0.0;  // Hz, measured value and its standard deviation
-  std::vector<double> x, shape;  // m, and the measured deflections there in any scale; empty: not measured
-  double shape_sd = 0.0;         // standard deviation of these values, relative to the largest of them
+  int number = 1;                          // 1: the lowest
+  double value = 0.0, sd = 0.0;            // Hz, measured value and its standard deviation
+  std::vector<double> x = {}, shape = {};  // m, and the measured deflections there in any scale; empty: not measured
+  double shape_sd = 0.0;                   // standard deviation of these values, relative to the largest of them
 };
 
 /// A measured series of a number that a run stores over time.
