@@ -4,13 +4,14 @@ Where a step is not confirmed well enough to omit the analysis, or needs data th
 answer is the analysis: it is never wrong and takes seconds.
 """
 
+import math
 from typing import NamedTuple, Optional
 
 from traverse_report.language import num, t
 from traverse_report.quantities import speed_in_words
 
 from . import units
-from .rules import clause, rule
+from .rules import CheckError, clause, rule
 
 
 class Part(NamedTuple):
@@ -25,6 +26,18 @@ class Line(NamedTuple):
     line_speed: float                      # m/s
     complex: bool = False                  # no simple structure
     torsional_frequency: Optional[float] = None  # Hz
+    torsional_wave_speed: Optional[float] = None  # m/s, sqrt(GJ/I): of spans between forks, instead of their frequency
+
+
+def torsional_wave_speed(GJ, polar_inertia, torsional_frequency):
+    """sqrt(GJ/I) in m/s, or None without a torsional stiffness, which stands in place of a frequency."""
+    if (GJ is None) != (polar_inertia is None):
+        raise CheckError("GJ and polar-inertia belong together: give both, or neither")
+    if GJ is None:
+        return None
+    if torsional_frequency is not None:
+        raise CheckError("torsional-frequency and GJ: allowed: one of them")
+    return math.sqrt(GJ / polar_inertia)
 
 
 class Answer(NamedTuple):
@@ -55,18 +68,21 @@ def frequency_step(part):
     return within, (clause("frequencies"), t(words, frequency=frequency, low=low, high=high, length=length))
 
 
-def torsion_steps(part, torsional_frequency):
+def torsion_steps(part, line):
     """The last steps of the chart, which end in the dynamic analysis here."""
     value = rule("torsion")["value"]
     factor, bound = num(value), num(value * part.n0)
-    if torsional_frequency is None:
-        return [(clause("torsion"), t("nT > {factor} n0 cannot be decided without --torsional-frequency: dynamic "
-                                      "analysis; if it is not satisfied, torsion must be included, which this plane "
-                                      "model cannot do", factor=factor))]
-    frequency = num(torsional_frequency)
-    if torsional_frequency <= value * part.n0:
+    of_torsion = line.torsional_frequency
+    if line.torsional_wave_speed is not None:
+        of_torsion = line.torsional_wave_speed / (2.0 * part.length)
+    if of_torsion is None:
+        return [(clause("torsion"), t("nT > {factor} n0 cannot be decided without --torsional-frequency, or --GJ and "
+                                      "--polar-inertia: dynamic analysis; if it is not satisfied, it must include "
+                                      "torsion, which the runs here do not", factor=factor))]
+    frequency = num(of_torsion)
+    if of_torsion <= value * part.n0:
         return [(clause("torsion"), t("nT = {frequency} Hz is not above {factor} n0 = {bound} Hz: dynamic analysis "
-                                      "with torsion, which this plane model cannot include", frequency=frequency,
+                                      "with torsion, which the runs here do not include", frequency=frequency,
                                       factor=factor, bound=bound))]
     return [(clause("torsion"), t("nT = {frequency} Hz is above {factor} n0 = {bound} Hz: bending modes are sufficient",
                                   frequency=frequency, factor=factor, bound=bound)),
@@ -114,4 +130,4 @@ def answer(part, line):
         return Answer(steps, True)
     if not slow:
         steps += [(clause("long_span"), t("L is below {limit} m", limit=num(longest["value"]))), frequencies]
-    return Answer([*steps, *torsion_steps(part, line.torsional_frequency)], True)
+    return Answer([*steps, *torsion_steps(part, line)], True)

@@ -8,7 +8,7 @@ from typing import NamedTuple, Optional
 
 from input_files import InputError, yaml_of
 
-from . import units
+from . import flow_chart, units
 from .rules import CheckError, rule
 
 TYPES = {"steel": "steel", "composite": "composite", "prestressed": "prestressed", "reinforced": "reinforced",
@@ -23,6 +23,8 @@ VALUES = {
     "track": "ballast (default) or direct: limits of acceleration and rotation",
     "alpha": "classification factor of LM71 and SW/0; default 1",
     "torsional-frequency": "first natural frequency of torsion, for figure 6.9",
+    "GJ": "torsional stiffness between forks instead of this frequency, such as 90 GN.m2",
+    "polar-inertia": "with GJ: polar moment of inertia of the mass per length, such as 160 t.m",
     "hslm-b": "number N of forces and their distance d in m, from the chart of HSLM-B: simple spans below 7 m",
     "load-spread": "sleeper spacing: each axle force acts on three sleepers",
     "limits": "file of limits, such as those of a national annex; default: options/limits/en1991_2.yml",
@@ -49,7 +51,9 @@ class Question(NamedTuple):
     line_speed: float         # m/s
     track: str
     alpha: float
-    torsional_frequency: Optional[float]
+    torsional_frequency: Optional[float]  # Hz
+    GJ: Optional[float]                   # N m2
+    polar_inertia: Optional[float]        # kg m
     hslm_b: Optional[tuple]   # N, d in m
     load_spread: Optional[float]
     limits: Optional[str]     # a file
@@ -62,6 +66,11 @@ class Question(NamedTuple):
     report: bool
     title: dict               # options report_...
     program: Optional[str]
+
+    @property
+    def torsional_wave_speed(self):
+        """In m/s, as the flow chart asks."""
+        return flow_chart.torsional_wave_speed(self.GJ, self.polar_inertia, self.torsional_frequency)
 
     @property
     def separate(self):
@@ -209,13 +218,14 @@ def ask(given):
         spans=units.values("span", words["span"]), EI=bounds("EI", words), frequencies=bounds("frequency", words),
         masses=bounds("mass", words), type=TYPES[choice("type", words, TYPES)], line_speed=one("line-speed", words),
         track=choice("track", words, ("ballast", "direct"), "ballast"), alpha=number("alpha", words.get("alpha", "1")),
-        torsional_frequency=one("torsional-frequency", words), hslm_b=train_b(words),
-        load_spread=one("load-spread", words),
+        torsional_frequency=one("torsional-frequency", words), GJ=one("GJ", words),
+        polar_inertia=one("polar-inertia", words), hslm_b=train_b(words), load_spread=one("load-spread", words),
         limits=words.get("limits"), folder=folder,
         simply_supported=flag("simply-supported", words), complex=flag("complex", words),
         careful=flag("careful", words), additional_damping=flag("additional-damping", words),
         always=flag("always", words), report=not flag("no-report", words),
         title=title_of(words, folder), program=program)
+    _ = asked.torsional_wave_speed  # refuses what does not belong together
     if asked.frequencies and len(asked.masses) > 1:
         raise CheckError("a measured frequency belongs to one mass: give two masses only with --EI")
     short = asked.separate and min(asked.spans) < rule("short_span")["value"]

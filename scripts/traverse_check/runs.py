@@ -96,6 +96,8 @@ def documents(traverse, asked, files):
     folder, more = asked.folder, []
     if asked.torsional_frequency is not None:
         more = ["--torsional-frequency", f"{asked.torsional_frequency!r} Hz"]
+    if asked.GJ is not None:
+        more = ["--GJ", f"{asked.GJ!r} N.m2", "--polar-inertia", f"{asked.polar_inertia!r} kg.m"]
     if asked.complex:
         more.append("--complex")
     report = start(folder, report_command(), *files, "-o", "report", "--program", traverse, "--folder", ".",

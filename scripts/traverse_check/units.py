@@ -22,12 +22,14 @@ class Kind(NamedTuple):
     example: str = ""
 
 
-# No bridge has a bending stiffness of 1e7 N m2 or a mass of 500 kg/m: smaller numbers may be meant in MN m2 or t/m. No
-# line speed is 140 m/s: a larger number can only be meant in km/h, a smaller one in m/s too.
+# No bridge has a stiffness of 1e7 N m2, a mass of 500 kg/m or a polar inertia of 500 kg m: smaller numbers may be meant in
+# MN m2, t/m or t m. No line speed is 140 m/s: a larger number can only be meant in km/h, a smaller one in m/s too.
 KINDS = {
     "span": Kind("length", (0.5, 2e3)),
     "EI": Kind("bending_stiffness", (1e5, 1e16), 1e7, example="260 GN.m2"),
     "mass": Kind("mass_per_length", (50.0, 1e6), 500.0, example="19 t/m"),
+    "GJ": Kind("bending_stiffness", (1e5, 1e16), 1e7, example="90 GN.m2"),
+    "polar-inertia": Kind("rotational_inertia_per_length", (50.0, 1e7), 500.0, example="160 t.m"),
     "frequency": Kind("frequency", (0.01, 500.0)),
     "torsional-frequency": Kind("frequency", (0.01, 1e3)),
     "line-speed": Kind("speed", (1.0, 200.0), 140.0, "km/h", example="250 km/h"),

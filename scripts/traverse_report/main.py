@@ -79,6 +79,9 @@ def arguments_of(given):
     group = parser.add_argument_group("need for a dynamic analysis", "The flow chart of EN 1991-2 figure 6.9.")
     group.add_argument("--line-speed", metavar="SPEED", help="maximum line speed at the site, such as 250 km/h")
     group.add_argument("--torsional-frequency", metavar="HZ", help="first natural frequency of torsion")
+    group.add_argument("--GJ", metavar="STIFFNESS", help="torsional stiffness between forks instead, such as 90 GN.m2")
+    group.add_argument("--polar-inertia", metavar="INERTIA", help="with --GJ: polar moment of inertia of the mass per "
+                       "length, such as 160 t.m")
     group.add_argument("--complex", action="store_true", help="no simple structure: skew, flexible supports, torsion")
     group = parser.add_argument_group("title page", "These replace the options report_... of the scene. Material, "
                                       "cross-section and drawings are in the basis of calculation.")
@@ -95,8 +98,9 @@ def given_title(arguments):
 
 def line_of(arguments):
     """What the flow chart asks, or None without a line speed."""
-    def value(name, text):
-        found = units.values(name, text)
+    def value(name):
+        text = getattr(arguments, name.replace("-", "_"))
+        found = [None] if text is None else units.values(name, text)
         if len(found) != 1:
             raise ReportError(f"--{name} {text}: allowed: one value")
         return found[0]
@@ -104,9 +108,9 @@ def line_of(arguments):
     if arguments.line_speed is None:
         return None
     try:
-        torsion = arguments.torsional_frequency
-        return flow_chart.Line(value("line-speed", arguments.line_speed), arguments.complex,
-                               None if torsion is None else value("torsional-frequency", torsion))
+        frequency = value("torsional-frequency")
+        speed = flow_chart.torsional_wave_speed(value("GJ"), value("polar-inertia"), frequency)
+        return flow_chart.Line(value("line-speed"), arguments.complex, frequency, speed)
     except CheckError as error:
         raise ReportError(f"--{error}") from None
 

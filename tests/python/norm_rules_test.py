@@ -78,6 +78,11 @@ class FlowChart(unittest.TestCase):
         for length, n0, words, said in ((28.0, 5.0, (), "cannot be decided without --torsional-frequency"),
                                         (28.0, 5.0, ("--torsional-frequency", "6.1 Hz"), "tables F.1 and F.2"),
                                         (28.0, 5.0, ("--torsional-frequency", "5.9 Hz"), "not above 1.2 n0 = 6 Hz"),
+                                        # 1000 m/s: 17.857 Hz between forks 28 m apart
+                                        (28.0, 5.0, ("--GJ", "160 GN.m2", "--polar-inertia", "160 t.m"),
+                                         "nT = 17.86 Hz is above 1.2 n0 = 6 Hz"),
+                                        (28.0, 5.0, ("--GJ", "16 GN.m2", "--polar-inertia", "160 t.m"),
+                                         "nT = 5.647 Hz is not above 1.2 n0 = 6 Hz"),
                                         (45.0, 3.0, (), "L >= 40 m"),
                                         (28.0, 5.0, ("--complex",), "no simple structure")):
             needed, steps = self.answer(length, n0, *words)
