@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "process_start.hpp"
 #include "run/process.hpp"
 #include "step_by_step.hpp"
 #include "traverse/base/error.hpp"
@@ -19,6 +20,7 @@ std::string& last_error();
 /// Runs `body`. If it throws, stores the message in last_error and returns the status of the exception; otherwise 0.
 template <class Body>
 int call_and_catch(Body&& body) {
+  const OneThreadOfBlas one_thread;
   try {
     body();
     return 0;
