@@ -29,6 +29,17 @@ ssize_t write_all(void*, const char* text, std::size_t size) {
   return static_cast<ssize_t>(size);
 }
 
+/// Functions of OpenBLAS; null where another library is used. They are looked up once: a program may call each step.
+struct OpenBlas {
+  int (*get_threads)() = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
+  void (*set_threads)(int) = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+};
+
+const OpenBlas& openblas() {
+  static const OpenBlas functions;
+  return functions;
+}
+
 }  // namespace
 
 // Without mpirun the initialisation of Open MPI needs 0.3 s, unless it is set to a single process; programs that start
@@ -43,15 +54,13 @@ void start_lightly() {
 }
 
 OneThreadOfBlas::OneThreadOfBlas() {
-  const auto get = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
-  const auto set = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
-  if (get == nullptr || set == nullptr) return;
-  before_ = get();
-  set(1);
+  if (openblas().get_threads == nullptr || openblas().set_threads == nullptr) return;
+  before_ = openblas().get_threads();
+  if (before_ > 1) openblas().set_threads(1);
 }
 
 OneThreadOfBlas::~OneThreadOfBlas() {
-  if (before_ > 0) reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))(before_);
+  if (before_ > 1) openblas().set_threads(before_);
 }
 
 void started() { unsetenv(no_session_folder); }

@@ -11,6 +11,9 @@ namespace {
 
 const Frame& frame(const std::vector<Frame>& frames, int body) { return frames[static_cast<std::size_t>(body + 1)]; }
 
+/// x', y', phi' of a body.
+Eigen::Vector3d velocity_of(const Frame& body) { return {body.velocity.x(), body.velocity.y(), body.omega}; }
+
 }  // namespace
 
 double path_length(const Rope& rope) {
@@ -83,8 +86,7 @@ RopeState RopeGeometry::state(const std::vector<Frame>& frames, double t) const 
   s.unstretched_rate = s.winding_rate;
   double rate = -s.winding_rate;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Frame& body = frame(frames, bodies_[i]);
-    const Eigen::Vector3d velocity(body.velocity.x(), body.velocity.y(), body.omega);
+    const Eigen::Vector3d velocity = velocity_of(frame(frames, bodies_[i]));
     const auto at = 3 * static_cast<Eigen::Index>(i);
     rate += s.by_q.segment<3>(at).dot(velocity);
     s.unstretched_rate += s.unstretched_by_q.segment<3>(at).dot(velocity);
@@ -117,8 +119,7 @@ RopeMatrix RopeGeometry::tangent(const std::vector<Frame>& frames, const RopeSta
               by_coordinates.block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(j));
   }
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const Frame& body = frame(frames, bodies_[i]);
-    const Eigen::Vector3d velocity(body.velocity.x(), body.velocity.y(), body.omega);
+    const Eigen::Vector3d velocity = velocity_of(frame(frames, bodies_[i]));
     tension_by_q += at.tension.by_rate * curvature.middleCols<3>(3 * static_cast<Eigen::Index>(i)) * velocity;
   }
   RopeMatrix K = -by_q * at.tension.tension * curvature;
