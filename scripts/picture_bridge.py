@@ -32,7 +32,7 @@ def draw_probes(ax, results, name, worst=None, group="probes"):
     values = factor * results.over_time(results.file[f"{group}/{name}"])
     chosen = choose_probes(results, np.abs(values).max(axis=0))
     note = "" if len(chosen) == values.shape[1] else f" ({len(chosen)} of {values.shape[1]} places)"
-    curves = [(place_in_words(results.probes[i], results.supports), values[:, i]) for i in chosen]
+    curves = [(place_in_words(results.probes[i], results.supports) + results.beside_axis(i), values[:, i]) for i in chosen]
     time_panel(ax, results, title + note, unit, curves, worst=worst)
     show_motion(ax, results.time, values[:, chosen])
     if name == "deflection" and group == "probes":

@@ -23,11 +23,21 @@ class Results:
         self.summary = dict(file["summary"].attrs) if "summary" in file else {}
         self.supports = self.values("supports/x")
         self.probes = self.values("probes/x")
+        self.eccentricities = self.values("probes/eccentricity")  # of each probe's track, m to the left
         vehicles = file["vehicles"] if "vehicles" in file else {}
         self.vehicles = [vehicles[k] for k in sorted(vehicles, key=int)]
 
     def values(self, name):
         return self.file[name][()] if name in self.file else None
+
+    def on_first_track(self):
+        """Whether each probe is on the first track; all are if no tracks have names."""
+        tracks = self.eccentricities
+        return np.full(len(self.probes), True) if tracks is None else tracks == tracks[0]
+
+    def beside_axis(self, probe):
+        """The eccentricity of a probe's track as text, empty if no tracks have names."""
+        return "" if self.eccentricities is None else f", e = {self.eccentricities[probe]:+.4g} m"
 
     def over_time(self, dataset):
         return dataset[: self.rows]

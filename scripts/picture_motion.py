@@ -63,8 +63,9 @@ class Motion:
             why = f": it is that of a {what}; run one of its cases alone" if what else ""
             raise ValueError(f"holds no deflections of a bridge over time{why}")
         self.results, self.model, self.time = results, Model(results), results.time
-        self.stations = np.asarray(results.probes, dtype=float)
-        self.at_stations = results.over_time(results.file["probes/deflection"])
+        drawn = results.on_first_track()
+        self.stations = np.asarray(results.probes, dtype=float)[drawn]
+        self.at_stations = results.over_time(results.file["probes/deflection"])[:, drawn]
         ends = self.model.span_ends if len(self.model.span_ends) else self.stations
         self.low, self.high = float(ends[0]), float(ends[-1])
         points = int(np.clip(POINTS * (len(ends) - 1), FEWEST_POINTS, MOST_POINTS))

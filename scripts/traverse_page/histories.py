@@ -67,7 +67,7 @@ def column_charts(results):
             continue
         kept = choose_probes(results, np.nanmax(np.abs(values), axis=0))
         yield scaled(known(title) + part_of(kept, x), quantity,
-                     [(place_in_words(x[i], results.supports), values[:, i]) for i in kept])
+                     [(place_in_words(x[i], results.supports) + results.beside_axis(i), values[:, i]) for i in kept])
 
 
 def support_charts(results):

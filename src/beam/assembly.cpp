@@ -30,8 +30,9 @@ void for_elements(const Line& line, const Slice& slice, bool uniform, Compute co
 /// Adds the matrices of the twist, and those that couple it with the deflection.
 void add_torsion(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness) {
   const Torsion& torsion = *line.model.torsion;
-  const bool uniform = torsion.GJ.uniform() && torsion.inertia.uniform() && line.model.mass.uniform() &&
-                       line.model.EI.uniform() && (!line.model.GA || line.model.GA->uniform());
+  const bool uniform = torsion.GJ.uniform() && (!torsion.warping || torsion.warping->uniform()) &&
+                       torsion.inertia.uniform() && line.model.mass.uniform() && line.model.EI.uniform() &&
+                       (!line.model.GA || line.model.GA->uniform());
   for_elements(
       line, slice, uniform, [&](const Element& e) { return torsion_matrices(line.model, e); },
       [&](int e, const TorsionMatrices& m) {
@@ -39,12 +40,14 @@ void add_torsion(const Line& line, const Slice& slice, Rows& mass, Rows& stiffne
         mass.add(twists, m.mass);
         stiffness.add(twists, m.stiffness);
         if (torsion.mass_centre == 0.0) return;
-        const auto [v1, theta1, v2, theta2] = line.transverse(e);
-        std::array<double, 36> coupling{};
+        std::array<int, 8> unknowns{};
+        std::ranges::copy(line.transverse(e), unknowns.begin());
+        std::ranges::copy(twists, unknowns.begin() + 4);
+        std::array<double, 64> coupling{};
         for (std::size_t i = 0; i < 4; ++i)
-          for (std::size_t j = 0; j < 2; ++j)
-            coupling[6 * i + j + 4] = coupling[6 * (j + 4) + i] = m.coupling[2 * i + j];
-        mass.add(std::array{v1, theta1, v2, theta2, twists[0], twists[1]}, coupling);
+          for (std::size_t j = 0; j < 4; ++j)
+            coupling[8 * i + j + 4] = coupling[8 * (j + 4) + i] = m.coupling[4 * i + j];
+        mass.add(unknowns, coupling);
       });
 }
 
@@ -104,8 +107,8 @@ std::vector<DamperPlace> places_of_dampers(const Line& line, const Layout& layou
 
 void add_dampers(const std::vector<DamperPlace>& dampers, Rows& mass, Rows& stiffness, Rows& damping) {
   for (const auto& [damper, beam, unknown] : dampers) {
-    std::array<int, 5> unknowns{};
-    std::array<double, 5> travel{};
+    std::array<int, 9> unknowns{};
+    std::array<double, 9> travel{};
     std::copy(beam.unknown.begin(), beam.unknown.end(), unknowns.begin());
     std::copy(beam.shape.begin(), beam.shape.end(), travel.begin());
     unknowns.back() = unknown;
@@ -133,7 +136,7 @@ Rows points_of(const FoundationKind& kind, const Line& line, const Slice& slice,
     if (p.law.nonlinear()) continue;
     const Station at = station_of(line.mesh, p);
     if (at.element < first || at.element >= past) continue;
-    const PointShape s = shape_at(line, kind.direction, at, p.depth);
+    const PointShape s = shape_at(line, kind.direction, at, p.depth, p.eccentricity);
     rows.add(s.unknown, outer(term == Term::stiffness ? p.k : p.c, s.shape));
   }
   return rows;
@@ -163,13 +166,27 @@ std::array<double, 4> shape_of(Direction direction, double xi, const Element& el
 }
 
 PointShape shape_at(const Line& line, Direction direction, const Station& at) {
-  return {unknowns_of(line, direction, at.element), shape_of(direction, at.xi, line.mesh.element(at.element))};
+  PointShape s;
+  std::ranges::copy(unknowns_of(line, direction, at.element), s.unknown.begin());
+  std::ranges::copy(shape_of(direction, at.xi, line.mesh.element(at.element)), s.shape.begin());
+  return s;
 }
 
-PointShape shape_at(const Line& line, Direction direction, const Station& at, double depth) {
-  if (depth == 0.0) return shape_at(line, direction, at);
-  const std::size_t end = at.xi < 0.5 ? 0 : 1;
-  return {{line.axial(at.element)[end], line.transverse(at.element)[2 * end + 1], -1, -1}, {1.0, depth, 0.0, 0.0}};
+PointShape shape_at(const Line& line, Direction direction, const Station& at, double depth, double eccentricity) {
+  PointShape s = shape_at(line, direction, at);
+  if (depth != 0.0) {
+    const std::size_t end = at.xi < 0.5 ? 0 : 1;
+    s = {};
+    s.unknown[0] = line.axial(at.element)[end];
+    s.unknown[1] = line.transverse(at.element)[2 * end + 1];
+    s.shape[0] = 1.0;
+    s.shape[1] = depth;
+  }
+  if (eccentricity == 0.0) return s;
+  const auto psi = hermite(at.xi, line.mesh.element(at.element).length).value;
+  std::ranges::copy(line.twists(at.element), s.unknown.begin() + 4);
+  for (std::size_t k = 0; k < 4; ++k) s.shape[4 + k] = eccentricity * psi[k];
+  return s;
 }
 
 Transverse bed_matrix(Direction direction, const Distribution& density, const Element& element) {

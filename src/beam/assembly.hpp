@@ -18,13 +18,13 @@ std::array<double, 4> shape_of(Direction direction, double xi, const Element& el
 
 /// Unknowns and shapes at a station.
 struct PointShape {
-  std::array<int, 4> unknown{-1, -1, -1, -1};  // global
-  std::array<double, 4> shape{};
+  std::array<int, 8> unknown{-1, -1, -1, -1, -1, -1, -1, -1};  // global
+  std::array<double, 8> shape{};
 };
 PointShape shape_at(const Line& line, Direction direction, const Station& at);
 /// Unknowns and shapes at a point of the foundation. At a depth below the axis of a span end the displacement along x
-/// is u + depth*theta.
-PointShape shape_at(const Line& line, Direction direction, const Station& at, double depth);
+/// is u + depth*theta; at an eccentricity the deflection is v + eccentricity*twist.
+PointShape shape_at(const Line& line, Direction direction, const Station& at, double depth, double eccentricity);
 
 /// Integral of density(x) s s^T over the element, s the shape of a direction: the matrix of a bed (eqs. 27, 29, 36,
 /// 38).

@@ -79,8 +79,11 @@ void release_nodes(const Line& line, Slice& slice) {
     for (int component = 0; component < (line.mesh.hinged(node) ? 4 : 3); ++component)
       slice.release(line.unknown(node, component));
     if (line.mesh.has_expansion_device(node)) slice.release(line.unknown(node, 4));
-    slice.release(line.unknown(node, 5));
   }
+  if (!line.model.torsion) return;
+  const auto [first, end] = line.elements_at(slice.first - 1, slice.local + 2);
+  for (int e = first; e < end; ++e)
+    for (const int unknown : line.twists(e)) slice.release(unknown);
 }
 
 /// For every span end, whether its left and its right node are held along x.
@@ -104,12 +107,20 @@ void hold_supports(const Line& bridge, Slice& slice) {
       if (fixes_vertical(s)) slice.hold(bridge.unknown(node, 1));
       if (fixes_rotation(s)) slice.hold(bridge.unknown(node, 2));
       if (fixes_rotation(s)) slice.hold(bridge.unknown(node, 3));
-      if (bridge.model.torsion && bridge.model.torsion->held[index(end)] != 0) slice.hold(bridge.unknown(node, 5));
+      if (!bridge.model.torsion || bridge.model.torsion->held[index(end)] == 0) continue;
+      slice.hold(bridge.unknown(node, 5));
+      if (fixes_rotation(s) && bridge.model.torsion->warping) slice.hold(bridge.unknown(node, 6));  // a wall, no fork
     }
   }
 }
 
 }  // namespace
+
+std::array<double, 2> bearing_forces(const Torsion& torsion, std::size_t span_end, const Reaction& reaction) {
+  const double spacing = torsion.bearing_spacing[span_end], half = 0.5 * reaction[1];
+  const double difference = spacing > 0.0 ? (reaction[3] + torsion.shear_centre * reaction[1]) / spacing : 0.0;
+  return {half + difference, half - difference};
+}
 
 Beam::Beam(MPI_Comm comm, BeamModel model)
     : comm_(comm),
@@ -313,24 +324,25 @@ void Beam::record_reactions(const Slice& slice, const Rows& beams, const Rows& m
     const auto [left, right] = mesh().nodes_at(end);
     for (int node = left; node <= right; ++node) {
       for (int component = 0; component < (mesh().hinged(node) ? 4 : 3); ++component) {
-        record(bridge_.unknown(node, component), index(3 * end + std::min(component, 2)));
+        record(bridge_.unknown(node, component), index(4 * end + std::min(component, 2)));
       }
+      record(bridge_.unknown(node, 5), index(4 * end + 3));
     }
   }
-  for (const int node : held_rail_ends()) record(rail_->unknown(node, 0), index(3 * (mesh().spans() + 1)));
+  for (const int node : held_rail_ends()) record(rail_->unknown(node, 0), index(4 * (mesh().spans() + 1)));
 }
 
 void Beam::add_reaction_form(int span_end, int component, double factor, double* forces) const {
-  const std::size_t slot = index(3 * span_end + component);
+  const std::size_t slot = index(4 * span_end + component);
   for (const ReactionTerm& t : reaction_terms_)
     if (t.slot == slot) forces[t.unknown] += factor * t.stiffness;
 }
 
 void Beam::reactions(const double* v, const double* w, const double* a, const double* P,
-                     std::vector<std::array<double, 3>>& out) const {
+                     std::vector<Reaction>& out) const {
   out.resize(mesh().span_ends().size() + (held_rail_ends().empty() ? 0 : 1));
   double* sums = out.front().data();
-  const std::size_t count = 3 * out.size();
+  const std::size_t count = 4 * out.size();
   std::fill(sums, sums + count, 0.0);
   for (const ReactionTerm& t : reaction_terms_) {
     sums[t.slot] += t.mass * a[t.unknown] + t.damping * w[t.unknown] + t.stiffness * v[t.unknown];
@@ -339,11 +351,11 @@ void Beam::reactions(const double* v, const double* w, const double* a, const do
   MPI_Allreduce(MPI_IN_PLACE, sums, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, comm_);
 }
 
-void Beam::reactions_of_imposed_acceleration(std::vector<std::array<double, 3>>& out) const {
+void Beam::reactions_of_imposed_acceleration(std::vector<Reaction>& out) const {
   out.assign(mesh().span_ends().size() + (held_rail_ends().empty() ? 0 : 1), {});
   double* sums = out.front().data();
   for (const HeldLoad& load : held_loads_) sums[load.slot] += load.by_acceleration;
-  MPI_Allreduce(MPI_IN_PLACE, sums, static_cast<int>(3 * out.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  MPI_Allreduce(MPI_IN_PLACE, sums, static_cast<int>(4 * out.size()), MPI_DOUBLE, MPI_SUM, comm_);
 }
 
 }  // namespace traverse::beam

@@ -28,6 +28,14 @@ struct Rayleigh {
   double b = 0.0;  // s
 };
 
+/// The forces of a support on the beam: along x and upward, N, and the moment, N m; torque about the line of shear
+/// centres, N m, positive as the twist.
+using Reaction = std::array<double, 4>;
+
+/// The upward forces of the left and the right bearing of a support at a span end, N: half of its reaction with, at
+/// half the spacing on each side of the beam's axis, what its torque needs.
+std::array<double, 2> bearing_forces(const Torsion& torsion, std::size_t span_end, const Reaction& reaction);
+
 class Rows;
 struct Slice;
 
@@ -105,14 +113,13 @@ class Beam {
   const std::vector<double>& inertia_of_imposed() const { return inertia_of_imposed_; }
   /// Collective. The reactions (as `reactions`) that accelerate the mass at the held unknowns if the settlements were
   /// accelerations, m/s2.
-  void reactions_of_imposed_acceleration(std::vector<std::array<double, 3>>& out) const;
+  void reactions_of_imposed_acceleration(std::vector<Reaction>& out) const;
 
-  /// Collective. Forces and moment of the supports on the beam at every span end, {fx, fy, moment} each, followed by
-  /// {fx, 0, 0} of both ends of the rail if they are held along x; on all ranks. They are eq. 18 as corrected in
+  /// Collective. The reactions of the supports at every span end, followed by {fx, 0, 0, 0} of both ends of the rail if
+  /// they are held along x; on all ranks. They are eq. 18 as corrected in
   /// doc/theory.md, M_ca a + C_ca w + K_ca v - P_c, from this rank's slices of the nodal vectors. P must contain the
   /// load on held unknowns too. At separate spans the reactions of both spans are added.
-  void reactions(const double* v, const double* w, const double* a, const double* P,
-                 std::vector<std::array<double, 3>>& out) const;
+  void reactions(const double* v, const double* w, const double* a, const double* P, std::vector<Reaction>& out) const;
   /// Adds the coefficients of this rank's nodal displacements in `factor` times a static reaction (component 0 fx, 1
   /// fy, 2 moment) to `forces`. Loads on the held unknowns are not included.
   void add_reaction_form(int span_end, int component, double factor, double* forces) const;
@@ -120,7 +127,7 @@ class Beam {
  private:
   /// Coefficients of one free local unknown in the row of one held unknown, eq. 18.
   struct ReactionTerm {
-    std::size_t slot;     // in the reactions, 3 per span end
+    std::size_t slot;     // in the reactions, 4 per span end
     std::size_t unknown;  // local
     double mass, beam_mass, beam_stiffness, stiffness, foundation_damping, damping;
   };

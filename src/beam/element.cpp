@@ -80,9 +80,6 @@ Axial axial_stiffness_of(const Distribution& EA, const Element& e) {
   return {mean / h, -mean / h, -mean / h, mean / h};
 }
 
-/// The mean of a consistent mass matrix of a bar and the lumped one with the same row sums.
-Axial mean_of_lumped(const Axial& m) { return {m[0] + 0.5 * m[1], 0.5 * m[1], 0.5 * m[2], m[3] + 0.5 * m[2]}; }
-
 }  // namespace
 
 Transverse transverse_bed(const Distribution& density, const Element& e) {
@@ -108,20 +105,23 @@ Transverse slope_bed(const Distribution& density, const Element& e) {
 
 TorsionMatrices torsion_matrices(const BeamModel& model, const Element& e) {
   const Torsion& torsion = *model.torsion;
+  Element twisted = e;  // its twist is that of Vlasov's theory, as the deflection is that of a beam in tension
+  twisted.shear = 0.0;
   TorsionMatrices m;
-  m.stiffness = axial_stiffness_of(torsion.GJ, e);
-  m.mass = mean_of_lumped(axial_bed(torsion.inertia, e));
-  if (torsion.mass_centre == 0.0) return m;
-  // The mass between deflection and twist is a mean of both matrices, too.
-  const Axial of_mass = mean_of_lumped(axial_bed(model.mass, e));
-  for (std::size_t i = 0; i < of_mass.size(); ++i) m.mass[i] += torsion.mass_centre * torsion.mass_centre * of_mass[i];
+  const auto add = [](const Transverse& from, double factor, Transverse& to) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * from[i];
+  };
+  add(slope_bed(torsion.GJ, twisted), 1.0, m.stiffness);
+  if (torsion.warping) add(bending_stiffness(*torsion.warping, twisted), 1.0, m.stiffness);
+  add(transverse_bed(torsion.inertia, twisted), 1.0, m.mass);
+  const double c = torsion.mass_centre;
+  if (c == 0.0) return m;
+  add(transverse_bed(model.mass, twisted), c * c, m.mass);
   integrate(model.mass, e.x, e.x + e.length, [&](double x, double weight) {
     const double xi = (x - e.x) / e.length;
-    const auto psi = hermite(xi, e.length, e.shear).value;
-    const auto phi = linear(xi);
+    const auto of_v = hermite(xi, e.length, e.shear).value, of_twist = hermite(xi, e.length).value;
     for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 2; ++j) m.coupling[2 * i + j] += 0.5 * torsion.mass_centre * weight * psi[i] * phi[j];
-    for (std::size_t j = 0; j < 2; ++j) m.coupling[5 * j] += 0.5 * torsion.mass_centre * weight * phi[j];
+      for (std::size_t j = 0; j < 4; ++j) m.coupling[4 * i + j] += c * weight * of_v[i] * of_twist[j];
   });
   return m;
 }

@@ -57,12 +57,10 @@ Axial axial_bed(const Distribution& density, const Element& element);
 /// Integral of density(x) theta theta^T, theta the shapes of the rotation (psi' without shear): rotary inertia, or a
 /// bed that resists the rotation.
 Transverse slope_bed(const Distribution& density, const Element& element);
-/// The matrices of (twist1, twist2): the twist is linear along the element. The mass is the mean of the consistent and
-/// the lumped one, so that the errors of frequencies are of fourth order. `coupling` is the mass between the transverse
-/// unknowns (rows) and the twists, kg m.
+/// The matrices of (twist1, rate1, twist2, rate2), for a cubic twist: N m and kg m2 for the twists. `coupling` is the
+/// mass between the transverse unknowns (rows) and these, kg m for a deflection and a twist.
 struct TorsionMatrices {
-  Axial stiffness{}, mass{};
-  std::array<double, 8> coupling{};
+  Transverse stiffness{}, mass{}, coupling{};
 };
 TorsionMatrices torsion_matrices(const BeamModel& model, const Element& element);
 

@@ -72,18 +72,24 @@ std::vector<std::pair<double, double>> bed_ranges(const Bed& bed, const Part& pa
   return stretches;
 }
 
-/// Linear combinations of the deflections at the part's stations x that must be zero; each row has the coefficients of
-/// one.
+/// Linear combinations of the deflections at the part's stations x, and of the twist if the part twists, that must be
+/// zero; each row has the coefficients of one.
 class Conditions {
  public:
-  explicit Conditions(const Part& part) : part_(part), unknowns_(static_cast<Eigen::Index>(part.x.size())) {}
+  Conditions(const Part& part, bool twists)
+      : part_(part), stations_(static_cast<Eigen::Index>(part.x.size())), unknowns_(stations_ + (twists ? 1 : 0)) {}
 
-  void add_zero_deflection(double x) {
+  void add_zero_deflection(double x, double eccentricity = 0.0) {
     const Eigen::Index i = piece_of(x, false);
     const double xi = (x - part_.x[i]) / (part_.x[i + 1] - part_.x[i]);
     add(i, 1.0 - xi, xi);
+    if (eccentricity != 0.0) rows_.back()[stations_] = eccentricity;
   }
   void add_zero_slope(double x, bool from_left) { add(piece_of(x, from_left), -1.0, 1.0); }
+  void add_zero_twist() {
+    rows_.emplace_back(Eigen::RowVectorXd::Zero(unknowns_));
+    rows_.back()[stations_] = 1.0;
+  }
 
   /// The motions that satisfy all conditions, one per column. A free body has a vertical motion and one about its
   /// middle.
@@ -101,7 +107,7 @@ class Conditions {
   Eigen::Index piece_of(double x, bool from_left) const {
     const auto& s = part_.x;
     const auto after = from_left ? std::lower_bound(s.begin(), s.end(), x) : std::upper_bound(s.begin(), s.end(), x);
-    return std::clamp<Eigen::Index>(after - s.begin() - 1, 0, unknowns_ - 2);
+    return std::clamp<Eigen::Index>(after - s.begin() - 1, 0, stations_ - 2);
   }
   void add(Eigen::Index i, double left, double right) {
     rows_.emplace_back(Eigen::RowVectorXd::Zero(unknowns_));
@@ -110,16 +116,17 @@ class Conditions {
   }
 
   const Part& part_;
-  Eigen::Index unknowns_;
+  Eigen::Index stations_, unknowns_;
   std::vector<Eigen::RowVectorXd> rows_;
 };
 
 Conditions bending_conditions(const BeamModel& model, const Part& part, const std::vector<double>& span_ends,
                               Springs springs) {
-  Conditions conditions(part);
+  Conditions conditions(part, model.torsion.has_value());
   for (int end = part.first_end; end <= part.last_end; ++end) {
     const double x = span_ends[static_cast<std::size_t>(end)];
     if (fixes_vertical(model.supports[end])) conditions.add_zero_deflection(x);
+    if (model.torsion && model.torsion->held[static_cast<std::size_t>(end)] != 0) conditions.add_zero_twist();
     if (!fixes_rotation(model.supports[end])) continue;
     conditions.add_zero_slope(x, false);
     conditions.add_zero_slope(x, true);
@@ -127,7 +134,7 @@ Conditions bending_conditions(const BeamModel& model, const Part& part, const st
   for_points(model.foundation, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
     for (const PointFoundation& p : points) {
       if (!is_spring_of(p, part, model, springs)) continue;
-      if (kind.direction == Direction::vertical) conditions.add_zero_deflection(p.x);
+      if (kind.direction == Direction::vertical) conditions.add_zero_deflection(p.x, p.eccentricity);
       if (kind.direction == Direction::rotational) conditions.add_zero_slope(p.x, p.from_left);
     }
   });
@@ -158,8 +165,10 @@ std::vector<RigidMotion> bending_motions(const Part& part, const Conditions& con
   std::vector<RigidMotion> motions;
   const Eigen::MatrixXd basis = conditions.motions();
   for (Eigen::Index i = 0; i < basis.cols(); ++i) {
-    const Eigen::VectorXd deflection = basis.col(i) / basis.col(i).lpNorm<Eigen::Infinity>();
-    motions.push_back({part.left(), part.right(), false, part.x, {deflection.begin(), deflection.end()}});
+    const Eigen::VectorXd motion = basis.col(i) / basis.col(i).lpNorm<Eigen::Infinity>();
+    const auto stations = static_cast<std::ptrdiff_t>(part.x.size());
+    motions.push_back({part.left(), part.right(), false, part.x, {motion.begin(), motion.begin() + stations}});
+    if (motion.size() > stations) motions.back().twist = motion[stations];
   }
   return motions;
 }
@@ -177,6 +186,8 @@ std::vector<double> ends_of(const BeamModel& model) {
 /// The description of the motions of one part; at least one motion is needed.
 std::string describe(const std::vector<RigidMotion>& of_part) {
   const RigidMotion& m = of_part.front();
+  if (std::ranges::any_of(of_part, [](const RigidMotion& one) { return std::abs(one.twist) > rank_tolerance; }))
+    return "can twist (support_torsion)";
   if (m.axial) return "can move along x";
   if (m.x.size() > 2) return "can move with its hinges as a mechanism";
   if (of_part.size() > 1 && !of_part[1].axial) return "can move vertically and rotate";
@@ -225,6 +236,9 @@ void for_springs(const BeamModel& model, const Part& part, Use use) {
   });
 }
 
+double eccentricity_of(const PointFoundation& point) { return point.eccentricity; }
+double eccentricity_of(const Bed&) { return 0.0; }
+
 /// The motions of a part without springs, `all`, of which springs resist all but `free`.
 struct HeldMotions {
   std::vector<RigidMotion> all;
@@ -235,12 +249,14 @@ struct HeldMotions {
 double least_stiffness(const BeamModel& model, const Part& part, const HeldMotions& held) {
   const auto n = static_cast<Eigen::Index>(held.all.size());
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
-  for_springs(model, part, [&](const FoundationKind& kind, const auto&, double x, bool from_left, double k) {
+  for_springs(model, part, [&](const FoundationKind& kind, const auto& spring, double x, bool from_left, double k) {
     Eigen::VectorXd displacement = Eigen::VectorXd::Zero(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       const RigidMotion& motion = held.all[static_cast<std::size_t>(i)];
       if (motion.axial != (kind.direction == Direction::longitudinal)) continue;
-      displacement[i] = kind.direction == Direction::rotational ? motion.slope(x, from_left) : motion.value(x);
+      displacement[i] = kind.direction == Direction::rotational
+                            ? motion.slope(x, from_left)
+                            : motion.value(x) + eccentricity_of(spring) * motion.twist;
     }
     K += k * displacement * displacement.transpose();
   });

@@ -12,12 +12,12 @@ namespace {
 /// Whether elements of equal length have the same stiffness.
 bool is_uniform(const BeamModel& model) {
   return model.EI.uniform() && (!model.GA || model.GA->uniform()) && (!model.axial || model.EA.uniform()) &&
-         (!model.torsion || model.torsion->GJ.uniform());
+         (!model.torsion ||
+          (model.torsion->GJ.uniform() && (!model.torsion->warping || model.torsion->warping->uniform())));
 }
 
-/// T of InternalForces.
-double twisting(const BeamModel& model, const Element& element) {
-  return model.torsion ? torsion_matrices(model, element).stiffness[1] : 0.0;
+TwistForces twist_forces(const BeamModel& model, const Element& element) {
+  return model.torsion ? TwistForces(torsion_matrices(model, element).stiffness) : TwistForces();
 }
 
 }  // namespace
@@ -29,37 +29,33 @@ InternalForces::InternalForces(const Beam& beam) : block_(beam.block()), local_(
 }
 
 InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) const {
-  Run run;
+  Run run{.twist = TwistPlaces(line)};
   run.u = line.place[0];
   run.v = line.place[1];
   run.theta = line.place[2];
-  run.twist = line.place[5];
   const BeamModel& model = line.model;
   const bool uniform = is_uniform(model);
   const auto [first, past] = line.elements_at(beam.first_column(), local_);
   double length = 0.0;
   Stiffness s{};
+  TwistForces twisting;
   for (int e = first; e < past; ++e) {
     const Element& element = line.mesh.element(e);
     const int column = line.first_column + element.left - beam.first_column();
     if (run.elements.empty()) run.first = column;
     if (!uniform || element.length != length) {
       const ElementMatrices m = element_matrices(model, element);
-      s = {element.length,
-           m.stiffness[2],
-           m.stiffness[3],
-           m.stiffness[6],
-           m.stiffness[7],
-           m.axial_stiffness[1],
-           twisting(model, element),
-           0,
-           0};
+      s = {element.length, m.stiffness[2], m.stiffness[3], m.stiffness[6], m.stiffness[7], m.axial_stiffness[1], 0, 0};
+      twisting = twist_forces(model, element);
     }
     length = element.length;
     s.theta1 = line.mesh.hinged(element.left) ? line.place[3] : line.place[2];
     s.u1 = line.mesh.has_expansion_device(element.left) ? line.place[4] : line.place[0];
     run.elements.resize(index(column - run.first + 1));  // skips the columns between separate spans
     run.elements.back() = s;
+    if (run.twist.twist < 0) continue;
+    run.twisting.resize(run.elements.size());
+    run.twisting.back() = twisting;
   }
   return run;
 }
@@ -103,15 +99,24 @@ void InternalForces::add_run(const Run& run, double sign, const double* x, const
 template <class Real>
 void InternalForces::add_twist(const Run& run, double sign, const double* x, const double* left, const double* right,
                                double* r) const {
-  const std::ptrdiff_t b = block_, twist = run.twist, past = run.first + std::ssize(run.elements);
+  const std::ptrdiff_t b = block_, past = run.first + std::ssize(run.elements);
+  const auto [twist, left_rate, right_rate] = run.twist;
   const double* x1 = run.first < 0 ? left : x + run.first * b;
   for (std::ptrdiff_t column = run.first; column < past; ++column) {
     const double* x2 = column + 1 < local_ ? x + (column + 1) * b : right;
-    const Stiffness& s = run.elements[static_cast<std::size_t>(column - run.first)];
-    const double moment =
-        s.T == 0.0 ? 0.0 : sign * static_cast<double>(Real(s.T) * (Real(x2[twist]) - Real(x1[twist])));
-    if (column >= 0) r[column * b + twist] += moment;
-    if (column + 1 < local_) r[(column + 1) * b + twist] -= moment;
+    const TwistForces& t = run.twisting[static_cast<std::size_t>(column - run.first)];
+    if (t.T != 0.0) {  // not between separate spans
+      const auto [torque, moment1, moment2] =
+          t.of(Real(x2[twist]) - Real(x1[twist]), Real(x1[left_rate]), Real(x2[right_rate]));
+      if (column >= 0) {
+        r[column * b + twist] += sign * torque;
+        r[column * b + left_rate] += sign * moment1;
+      }
+      if (column + 1 < local_) {
+        r[(column + 1) * b + twist] -= sign * torque;
+        r[(column + 1) * b + right_rate] += sign * moment2;
+      }
+    }
     x1 = x2;
   }
 }
@@ -124,7 +129,7 @@ void InternalForces::add(double sign, const double* x, const double* left, const
     } else {
       add_run<Real, false>(run, sign, x, left, right, r);
     }
-    if (run.twist >= 0) add_twist<Real>(run, sign, x, left, right, r);
+    if (run.twist.twist >= 0) add_twist<Real>(run, sign, x, left, right, r);
   }
 }
 
@@ -139,29 +144,31 @@ ElementRows::ElementRows(const Beam& beam) {
 
 ElementRows::Run ElementRows::run_of(const Beam& beam, const Line& line) {
   using Numbers = std::array<double, numbers>;
-  std::vector<Numbers> all(static_cast<std::size_t>(beam.local_columns()) + 1, Numbers{});
+  std::vector<std::pair<Numbers, TwistForces>> all(static_cast<std::size_t>(beam.local_columns()) + 1);
   const BeamModel& model = line.model;
   const auto [from, past] = line.elements_at(beam.first_column(), beam.local_columns());
   const bool uniform = is_uniform(model);
   double length = 0.0;
-  Numbers c{};
+  std::pair<Numbers, TwistForces> c;
   for (int e = from; e < past; ++e) {
     const Element& element = line.mesh.element(e);
     if (!uniform || element.length != length) {
       const ElementMatrices m = element_matrices(model, element);
-      c = {element.length, m.stiffness[2],       m.stiffness[3],          m.stiffness[6],
-           m.stiffness[7], m.axial_stiffness[1], twisting(model, element)};
+      c.first = {element.length, m.stiffness[2], m.stiffness[3], m.stiffness[6], m.stiffness[7], m.axial_stiffness[1]};
+      c.second = twist_forces(model, element);
     }
     length = element.length;
     all[static_cast<std::size_t>(line.first_column + element.left - beam.first_column() + 1)] = c;
   }
-  Run run{line.place[0], line.place[1], line.place[2], line.place[5], {}, {}};
-  const auto hash = [&](std::ptrdiff_t j) { return solve::hash_of(0, all[static_cast<std::size_t>(j)]); };
+  Run run{line.place[0], line.place[1], line.place[2], TwistPlaces(line), {}, {}, {}};
+  const auto hash = [&](std::ptrdiff_t j) { return solve::hash_of(0, all[static_cast<std::size_t>(j)].first); };
   const auto same = [&](std::ptrdiff_t i, std::ptrdiff_t j) {
     return all[static_cast<std::size_t>(i)] == all[static_cast<std::size_t>(j)];
   };
   for (std::ptrdiff_t j : run.stored.assign(std::ssize(all), hash, same)) {
-    for (std::size_t i = 0; i < numbers; ++i) run.coefficients[i].push_back(all[static_cast<std::size_t>(j)][i]);
+    const auto& [numbers_of, twisting] = all[static_cast<std::size_t>(j)];
+    for (std::size_t i = 0; i < numbers; ++i) run.coefficients[i].push_back(numbers_of[i]);
+    if (run.twist.twist >= 0) run.twisting.push_back(twisting);
   }
   return run;
 }
@@ -202,18 +209,27 @@ void ElementRows::add_run(const Run& run, int first, int past, const Planes& x, 
 
 void ElementRows::add_twist(const Run& run, int first, int past, const Planes& x, const Planes& r) {
   const int nodes = past - first;
-  const double* const twist = x[run.twist];
-  std::array<double, tile + 1> moment;  // on the left end of each element
-  for (int j = 0; j <= nodes; ++j)
-    moment[j] = run.coefficients[6][run.stored.at(first + j).storage_index(first + j)] * (twist[j + 1] - twist[j]);
-  double* const to = r[run.twist];
-  for (int i = 0; i < nodes; ++i) to[i] += moment[i + 1] - moment[i];
+  const double *const twist = x[run.twist.twist], *const left = x[run.twist.left_rate],
+                      *const right = x[run.twist.right_rate];
+  double *const to_twist = r[run.twist.twist], *const to_left = r[run.twist.left_rate],
+                *const to_right = r[run.twist.right_rate];
+  for (int j = 0; j <= nodes; ++j) {
+    const auto place = static_cast<std::size_t>(run.stored.at(first + j).storage_index(first + j));
+    const auto [torque, moment1, moment2] = run.twisting[place].of(twist[j + 1] - twist[j], left[j], right[j + 1]);
+    if (j > 0) {
+      to_twist[j - 1] += torque;
+      to_left[j - 1] += moment1;
+    }
+    if (j == nodes) break;
+    to_twist[j] -= torque;
+    to_right[j] += moment2;
+  }
 }
 
 void ElementRows::add(int first, int past, const Planes& x, const Planes& r) const {
   for (const Run& run : runs_) {
     run.u >= 0 ? add_run<true>(run, first, past, x, r) : add_run<false>(run, first, past, x, r);
-    if (run.twist >= 0) add_twist(run, first, past, x, r);
+    if (run.twist.twist >= 0) add_twist(run, first, past, x, r);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include "assembly.hpp"
 #include "beam/shape.hpp"
@@ -35,11 +36,13 @@ void add_on_bridge(const Sleeper& s, const Line& bridge, const Layout& layout, c
                    Rows& stiffness, Rows& damping) {
   const auto [v1, theta1, v2, theta2] = bridge.transverse(s.at.element);
   const Element& element = bridge.mesh.element(s.at.element);
-  const auto psi = hermite(s.at.xi, element.length, element.shear).value;
+  const PointShape below = shape_at(bridge, Direction::vertical, s.at, 0.0, bridge.eccentricity(0));
   const SleeperConnection connection = connection_of(s, track, layout);
-  mass.add(bridge.transverse(s.at.element), outer(connection.mass, psi));
-  const std::array<double, 5> direction{1.0, -psi[0], -psi[1], -psi[2], -psi[3]};
-  const std::array<int, 5> unknowns{connection.unknown, v1, theta1, v2, theta2};
+  mass.add(below.unknown, outer(connection.mass, below.shape));
+  std::array<double, 9> direction{1.0};
+  std::array<int, 9> unknowns{connection.unknown};
+  std::ranges::copy(below.unknown, unknowns.begin() + 1);
+  std::ranges::transform(below.shape, direction.begin() + 1, std::negate());
   add_layer(connection.spring, stiffness, damping,
             [&](double k, Rows& rows) { rows.add(unknowns, outer(k, direction)); });
   if (connection.along < 0) return;

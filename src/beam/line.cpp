@@ -29,7 +29,11 @@ Layout::Layout(const BeamModel& model) {
   add(Kind::v);
   add(Kind::theta);
   if (hinges) add(Kind::theta_right);
-  if (model.torsion) add(Kind::twist);
+  if (model.torsion) {
+    add(Kind::twist);
+    add(twist_rate);
+    if (!model.torsion->warping) add(twist_rate_right);
+  }
   if (!model.dampers.empty()) add(Kind::damper);
 }
 
@@ -41,9 +45,11 @@ Line::Line(BeamModel its_model, const Layout& layout, bool rail, int its_first_c
       per_node(model.axial ? 3 : 2) {
   const auto& places = layout.place;
   if (rail) {
-    place = {places[rail_u], places[rail_v], places[rail_theta], places[rail_theta_right], places[rail_u_right], -1};
+    place = {
+        places[rail_u], places[rail_v], places[rail_theta], places[rail_theta_right], places[rail_u_right], -1, -1, -1};
   } else {
-    place = {places[Kind::u], places[Kind::v], places[Kind::theta], places[Kind::theta_right], -1, places[Kind::twist]};
+    place = {places[Kind::u],     places[Kind::v],    places[Kind::theta],     places[Kind::theta_right], -1,
+             places[Kind::twist], places[twist_rate], places[twist_rate_right]};
   }
 }
 
@@ -70,9 +76,9 @@ std::array<int, 4> Line::transverse(int element) const {
   return {unknown(left, 1), unknown(left, mesh.hinged(left) ? 3 : 2), unknown(left + 1, 1), unknown(left + 1, 2)};
 }
 
-std::array<int, 2> Line::twists(int element) const {
+std::array<int, 4> Line::twists(int element) const {
   const int left = mesh.element(element).left;
-  return {unknown(left, 5), unknown(left + 1, 5)};
+  return {unknown(left, 5), unknown(left, place[7] >= 0 ? 7 : 6), unknown(left + 1, 5), unknown(left + 1, 6)};
 }
 
 std::array<int, 2> Line::axial(int element) const {

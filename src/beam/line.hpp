@@ -1,13 +1,13 @@
 // The numbering of the structure's unknowns, column by column along x, with the same number in each column, and arrays
 // of their values for products with many nodes at a time.
 //
-// A column contains a node of the bridge, (u, v, theta), with a second rotation if the beam has hinges, and the
-// twist if it twists. With a layered
-// track it also contains a node of the rail, with a second rotation if the rail has joints and a second displacement
-// along x if it has expansion devices, and the sleeper at the node. On the ground the ballast's mass uses the place of
-// the bridge's deflection, unless it has a separate place because the ballast on the bridge is a separate mass too.
-// A mass damper has a place in a column of its element or, at a node, in one beside it. Only neighbouring columns are
-// coupled, for every model.
+// A column contains a node of the bridge, (u, v, theta), with a second rotation if the beam has hinges. If the beam
+// twists, it contains the twist and its rate along x; without stiffness against warping, one rate on each side of the
+// node, because a torque makes it jump. With a layered track it also contains a node of the rail, with a second
+// rotation if the rail has joints and a second displacement along x if it has expansion devices, and the sleeper at the
+// node. On the ground the ballast's mass uses the place of the bridge's deflection, unless it has a separate place
+// because the ballast on the bridge is a separate mass too. A mass damper has a place in a column of its element or, at
+// a node, in one beside it. Only neighbouring columns are coupled, for every model.
 #pragma once
 
 #include <array>
@@ -30,6 +30,8 @@ enum Kind {
   theta,
   theta_right,
   twist,
+  twist_rate,
+  twist_rate_right,
   damper,
   kinds
 };
@@ -47,13 +49,14 @@ struct Layout {
 
   static bool axial(Kind k) { return k == rail_u || k == rail_u_right || k == Kind::u; }
   static bool rotation(Kind k) {
-    return k == rail_theta || k == rail_theta_right || k == Kind::theta || k == Kind::theta_right || k == Kind::twist;
+    return k == rail_theta || k == rail_theta_right || k == Kind::theta || k == Kind::theta_right || of_twist(k);
   }
+  static bool of_twist(Kind k) { return k == Kind::twist || k == twist_rate || k == twist_rate_right; }
   /// Whether the unknown is a vertical displacement: also that of a damper.
   static bool is_vertical(Kind k) { return !axial(k) && !rotation(k); }
   /// Whether the unknown belongs to the bridge; on the ground the ballast may use its place.
   static bool of_bridge(Kind k) {
-    return k == Kind::u || k == Kind::v || k == Kind::theta || k == Kind::theta_right || k == Kind::twist;
+    return k == Kind::u || k == Kind::v || k == Kind::theta || k == Kind::theta_right || of_twist(k);
   }
 };
 
@@ -65,25 +68,32 @@ struct Line {
   Mesh mesh;
   int first_column = 0;  // column of its first node
   int block = 0;
-  int per_node = 2;            // unknowns per node of an element: (v, theta), or (u, v, theta)
-  std::array<int, 6> place{};  // index of u, v, theta, theta_right, u_right, twist in a column; -1: it does not exist
+  int per_node = 2;  // unknowns per node of an element: (v, theta), or (u, v, theta)
+  /// Index of u, v, theta, theta_right, u_right, twist, twist_rate, twist_rate_right in a column; -1: it does not
+  /// exist.
+  std::array<int, 8> place{};
 
   /// The elements with a node among `count` columns from the first: [first, past).
   std::pair<int, int> elements_at(int first, int count) const;
   /// Global unknowns v1, theta1, v2, theta2 of an element; u1, u2 (only with axial unknowns).
   std::array<int, 4> transverse(int element) const;
   std::array<int, 2> axial(int element) const;
-  std::array<int, 2> twists(int element) const;  // twist1, twist2, only with torsion
-  /// The distance of the track to the left of the shear centre, m.
-  double eccentricity() const { return model.torsion ? model.torsion->track : 0.0; }
-  /// Calls use(k, unknown, factor): nodal value k of the track in an element, in the order of unknowns(), is the sum of
-  /// these unknowns times their factors: deflection and rotation of the beam, and its twist, which is linear along the
-  /// element, times the eccentricity.
+  std::array<int, 4> twists(int element) const;  // twist1, rate1, twist2, rate2, only with torsion
+  int tracks() const { return model.torsion ? static_cast<int>(model.torsion->tracks.size()) : 1; }
+  /// The distance of an element's track to the left of the shear centre, m (Mesh::element).
+  double eccentricity(int element) const {
+    return model.torsion ? model.torsion->tracks[static_cast<std::size_t>(element / mesh.elements())] : 0.0;
+  }
+  /// Whether a track is beside the shear centre, or there are several.
+  bool has_tracks_beside() const { return model.torsion && model.torsion->tracks != std::vector<double>{0.0}; }
+  /// Calls use(k, unknown, factor): nodal value k of an element's track, in the order of unknowns(), is the sum of
+  /// these unknowns times their factors: deflection and rotation of the beam, and its twist with the rate along x,
+  /// times the eccentricity.
   template <class Use>
   void for_unknowns(int element, Use use) const;
   /// The unknowns node by node: (v1, theta1, v2, theta2) or (u1, v1, theta1, u2, v2, theta2), 2*per_node in number.
   std::array<int, 6> unknowns(int element) const;
-  /// Global unknown of a node: 0 u, 1 v, 2 theta, 3 theta_right, 4 u_right, 5 twist; -1: does not exist.
+  /// Global unknown of a node, by the order of `place`; -1: does not exist.
   int unknown(int node, int component) const {
     return place[component] < 0 ? -1 : (first_column + node) * block + place[component];
   }
@@ -93,16 +103,11 @@ template <class Use>
 void Line::for_unknowns(int element, Use use) const {
   const auto own = unknowns(element);
   for (int k = 0; k < 2 * per_node; ++k) use(k, own[static_cast<std::size_t>(k)], 1.0);
-  const double e = eccentricity();
+  const double e = eccentricity(element);
   if (e == 0.0) return;
   const auto twist = twists(element);
-  const double slope = e / mesh.element(element).length;
-  for (int node = 0; node < 2; ++node) {
-    const int v = node * per_node + per_node - 2;
-    use(v, twist[static_cast<std::size_t>(node)], e);
-    use(v + 1, twist[0], -slope);
-    use(v + 1, twist[1], slope);
-  }
+  for (std::size_t k = 0; k < 4; ++k)
+    use(static_cast<int>(k / 2) * per_node + per_node - 2 + static_cast<int>(k % 2), twist[k], e);
 }
 
 /// The arrays, by the unknown's index in a column.

@@ -48,6 +48,7 @@ Mesh::Mesh(const BeamModel& model) : ground_(model.ground) {
     for (int i = 0; i < piece.elements; ++i) {
       const double h = length / piece.elements;
       elements_.push_back(element_of(model, nodes() - 1, piece.span, x_.back(), h));
+      ++count_;
       x_.push_back(i + 1 < piece.elements ? piece.left + length * (i + 1) / piece.elements : piece.right);
     }
     joints_.resize(x_.size(), Joint::continuous);
@@ -66,6 +67,10 @@ Mesh::Mesh(const BeamModel& model) : ground_(model.ground) {
   if (ground_[1] && !level_with_ground(model, true)) steps_.push_back(x_.back());
   piece_ends_.push_back(x_.back());
   first_element_.push_back(elements());
+  if (!model.torsion) return;
+  const std::vector<Element> of_one_track = elements_;
+  for (std::size_t track = 1; track < model.torsion->tracks.size(); ++track)
+    elements_.insert(elements_.end(), of_one_track.begin(), of_one_track.end());
 }
 
 Station Mesh::locate(double x, bool from_left) const {

@@ -33,9 +33,13 @@ class Mesh {
   explicit Mesh(const BeamModel& model);
 
   int nodes() const { return static_cast<int>(x_.size()); }
-  int elements() const { return static_cast<int>(elements_.size()); }
+  int elements() const { return count_; }
   double x(int node) const { return x_[node]; }
+  /// Element e of the beam. For what stands on one of several tracks, the elements are numbered track by track: numbers
+  /// from elements() on are the same elements for the second track, and so on.
   const Element& element(int e) const { return elements_[e]; }
+  /// The station for what stands on this track, counted from 0.
+  Station on_track(Station s, int track) const { return {s.element + track * count_, s.xi}; }
   double start() const { return x_.front(); }
   double end() const { return x_.back(); }
   int spans() const { return static_cast<int>(span_ends_.size()) - 1; }
@@ -66,7 +70,8 @@ class Mesh {
   std::array<bool, 2> ground_;
   std::vector<double> x_;
   std::vector<Joint> joints_;  // at each node
-  std::vector<Element> elements_;
+  int count_ = 0;
+  std::vector<Element> elements_;  // repeated for each track
   std::vector<double> span_ends_, kinks_, steps_;
   std::vector<std::pair<int, int>> nodes_at_;
   std::vector<double> piece_ends_;  // left end of each range of equal elements, and the beam's end

@@ -19,6 +19,7 @@ void add_points(std::size_t kind, const Line& bridge, int first, int past, std::
     if (at.element < first || at.element >= past) continue;
     points.push_back({kind, foundation_kinds[kind].direction, static_cast<int>(i), p.x, at, p.k, p.c, p.law});
     points.back().depth = p.depth;
+    points.back().eccentricity = p.eccentricity;
     points.back().sliding = {p.k, p.law.slides_at, p.k, p.law.slides_at};
   }
 }
@@ -91,6 +92,7 @@ std::vector<NonlinearPoint> hanging_sleepers(const Line& bridge, const Layout& l
     point.above = s.unknown(layout);
     point.below = s.ballast_moves ? s.ballast_unknown(layout) : -1;
     point.on_bridge = s.on_bridge && !s.ballast_moves;
+    point.eccentricity = bridge.eccentricity(0);
     if (s.rail_node >= first) points.push_back(point);
   }
   return points;
@@ -132,8 +134,8 @@ NonlinearShape shape_of(const Line& bridge, const NonlinearPoint& point) {
   if (point.below >= 0) add(point.below, -1.0);
   if (!point.on_bridge) return shape;
   const auto add_beam = [&](Direction direction, double factor) {
-    const PointShape beam = shape_at(bridge, direction, point.at, point.depth);
-    for (std::size_t i = 0; i < 4; ++i)
+    const PointShape beam = shape_at(bridge, direction, point.at, point.depth, point.eccentricity);
+    for (std::size_t i = 0; i < beam.unknown.size(); ++i)
       if (beam.unknown[i] >= 0) add(beam.unknown[i], factor * beam.shape[i]);
   };
   add_beam(point.direction, sign);

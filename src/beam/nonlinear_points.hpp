@@ -32,6 +32,7 @@ struct NonlinearPoint {
   Sliding sliding = {};   // replaces the law for a sleeper or a bearing that slides
   double height = 0.0;    // height of a sliding sleeper above the bridge's axis, m
   double depth = 0.0;     // depth of a point of a list below the bridge's axis, m
+  double eccentricity = 0.0;  // of a point of a list, m
 };
 
 /// The nonlinear points on the elements [first, past) of the bridge: the points of the lists, then the points of beds,
@@ -51,9 +52,9 @@ std::vector<NonlinearPoint> sliding_sleepers(const Line& bridge, const Layout& l
 /// The displacement at a point as a sum of shape*unknown: the displacement of the beam, or the displacement of a
 /// sleeper relative to the layer below.
 struct NonlinearShape {
-  static constexpr std::size_t most = 7;
+  static constexpr std::size_t most = 8;
   int count = 0;
-  std::array<int, most> unknown{-1, -1, -1, -1, -1, -1, -1};  // global
+  std::array<int, most> unknown{-1, -1, -1, -1, -1, -1, -1, -1};  // global
   std::array<double, most> shape{};
 };
 NonlinearShape shape_of(const Line& bridge, const NonlinearPoint& point);

@@ -1,6 +1,7 @@
 // Division of a beam into pieces at span ends, hinges and jumps of EI and mass, and below a layered track.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/numbers.hpp"
 #include "traverse/beam/model.hpp"
@@ -12,12 +13,13 @@ constexpr double same_station = 1e-9;  // relative to an element's length: close
 
 constexpr double min_piece = 0.2;  // relative to an element's length: jumps closer to another division are ignored
 
-/// The jumps of EI or mass between `left` and `right` at which the beam is divided; none if there are too many for the
-/// elements.
+/// The jumps of EI, mass or GJ between `left` and `right` at which the beam is divided; none if there are too many for
+/// the elements.
 std::vector<double> steps_between(const BeamModel& model, double left, double right, double element) {
   std::vector<double> steps = model.EI.steps(left, right), selected;
-  const std::vector<double> mass_steps = model.mass.steps(left, right);
-  steps.insert(steps.end(), mass_steps.begin(), mass_steps.end());
+  const auto add = [&](const Distribution& d) { std::ranges::copy(d.steps(left, right), std::back_inserter(steps)); };
+  add(model.mass);
+  if (model.torsion) add(model.torsion->GJ);
   std::sort(steps.begin(), steps.end());
   for (const double x : steps)
     if (std::min(x - (selected.empty() ? left : selected.back()), right - x) >= min_piece * element)
@@ -25,7 +27,7 @@ std::vector<double> steps_between(const BeamModel& model, double left, double ri
   return 2.0 * static_cast<double>(selected.size()) * element <= right - left ? selected : std::vector<double>();
 }
 
-/// Divides the last piece at jumps of EI or mass, where the curvature jumps too.
+/// Divides the last piece at jumps of EI, mass or GJ, where the curvature jumps too, or the rate of twist.
 void divide_at_steps(const BeamModel& model, std::vector<Piece>& pieces) {
   const Piece whole = pieces.back();
   const double element = model.spans[whole.span] / model.elements[whole.span];

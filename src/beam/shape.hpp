@@ -68,8 +68,8 @@ class ShapePoints {
     return out;
   }
 
-  /// The element's curve through nodal values, cubic in bending, linear along x and in twist. value(unknown) is the
-  /// value of a global unknown of the line.
+  /// The element's curve through nodal values, cubic in bending and twist, linear along x. value(unknown) is the value
+  /// of a global unknown of the line.
   template <class Number, class Value>
   std::vector<Number> curve(const Line& line, Along which, Value value) const {
     std::vector<Number> out;
@@ -79,14 +79,15 @@ class ShapePoints {
       if (p.node >= 0) {
         const int unknown = line.unknown(p.node, which == Along::axis ? 0 : which == Along::twist ? 5 : 1);
         sum = unknown < 0 ? Number(0.0) : value(unknown);
-      } else if (which != Along::deflection) {
-        const auto unknowns = which == Along::axis ? line.axial(p.at.element) : line.twists(p.at.element);
+      } else if (which == Along::axis) {
+        const auto unknowns = line.axial(p.at.element);
         const auto phi = linear(p.at.xi);
         for (std::size_t i = 0; i < 2; ++i) sum += phi[i] * value(unknowns[i]);
       } else {
-        const auto unknowns = line.transverse(p.at.element);
+        const bool bends = which == Along::deflection;
+        const auto unknowns = bends ? line.transverse(p.at.element) : line.twists(p.at.element);
         const Element& element = line.mesh.element(p.at.element);
-        const auto psi = hermite(p.at.xi, element.length, element.shear).value;
+        const auto psi = hermite(p.at.xi, element.length, bends ? element.shear : 0.0).value;
         for (std::size_t i = 0; i < 4; ++i) sum += psi[i] * value(unknowns[i]);
       }
       out.push_back(sum);

@@ -79,8 +79,9 @@ void print_properties(const Page& page, const beam::BeamModel& beam) {
   if (beam.torsion) {
     page.line("torsion", fmt::format("GJ {}, polar inertia {}", range_text(beam.torsion->GJ, "N m2"),
                                      range_text(beam.torsion->inertia, "kg m")));
-    page.line("", fmt::format("from the shear centre to the left: track {:g} m, centre of mass {:g} m",
-                              beam.torsion->track, beam.torsion->mass_centre));
+    if (beam.torsion->warping) page.line("ECw, warping", range_text(*beam.torsion->warping, "N m4"));
+    page.line("", fmt::format("from the shear centre to the left: tracks {:g} m, centre of mass {:g} m",
+                              fmt::join(beam.torsion->tracks, ", "), beam.torsion->mass_centre));
   }
   for (const beam::Crack& crack : beam.cracks)
     page.line("crack", fmt::format("at x = {:g} m, {:.4g} N m/rad", crack.x, crack.k));

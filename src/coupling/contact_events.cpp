@@ -171,7 +171,8 @@ std::array<double, 2> KinkEvents::turning_times(const Kink& kink, double t, cons
   if (state[speed] == 0.0 || state[radius] == 0.0) return {infinite, infinite};  // without motion or contact
   const double centre_time = t + (kink.x - state[x]) / state[speed];             // the centre is above the kink
   // The rotations at the right end of the left element and at the left end of the right element.
-  elements_ = {mesh.locate(kink.x, true).element, mesh.locate(kink.x, false).element};
+  elements_ = {mesh.on_track(mesh.locate(kink.x, true), c.track).element,
+               mesh.on_track(mesh.locate(kink.x, false), c.track).element};
   structure_->gather(elements_, v, w, v_, w_);
   const auto per_node = static_cast<std::size_t>(structure_->per_node());
   const std::size_t left = 2 * per_node - 1, right = left + per_node;

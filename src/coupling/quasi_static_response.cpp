@@ -30,23 +30,30 @@ struct QuasiStaticResponse::InfluenceLine {
   std::optional<recovery::Recovery> inside;  // recovery inside the station's element; none if wheels run on a rail
   double weight_deflection = 0.0;            // m: deflection under the beam's own weight
 
-  double at(const beam::Mesh& mesh, double x) const {
+  double at(const beam::Line& on, double x, int track) const {
+    const beam::Mesh& mesh = on.mesh;
     if (x < mesh.start() || x > mesh.end()) return 0.0;
     const beam::Station s = mesh.locate(x);
     const beam::Element& element = mesh.element(s.element);
+    const int number = mesh.on_track(s, track).element;
+    const auto first = 4 * static_cast<std::size_t>(number);
     const beam::Hermite psi = beam::hermite(s.xi, element.length, element.shear);
-    double sum = inside ? inside->deflection_inside(0, {s.element, s.xi, 0.0, -1.0, 0.0}) : 0.0;
-    for (int i = 0; i < 4; ++i) sum += psi.value[i] * nodal[4 * static_cast<std::size_t>(s.element) + i];
+    recovery::ElementLoad unit = {s.element, s.xi, 0.0, -1.0, 0.0};
+    unit.torque = -on.eccentricity(number);
+    double sum = inside ? inside->deflection_inside(0, unit) : 0.0;
+    for (int i = 0; i < 4; ++i) sum += psi.value[i] * nodal[first + static_cast<std::size_t>(i)];
     return sum;
   }
 
-  /// The mean over a length (m) about x, 0 outside the mesh; length 0: the value at x.
-  double mean(const beam::Mesh& mesh, double x, double length) const {
-    if (length == 0.0) return at(mesh, x);
+  /// The mean over the length of a load about x, 0 outside the mesh; length 0: the value at x.
+  double mean(const beam::Line& on, const StaticLoad& load, double x) const {
+    const beam::Mesh& mesh = on.mesh;
+    const double length = load.length;
+    if (length == 0.0) return at(on, x, load.track);
     const double from = std::max(x - 0.5 * length, mesh.start()), to = std::min(x + 0.5 * length, mesh.end());
     if (!(to > from)) return 0.0;
     double sum = 0.0;
-    const auto add = [&](double place, double weight) { sum += weight * at(mesh, place); };
+    const auto add = [&](double place, double weight) { sum += weight * at(on, place, load.track); };
     for (int e = mesh.locate(from).element; e <= mesh.locate(to).element; ++e) {
       const beam::Element& element = mesh.element(e);
       const double left = std::max(from, element.x), right = std::min(to, element.x + element.length);
@@ -61,8 +68,8 @@ struct QuasiStaticResponse::InfluenceLine {
 
 QuasiStaticResponse::InfluenceLine QuasiStaticResponse::influence_line(double station) {
   const beam::Beam& beam = structure_->beam();
-  InfluenceLine line{
-      station, std::vector<double>(4 * static_cast<std::size_t>(structure_->line().mesh.elements()), 0.0), {}, 0.0};
+  const int elements = structure_->line().tracks() * structure_->line().mesh.elements();
+  InfluenceLine line{station, std::vector<double>(4 * static_cast<std::size_t>(elements), 0.0), {}, 0.0};
   std::vector<double> nodal(structure_->dead_load().size(), 0.0);
   const beam::Station s = beam.mesh().locate(station);
   if (beam.rail() != nullptr) {
@@ -78,7 +85,7 @@ QuasiStaticResponse::InfluenceLine QuasiStaticResponse::influence_line(double st
   MPI_Allreduce(MPI_IN_PLACE, &weight_deflection, 1, MPI_DOUBLE, MPI_SUM, comm_);
   line.weight_deflection += weight_deflection;
   if (beam.model().strained()) line.weight_deflection = permanent_deflection(station);
-  for (int e = 0; e < structure_->line().mesh.elements(); ++e) {
+  for (int e = 0; e < elements; ++e) {
     const int along = structure_->per_node() - 2;  // unknowns of a node along x
     structure_->line().for_unknowns(e, [&](int k, int unknown, double factor) {
       const int local = beam.local(unknown), place = k % (along + 2) - along;
@@ -121,7 +128,7 @@ double QuasiStaticResponse::static_peak(double station, const train::WheelPaths&
 double QuasiStaticResponse::static_energy(double station) {
   if (!superpose() || !pass_together({})) return 0.0;
   const InfluenceLine line = influence_line(station);
-  const double deflection = peak_of_train(line, 0.0), compliance = std::abs(line.at(structure_->line().mesh, station));
+  const double deflection = peak_of_train(line, 0.0), compliance = std::abs(line.at(structure_->line(), station, 0));
   return compliance > 0.0 ? 0.5 * deflection * deflection / compliance : 0.0;
 }
 
@@ -137,7 +144,7 @@ double QuasiStaticResponse::peak_of_train(const InfluenceLine& line, double cons
   double peak = 0.0;
   auto evaluate_shift = [&](double shift) {
     double sum = constant;
-    for (const StaticLoad& w : weights_) sum += w.force * line.mean(mesh, w.x + shift, w.length);
+    for (const StaticLoad& w : weights_) sum += w.force * line.mean(structure_->line(), w, w.x + shift);
     peak = std::max(peak, std::abs(sum));
   };
   if (weights_.front().law.direction() == 0.0) {  // the loads do not move
@@ -162,7 +169,7 @@ double QuasiStaticResponse::peak_along_paths(const InfluenceLine& line, const tr
   const auto evaluate_at = [&](double fraction) {
     double sum = line.weight_deflection;
     for (std::size_t i = 0; i < weights_.size(); ++i)
-      sum += weights_[i].force * line.mean(structure_->line().mesh, from[i] + fraction * travel[i], weights_[i].length);
+      sum += weights_[i].force * line.mean(structure_->line(), weights_[i], from[i] + fraction * travel[i]);
     peak = std::max(peak, std::abs(sum));
   };
   const std::size_t stretches = instants > 1 ? instants - 1 : steady() ? 1 : positions;

@@ -18,6 +18,7 @@ struct StaticLoad {
   double force = 0.0;  // N
   base::SpeedLaw law;
   double length = 0.0;  // m, over which the force is spread, x its centre
+  int track = 0;        // of beam::Torsion::tracks
 };
 
 class QuasiStaticResponse {

@@ -79,6 +79,7 @@ struct BrakingWheel {
   double x = 0.0;     // m, at t = 0
   double mass = 0.0;  // kg, share of the vehicle's mass in proportion to the wheel load
   base::SpeedLaw law;
+  int track = 0;
 };
 
 class System {

@@ -99,7 +99,7 @@ void System::find_contact_points(const double* y, Observation& out) {
     const bool on_line = line_ != nullptr && x >= line_->mesh.start() && x <= line_->mesh.end();
     at[i].element = -1;
     if (!on_line || c.is_further) continue;
-    at[i] = line_->mesh.locate(x);
+    at[i] = line_->mesh.on_track(line_->mesh.locate(x), c.track);
     elements.push_back(at[i].element);
   }
   std::vector<double> v, w, a;

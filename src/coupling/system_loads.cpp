@@ -15,14 +15,15 @@ void System::load_structure(double t) {
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
     if (train::length_of(input_.load, i) > 0.0) load_line(i, t);
     if (on_beam_[i] == 0) continue;
-    const beam::Station s = station_in_step(train::place_of(input_.load, i, t), middle_[i]);
+    const beam::Station s =
+        line_->mesh.on_track(station_in_step(train::place_of(input_.load, i, t), middle_[i]), track_of(input_.load, i));
     loads_.push_back({s.element, s.xi, 0.0, -train::force_at(input_.load, i, t), train::moment_of(input_.load, i),
                       train::speed_of(input_.load, i, t), 0.0, static_cast<int>(i)});
   }
   for (std::size_t i = 0; i < braking_force_.size(); ++i) {
     if (braking_force_[i] == 0.0) continue;
     const double x = braking_[i].x + braking_[i].law.distance(t), along = braking_force_[i];
-    const beam::Station s = line_->mesh.locate(x);
+    const beam::Station s = line_->mesh.on_track(line_->mesh.locate(x), braking_[i].track);
     loads_.push_back({s.element, s.xi, along, 0.0, -surface_height() * along, braking_[i].law.speed(t), 0.0,
                       static_cast<int>(input_.load.forces.size() + i)});
   }
@@ -63,7 +64,8 @@ void System::load_line(std::size_t i, double t) {
     const beam::Element& element = mesh.element(e);
     const double left = std::max(from, element.x), right = std::min(to, element.x + element.length);
     if (!(right > left)) continue;
-    recovery::ElementLoad load{e, (0.5 * (left + right) - element.x) / element.length, 0.0,
+    const beam::Station on = mesh.on_track({e, 0.0}, track_of(input_.load, i));
+    recovery::ElementLoad load{on.element, (0.5 * (left + right) - element.x) / element.length, 0.0,
                                per_length * (right - left)};
     load.extent = (right - left) / element.length;
     loads_.push_back(load);
@@ -118,7 +120,7 @@ void System::record_braking() {
     const auto& bodies = input_.types[static_cast<std::size_t>(input_.train.vehicles[member(i)])].mechanism.bodies;
     const double mass = std::accumulate(bodies.begin(), bodies.end(), 0.0,
                                         [](double sum, const multibody::Body& b) { return sum + b.mass; });
-    braking_.push_back({weight.x, mass * weight.force / carried[member(i)], weight.law});
+    braking_.push_back({weight.x, mass * weight.force / carried[member(i)], weight.law, weight.track});
   }
   braking_force_.assign(braking_.size(), 0.0);
 }

@@ -58,11 +58,11 @@ void System::record_weights() {
   fleet_.contact_forces();
   for (int i = 0; i < static_cast<int>(fleet_.wheels.size()); ++i) {
     const train::WheelContact& c = fleet_.wheels[static_cast<std::size_t>(i)];
-    weights.push_back({fleet_.coordinates(c).x(), c.force.normal, law_of_wheel(i)});
+    weights.push_back({fleet_.coordinates(c).x(), c.force.normal, law_of_wheel(i), 0.0, c.track});
   }
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i)
     weights.push_back({input_.load.positions[i], input_.load.forces[i], train::law_of(input_.load, i),
-                       train::length_of(input_.load, i)});
+                       train::length_of(input_.load, i), track_of(input_.load, i)});
   weights_.set(std::move(weights), fleet_.wheels.size());
   record_braking();
 }

@@ -55,7 +55,7 @@ std::string BatchStructure::obstacle(const beam::Beam& beam, const structure::Mo
   const beam::Line& line = beam.running();
   if (modal != nullptr && !modal->given()) return "the bridge is taken by modes, with what others deflect by at rest";
   if (beam.model().nonlinear()) return "foundations that are not linear carry the beam";
-  if (line.eccentricity() != 0.0) return "the track is beside the shear centre of the beam";
+  if (line.has_tracks_beside()) return "the track is beside the shear centre of the beam";
   if (beam.block() > most_unknowns_of_a_column) return "too many unknowns meet in a node";
   const auto first = places(line, beam.block(), 0);
   for (int e = 0; e < line.mesh.elements(); ++e) {

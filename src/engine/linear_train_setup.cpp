@@ -95,7 +95,10 @@ void LinearTrain::find_surfaces(const train::Fleet& fleet) {
   always_places_ = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
   if (surfaces_) {
     interval_.assign(wheel_.size(), 0);
-    for (const std::size_t entry : entry_) table_.push_back(surfaces_->number(fleet.wheel(fleet.wheels[entry]).radius));
+    for (const std::size_t entry : entry_) {
+      const train::WheelContact& c = fleet.wheels[entry];
+      table_.push_back(surfaces_->number(fleet.wheel(c).radius, c.track));
+    }
     return;
   }
   if (mesh_ == nullptr) return;

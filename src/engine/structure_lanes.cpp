@@ -57,7 +57,7 @@ StructureLanes::StructureLanes(std::span<const BatchStructure* const> of_lanes)
 }
 
 std::size_t StructureLanes::surface(std::size_t lane, double radius) const {
-  return first_surface_[lane] + of_lanes_[lane]->surfaces_.number(radius);
+  return first_surface_[lane] + of_lanes_[lane]->surfaces_.number(radius, 0);
 }
 
 template <class Numbers>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace traverse::engine {
 
@@ -44,16 +45,17 @@ void copy_patches(const WheelPatches& patches, train::WheelContact& c) {
 
 Surfaces::Surfaces(const train::Fleet& fleet) {
   for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
-    const double radius = fleet.wheel(fleet.wheels[i]).radius;
-    if (std::find(radii_.begin(), radii_.end(), radius) != radii_.end()) continue;
-    radii_.push_back(radius);
+    const std::pair wheel(fleet.wheel(fleet.wheels[i]).radius, fleet.wheels[i].track);
+    if (std::find(wheels_.begin(), wheels_.end(), wheel) != wheels_.end()) continue;
+    wheels_.push_back(wheel);
     add(fleet, i);
     tables_.push_back({static_cast<int>(patches_.back().size()), patches_.back().data()});
   }
 }
 
-std::size_t Surfaces::number(double radius) const {
-  return static_cast<std::size_t>(std::find(radii_.begin(), radii_.end(), radius) - radii_.begin());
+std::size_t Surfaces::number(double radius, int track) const {
+  return static_cast<std::size_t>(std::find(wheels_.begin(), wheels_.end(), std::pair(radius, track)) -
+                                  wheels_.begin());
 }
 
 // Determines the patches as a fleet with this wheel only does, from border to border.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "engine/train_task.hpp"
@@ -19,15 +20,15 @@ class Surfaces {
   /// The tables of wheels that never leave the surface and have one contact point each.
   explicit Surfaces(const train::Fleet& fleet);
 
-  /// One table for each radius.
+  /// One table for each radius on each track.
   const std::vector<SurfaceTable>& tables() const { return tables_; }
-  /// The index of the table for a radius, m.
-  std::size_t number(double radius) const;
+  /// The index of the table for a radius, m, on a track.
+  std::size_t number(double radius, int track) const;
 
  private:
   void add(train::Fleet fleet, std::size_t entry);
 
-  std::vector<double> radii_;
+  std::vector<std::pair<double, int>> wheels_;  // radius and track
   std::deque<std::vector<WheelPatches>> patches_;
   std::vector<SurfaceTable> tables_;
 };

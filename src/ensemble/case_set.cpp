@@ -22,7 +22,8 @@ CaseSet::CaseSet(const scene::Scene& scene, std::vector<std::string>& notes, std
     beam_ = std::make_shared<run::SharedBeam>(PETSC_COMM_SELF, scene_, notes);
     beam_->set_up(scene_, !scene_.model.step || scene_.model.modes > 0, notes);
     if (scene_.exact_in_time())
-      beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
+      beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0,
+                               scene_.output.eccentricities);
   }
   if (run::filters_wheels(scene_)) scene_.sampling_interval = run::spacing_for(scene_.output.wheel_low_pass);
   if (!scene_.limits_deck_acceleration()) return;

@@ -206,16 +206,6 @@ void ModalStepper::nodal_loads(double* nodal) const {
   }
 }
 
-// The modal forces of loads on a track beside the axis are those of its smooth shapes.
-void ModalStepper::add_bends_of_track(double* modal) const {
-  const beam::Mesh& mesh = bridge_.beam().mesh();
-  for (std::size_t j = 0; j < load_.forces.size(); ++j) {
-    const double x = load_.positions[j] + load_.speed * motion_.time();
-    if (!train::is_on_line(mesh.start(), mesh.end(), x, load_.speed)) continue;
-    for (std::size_t i = 0; i < bridge_.modes(); ++i) modal[i] -= load_.forces[j] * bridge_.bend_of_track(i, x);
-  }
-}
-
 void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   const auto n = shapes_.rows(), m = shapes_.cols();
   const auto of_modes = [m](const std::vector<double>& values) {
@@ -233,13 +223,7 @@ void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample,
   share_[m] = v.dot(force);
   MPI_Allreduce(MPI_IN_PLACE, share_.data(), static_cast<int>(share_.size()), MPI_DOUBLE, MPI_SUM, system_.comm());
   const auto omega = of_modes(bridge_.omega());
-  double stored = 0.5 * (share_[m] - (share_.head(m).array() / omega).square().sum());
-  if (bridge_.beside_axis()) {  // its shapes under the loads are smoother than those of the nodal values
-    const Eigen::ArrayXd nodal_share = share_.head(m);
-    add_bends_of_track(share_.data());
-    const Eigen::ArrayXd difference = share_.head(m).array() - nodal_share;
-    stored += 0.5 * (difference / omega).square().sum() - (difference * of_modes(motion_.q())).sum();
-  }
+  const double stored = 0.5 * (share_[m] - (share_.head(m).array() / omega).square().sum());
   if (!begun_) at_start_ = stored;
 
   amplitude_ = of_modes(motion_.q()) - share_.head(m).array() / omega.square();

@@ -39,7 +39,6 @@ class ModalStepper {
   void call_monitors();
   void advance(double t);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
-  void add_bends_of_track(double* modal) const;
   void nodal_loads(double* nodal) const;
 
   coupling::System& system_;

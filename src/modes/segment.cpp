@@ -43,7 +43,7 @@ bool axially_coupled(const beam::BeamModel& model) { return model.track && model
 /// Whether an unknown belongs to a motion. If bending is coupled with motion along x, both are bending.
 bool belongs(beam::Kind kind, Motion motion, const beam::BeamModel& model) {
   if (beam::Layout::axial(kind)) return motion == Motion::along || axially_coupled(model);
-  if (kind == beam::Kind::twist) return motion == Motion::twist || motion == Motion::bending_and_twist;
+  if (beam::Layout::of_twist(kind)) return motion == Motion::twist || motion == Motion::bending_and_twist;
   return motion == Motion::bending || motion == Motion::bending_and_twist;
 }
 
@@ -128,6 +128,13 @@ bool equal(const Segment& a, const Segment& b) {
   return equal(a.M, b.M) && equal(a.K, b.K) && equal_damping(a, b);
 }
 
+/// Whether springs or a layered track beside the shear centre couple bending and twist.
+bool has_eccentric_springs(const beam::BeamModel& model) {
+  if (model.track && model.torsion->tracks.front() != 0.0) return true;
+  return std::ranges::any_of(model.foundation.vertical,
+                             [](const beam::PointFoundation& p) { return p.eccentricity != 0.0; });
+}
+
 class Splitter {
  public:
   Splitter(const beam::Beam& beam, Motion motion, Damping damping)
@@ -209,14 +216,16 @@ class Splitter {
   void add_rigid_motions(Segment& s, const std::vector<int>& rows) const {
     for (const beam::RigidMotion& motion : motions_) {
       const double left = beam_.mesh().x(s.nodes.front()), right = beam_.mesh().x(s.nodes.back());
-      if (s.motion == Motion::twist) return;  // supports hold it
+      const bool twists = motion.twist != 0.0;
+      if ((twists && s.motion == Motion::bending) || (!twists && s.motion == Motion::twist)) continue;
       if (motion.axial != (s.motion == Motion::along) || left < motion.left || right > motion.right) continue;
       s.rigid.emplace_back();
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const double x = beam_.mesh().x(s.nodes[i]);
-        s.rigid.back().push_back(kind(rows[i]) == beam::Kind::twist ? 0.0
-                                 : s.slope[i] == 0                  ? motion.value(x)
-                                                   : motion.slope(x, kind(rows[i]) != beam::Kind::theta_right));
+        const beam::Kind of = kind(rows[i]);
+        s.rigid.back().push_back(beam::Layout::of_twist(of) ? (of == beam::Kind::twist ? motion.twist : 0.0)
+                                 : s.slope[i] == 0          ? motion.value(x)
+                                                            : motion.slope(x, of != beam::Kind::theta_right));
       }
     }
   }
@@ -243,7 +252,7 @@ std::vector<Segment> bending_segments(const beam::Beam& beam) {
 std::vector<Segment> segments_of(const beam::Beam& beam, bool all, Damping damping) {
   const beam::BeamModel& model = beam.model();
   std::vector<Motion> motions = {Motion::bending};
-  if (model.torsion && model.torsion->mass_centre != 0.0)
+  if (model.torsion && (model.torsion->mass_centre != 0.0 || has_eccentric_springs(model)))
     motions = {Motion::bending_and_twist};
   else if (model.torsion)
     motions.push_back(Motion::twist);

@@ -107,8 +107,20 @@ class Flattener {
     for (const auto& item : node) add_merged(item, prefix);
   }
 
+  /// Whether a block has the names of blocks: `tracks: {left: {...}, right: {...}}`, which is `tracks: [left, right]`
+  /// with these two blocks beside it.
+  static bool names_blocks(const YAML::Node& node, const std::string& name) {
+    return (name == "trains" || name == "loads" || name == "tracks") && node.size() > 0 &&
+           std::all_of(node.begin(), node.end(), [](const auto& item) { return item.second.IsMap(); });
+  }
+
   void value(const YAML::Node& node, const std::string& name, int line, bool merged) {
-    if (node.IsMap()) {
+    if (node.IsMap() && names_blocks(node, name)) {
+      std::vector<std::string> names;
+      for (const auto& item : node) names.push_back(item.first.Scalar());
+      add(name, fmt::format("{}", fmt::join(names, ",")), line, merged);
+      map(node, "", merged);
+    } else if (node.IsMap()) {
       map(node, name + "_", merged);
     } else if (node.IsSequence()) {
       add(name, list(node, name), line, merged);

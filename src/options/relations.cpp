@@ -40,8 +40,8 @@ constexpr Relation relations[] = {
   {Related::scene, "beam_cracks_width", needs, "beam_cracks_EI_factor", ""},
   {Related::scene, "beam_cracks_EI_factor", needs, "beam_cracks_width", ""},
   {Related::scene, "beam_GJ", needs, "beam_polar_inertia", ""},
-  {Related::scene, "track_eccentricity", excludes, "scene_analysis=envelope scene_analysis=rail scene_analysis=screen norm_load_models", "is for runs over time and natural modes; static effects and screens have no torsion"},
-  {Related::scene, "beam_polar_inertia beam_shear_centre beam_mass_centre support_torsion track_eccentricity", needs, "beam_GJ", "belongs to a beam that twists, which needs beam_GJ"},
+  {Related::scene, "track_eccentricity tracks", excludes, "scene_analysis=envelope scene_analysis=rail scene_analysis=screen norm_load_models", "is for runs over time and natural modes; static effects and screens have no torsion"},
+  {Related::scene, "beam_ECw beam_polar_inertia beam_shear_centre beam_mass_centre support_torsion support_bearing_spacing track_eccentricity tracks foundation_vertical_eccentricity", needs, "beam_GJ", "belongs to a beam that twists, which needs beam_GJ"},
   {Related::scene, "beam_point_masses_x", needs, "beam_point_masses_mass", ""},
   {Related::scene, "beam_point_masses_mass", needs, "beam_point_masses_x", ""},
   {Related::scene, "beam_temperature_expansion beam_temperature_depth", needs, "beam_temperature_uniform beam_temperature_gradient", ""},
@@ -117,7 +117,7 @@ constexpr Relation relations[] = {
   {Related::part, "polygon_order", needs, "polygon_amplitude", ""},
   {Related::part, "polygon_amplitude polygon_phase", needs, "polygon_order", ""},
 
-  {Related::springs, "k c gap cubic side one_sided depth limit spacing", needs, "x", "needs ~x, the stations"},
+  {Related::springs, "k c gap cubic side one_sided depth eccentricity limit spacing", needs, "x", "needs ~x, the stations"},
   {Related::springs, "x", needs, "k c cubic", ""},
   {Related::bed, "gap one_sided", needs, "k c cubic", "needs ~k, the stiffness of the bed"},
 

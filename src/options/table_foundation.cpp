@@ -44,6 +44,8 @@ void add_points(const FoundationKind& kind, std::vector<Row>& rows) {
   if (kind.direction == Direction::longitudinal)
     add("depth", numbers, "m", "0", not_negative, "", "distance of the springs below the beam's axis, as of bearings, only at span ends; one value applies to all");
   if (kind.direction == Direction::vertical)
+    add("eccentricity", numbers, "m", "0", any, "", "distance of the springs to the left of the beam's axis, as of bearings; one value applies to all");
+  if (kind.direction == Direction::vertical)
     add("one_sided", choice_list, "", "false", any, "true false", "acts only in compression, where the beam moves down; one word applies to all");
   add("gap", numbers, unit(units.gap), "0", not_negative, "", fmt::format("gap {} before the spring acts; one value applies to all", sense));
   add("cubic", numbers, unit(units.cubic), "0", not_negative, "", "coefficient of the cubic spring force; one value applies to all");

@@ -145,7 +145,7 @@ void RailBridge::recover(const std::vector<double>& P, State& state) {
   devices_.evaluate(v.data());
   state.openings = devices_.openings();
   const std::vector<double> zero(v.size(), 0.0);
-  std::vector<std::array<double, 3>> reactions;
+  std::vector<beam::Reaction> reactions;
   beam_.reactions(v.data(), zero.data(), zero.data(), P.data(), reactions);
   if (reactions.size() > beam_.mesh().span_ends().size()) state.rail_ends = reactions.back()[0];
   for (const int end : held_ends_) state.bearings.push_back(reactions[static_cast<std::size_t>(end)][0]);

@@ -62,9 +62,9 @@ void GroundForces::add_points(std::size_t kind, const beam::Line& line) {
   std::size_t sum = first_[kind];
   for (const beam::PointFoundation& p : line.model.foundation.*beam::foundation_kinds[kind].points) {
     if (!p.law.nonlinear()) {
-      const beam::PointShape s =
-          beam::shape_at(line, beam::foundation_kinds[kind].direction, beam::station_of(line.mesh, p), p.depth);
-      for (std::size_t i = 0; i < 4; ++i) add(sum, s.unknown[i], p.c * s.shape[i], p.k * s.shape[i]);
+      const beam::PointShape s = beam::shape_at(line, beam::foundation_kinds[kind].direction,
+                                                beam::station_of(line.mesh, p), p.depth, p.eccentricity);
+      for (std::size_t i = 0; i < s.unknown.size(); ++i) add(sum, s.unknown[i], p.c * s.shape[i], p.k * s.shape[i]);
     }
     ++sum;
   }
@@ -93,7 +93,7 @@ void GroundForces::add_masses(const beam::Line& line, Masses& masses) const {
     for (const beam::Direction direction : {beam::Direction::longitudinal, beam::Direction::vertical}) {
       const beam::PointShape s = beam::shape_at(line, direction, line.mesh.locate(x));
       std::vector<double>& sums = masses[direction == beam::Direction::longitudinal ? 0 : 1];
-      for (std::size_t i = 0; i < 4; ++i) add_mass(sums, s.unknown[i], mass * s.shape[i]);
+      for (std::size_t i = 0; i < s.unknown.size(); ++i) add_mass(sums, s.unknown[i], mass * s.shape[i]);
     }
   };
   for (const beam::PointMass& point : line.model.point_masses) add_at(point.x, point.mass);
@@ -109,10 +109,9 @@ void GroundForces::add_track() {
     for (const auto& [unknown, mass] : beam::masses_of(s, layout)) add_mass(masses_[1], unknown, mass);
     if (!s.on_bridge) continue;
     const double mass = beam::connection_of(s, track, layout).mass;
-    const beam::Element& element = beam_.mesh().element(s.at.element);
-    const auto psi = beam::hermite(s.at.xi, element.length, element.shear).value;
-    const auto places = beam_.bridge().transverse(s.at.element);
-    for (std::size_t i = 0; i < 4; ++i) add_mass(masses_[1], places[i], mass * psi[i]);
+    const beam::PointShape on =
+        beam::shape_at(beam_.bridge(), beam::Direction::vertical, s.at, 0.0, beam_.bridge().eccentricity(0));
+    for (std::size_t i = 0; i < on.unknown.size(); ++i) add_mass(masses_[1], on.unknown[i], mass * on.shape[i]);
   }
   for (const auto& [left, right] : beam::pairs_in_shear(beam_.bridge(), layout, 0, beam_.columns()))
     beam::visit_links(left, right, layout, [&](int unknown, double mass) { add_mass(masses_[1], unknown, mass); });
@@ -177,10 +176,9 @@ void SleeperForces::add_sleeper(std::size_t i, const beam::Sleeper& s) {
 }
 
 void SleeperForces::add_bridge(std::size_t sum, const beam::Sleeper& s, const beam::Spring& spring) {
-  const beam::Element& element = beam_.mesh().element(s.at.element);
-  const auto psi = beam::hermite(s.at.xi, element.length, element.shear).value;
-  const auto places = beam_.bridge().transverse(s.at.element);
-  for (std::size_t i = 0; i < 4; ++i) add(sum, places[i], spring, psi[i]);
+  const beam::PointShape on =
+      beam::shape_at(beam_.bridge(), beam::Direction::vertical, s.at, 0.0, beam_.bridge().eccentricity(0));
+  for (std::size_t i = 0; i < on.unknown.size(); ++i) add(sum, on.unknown[i], spring, on.shape[i]);
 }
 
 void SleeperForces::add(std::size_t sum, int unknown, const beam::Spring& spring, double factor) {

@@ -20,7 +20,8 @@ constexpr double standing_speed = 1e-6;  // m/s: a slower load stands; rounding 
 
 }  // namespace
 
-Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<double> stations, double self_weight)
+Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<double> stations, double self_weight,
+                   const std::vector<double>& eccentricities)
     : beam_(beam), line_(line), stations_(std::move(stations)), gravity_(self_weight) {
   for (double x : stations_) {
     all_.push_back(all_.size());
@@ -32,10 +33,14 @@ Recovery::Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<d
       throw InputError(text);
     }
     sections_.emplace_back(line, x);
-    sections_.back().add_weight(line.model, self_weight);
+    RecoverySection& section = sections_.back();
+    if (section.twisting)
+      section.twisting->eccentricity =
+          eccentricities.empty() ? line.eccentricity(0) : eccentricities[sections_.size() - 1];
+    section.add_weight(line.model, self_weight);
     if (&line == &beam.bridge()) {
-      sections_.back().record_sleepers(beam);
-      sections_.back().support_line = beam.support_lines().at(x).height(beam.model().settlement);
+      section.record_sleepers(beam);
+      section.support_line = beam.support_lines().at(x).height(beam.model().settlement);
     }
   }
   for (std::size_t i = 0; i < sections_.size(); ++i) by_element_.push_back({sections_[i].at.element, i});
@@ -108,8 +113,9 @@ double Recovery::add_deflection_form(std::size_t station, double factor, double*
   }
   if (!s.twisting) return s.weight.deflection;
   const double e = s.twisting->eccentricity;
-  for (std::size_t k = 0; k < 2; ++k)
-    if (const int local = beam_.local(s.twisting->unknowns[k]); local >= 0) forces[local] += factor * e * s.phi[k];
+  for (std::size_t k = 0; k < 4; ++k)
+    if (const int local = beam_.local(s.twisting->unknowns[k]); local >= 0)
+      forces[local] += factor * e * s.twisting->psi[k];
   return s.weight.deflection + e * s.weight.twist;
 }
 
@@ -123,7 +129,7 @@ void Recovery::gather(const double* v, const double* w, const double* a, const s
     const RecoverySection& s = sections_[station];
     for (const double* vector : {v, w, a}) {
       for (int unknown : s.unknowns) append(vector, unknown);
-      for (std::size_t k = 0; s.twisting && k < 2; ++k) append(vector, s.twisting->unknowns[k]);
+      for (std::size_t k = 0; s.twisting && k < 4; ++k) append(vector, s.twisting->unknowns[k]);
     }
     for (const RecoverySection::ConnectedSleeper& connected : s.sleepers) {
       for (int unknown : {connected.connection.unknown, connected.connection.along}) {
@@ -134,6 +140,17 @@ void Recovery::gather(const double* v, const double* w, const double* a, const s
   }
   if (gathered_.empty()) return;
   MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(gathered_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+}
+
+/// The deflection at xi of a section's element, beside the shear centre, by the element's nodal values and twists.
+double Recovery::deflection_at(const RecoverySection& s, double xi, double eccentricity, const Values& y,
+                               const std::array<double, 4>& twists) {
+  const auto psi = beam::hermite(xi, s.element.length, s.element.shear).value;
+  double sum = psi[0] * y[1] + psi[1] * y[2] + psi[2] * y[4] + psi[3] * y[5];
+  if (eccentricity == 0.0) return sum;
+  const auto of_twist = beam::hermite(xi, s.element.length).value;
+  for (std::size_t k = 0; k < 4; ++k) sum += eccentricity * of_twist[k] * twists[k];
+  return sum;
 }
 
 Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a,
@@ -170,21 +187,29 @@ Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, c
              transverse(s.mass.shear(), inertial);
   if (s.twisting) {
     const RecoverySection::Twisting& t = *s.twisting;
-    const auto linear = [](const std::array<double, 2>& form, const std::array<double, 2>& y) {
-      return form[0] * y[0] + form[1] * y[1];
+    const auto sum = [](const std::array<double, 4>& form, const std::array<double, 4>& y) {
+      return form[0] * y[0] + form[1] * y[1] + form[2] * y[2] + form[3] * y[3];
     };
-    const std::array<double, 2> inertial_twist = {twists[2][0] + drag * twists[1][0],
-                                                  twists[2][1] + drag * twists[1][1]};
-    r.twist += linear(s.phi, twists[0]);
+    std::array<double, 4> inertial_twist{};
+    for (std::size_t k = 0; k < 4; ++k) inertial_twist[k] = twists[2][k] + drag * twists[1][k];
+    r.twist += sum(t.psi, twists[0]);
+    r.twist_along = sum(t.slope, twists[0]);
     r.deflection += t.eccentricity * r.twist;
-    r.velocity += t.eccentricity * linear(s.phi, twists[1]);
-    r.acceleration += t.eccentricity * linear(s.phi, twists[2]);
-    r.torsional_moment += linear(t.moment, twists[0]) + linear(t.moment_by_twist, inertial_twist) +
-                          transverse(t.moment_by_bending, inertial);
+    r.velocity += t.eccentricity * sum(t.psi, twists[1]);
+    r.acceleration += t.eccentricity * sum(t.psi, twists[2]);
+    r.torsional_moment +=
+        sum(t.moment, twists[0]) + sum(t.moment_by_twist, inertial_twist) + transverse(t.moment_by_bending, inertial);
   }
   r.axial_displacement += axial(s.phi, v);
   r.axial_force += r.nodal_axial_force + axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) +
                    axial(s.mass.axial_force(), inertial);
+  for (const RecoverySection::EccentricSpring& spring : s.eccentric_springs) {
+    const double force = -spring.k * deflection_at(s, spring.xi, spring.eccentricity, v, twists[0]) -
+                         spring.c * deflection_at(s, spring.xi, spring.eccentricity, w, twists[1]);
+    ElementLoad load{s.at.element, spring.xi, 0.0, force};
+    load.torque = spring.eccentricity * force;
+    s.add_load(load, r);
+  }
   return r;
 }
 
@@ -195,7 +220,7 @@ StationForms Recovery::forms(std::size_t station) const {
   std::vector<double> sleepers(4 * s.sleepers.size(), 0.0);
   const auto response = [&] {
     Response r = evaluate_section(s, values[0], values[1], values[2], twists);
-    add_sleepers(s, values.data(), sleepers.data(), r);
+    add_sleepers(s, values.data(), twists, sleepers.data(), r);
     return r;
   };
   StationForms f;
@@ -222,7 +247,7 @@ StationForms Recovery::forms(std::size_t station) const {
     }
   };
   for (std::size_t k = 0; k < s.unknowns.size(); ++k) add(s.unknowns[k], {&values[0][k], &values[1][k], &values[2][k]});
-  for (std::size_t k = 0; s.twisting && k < 2; ++k)
+  for (std::size_t k = 0; s.twisting && k < 4; ++k)
     add(s.twisting->unknowns[k], {&twists[0][k], &twists[1][k], &twists[2][k]});
   double* sleeper_value = sleepers.data();
   for (const RecoverySection::ConnectedSleeper& connected : s.sleepers)
@@ -234,13 +259,14 @@ StationForms Recovery::forms(std::size_t station) const {
 }
 
 // Adds the forces of the sleepers on the element: the spring below each, the mass on the beam, the spring along x.
-void Recovery::add_sleepers(const RecoverySection& s, const Values* values, const double* sleepers, Response& r) const {
+void Recovery::add_sleepers(const RecoverySection& s, const Values* values, const Twists& twists,
+                            const double* sleepers, Response& r) const {
+  const double eccentricity = line_.eccentricity(0);
   for (const RecoverySection::ConnectedSleeper& connected : s.sleepers) {
-    const auto psi = beam::hermite(connected.xi, s.element.length, s.element.shear).value;
-    const auto beam = [&](const Values& y) { return psi[0] * y[1] + psi[1] * y[2] + psi[2] * y[4] + psi[3] * y[5]; };
-    const double force = connected.connection.spring.k * (sleepers[0] - beam(values[0])) +
-                         connected.connection.spring.c * (sleepers[1] - beam(values[1])) -
-                         connected.connection.mass * (beam(values[2]) + gravity_);
+    const auto beam = [&](std::size_t d) { return deflection_at(s, connected.xi, eccentricity, values[d], twists[d]); };
+    const double force = connected.connection.spring.k * (sleepers[0] - beam(0)) +
+                         connected.connection.spring.c * (sleepers[1] - beam(1)) -
+                         connected.connection.mass * (beam(2) + gravity_);
     double along = 0.0;
     if (connected.connection.along >= 0) {
       const auto phi = beam::linear(connected.xi);
@@ -253,7 +279,9 @@ void Recovery::add_sleepers(const RecoverySection& s, const Values* values, cons
       const beam::Spring& spring = connected.connection.spring_along;
       along = spring.k * (sleepers[2] - surface(values[0])) + spring.c * (sleepers[3] - surface(values[1]));
     }
-    s.add_load({s.at.element, connected.xi, along, force, -line_.model.surface_height * along}, r);
+    ElementLoad load{s.at.element, connected.xi, along, force, -line_.model.surface_height * along};
+    load.torque = eccentricity * force;
+    s.add_load(load, r);
     sleepers += 4;
   }
 }
@@ -271,11 +299,11 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
       std::copy_n(at, 6, values[d].begin());
       at += 6;
       if (!s.twisting) continue;
-      std::copy_n(at, 2, twists[d].begin());
-      at += 2;
+      std::copy_n(at, 4, twists[d].begin());
+      at += 4;
     }
     out[i] = evaluate_section(s, values[0], values[1], values[2], twists);
-    add_sleepers(s, values.data(), at, out[i]);
+    add_sleepers(s, values.data(), twists, at, out[i]);
     at += 4 * s.sleepers.size();
   }
   for (const ElementLoad& given : loads) {
@@ -288,7 +316,10 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
 }
 
 ElementLoad Recovery::in_own_element(ElementLoad load) const {
-  if (load.xi >= 0.0 && load.xi <= 1.0) return load;
+  if (load.xi >= 0.0 && load.xi <= 1.0) {
+    load.element %= line_.mesh.elements();
+    return load;
+  }
   const beam::Station at = line_.mesh.locate(x_of(load));
   load.element = at.element;
   load.xi = at.xi;

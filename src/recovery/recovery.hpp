@@ -14,9 +14,9 @@
 
 namespace traverse::recovery {
 
-/// A load on an element, at xi: fx, fy in N (fy upward), moment in N m counter-clockwise. It moves with
-/// `speed` along x, m/s, and keeps its number `source`, which no other load of a list has; -1: a load that does not
-/// move.
+/// A load on an element (of the beam, or of a track: beam::Mesh::element), at xi: fx, fy in N (fy upward), moment in N
+/// m counter-clockwise, torque about the line of shear centres in N m, positive as the twist. It moves with `speed`
+/// along x, m/s, and keeps its number `source`, which no other load of a list has; -1: a load that does not move.
 struct ElementLoad {
   int element = 0;
   double xi = 0.0;
@@ -24,6 +24,7 @@ struct ElementLoad {
   double speed = 0.0;
   double extent = 0.0;  // the load is spread uniformly over xi -+ extent/2 within the element; 0: concentrated
   int source = -1;
+  double torque = 0.0;
 };
 
 /// Response at one station. Deflection positive upward, moment positive in sagging (EI v'' > 0),
@@ -32,6 +33,7 @@ struct Response {
   double deflection = 0.0, velocity = 0.0, acceleration = 0.0;  // in space
   double relative_deflection = 0.0;                             // to the line through the supports (beam/mesh.hpp)
   double twist = 0.0, torsional_moment = 0.0;                   // rad; N m, positive as the twist on a right section
+  double twist_along = 0.0;                                     // rad/m: its rate along x
   double moment = 0.0, shear = 0.0;
   double axial_displacement = 0.0, axial_force = 0.0;
   /// The parts of the forces, and of d moment/dt (N m/s), that follow from the nodal values alone, without loads,
@@ -43,6 +45,9 @@ struct Response {
   /// If a moving load is at the station: the differences of the forces just before and just after its passage, N.
   std::array<double, 2> shear_beside{}, axial_force_beside{};
 };
+
+/// The twist of a track of standard gauge over 3 m (EN 1990, A2.4.4.2.2), by its rate along the bridge, m.
+inline double track_twist(const Response& r) { return 1.435 * 3.0 * r.twist_along; }
 
 /// Moment (N m), shear and axial force (N).
 using Forces = std::array<double, 3>;
@@ -67,11 +72,14 @@ class Recovery {
  public:
   /// Responses of the bridge or the rail; throws InputError for stations that are not on it. `self_weight` is gravity
   /// if it loads the beam, otherwise 0. At a node the response is computed in the element on its right (at the end of
-  /// the beam in the element on its left).
-  Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<double> stations, double self_weight);
+  /// the beam in the element on its left). eccentricities: of each station to the left of the shear centre, m, for a
+  /// beam that twists; empty: those of its first track.
+  Recovery(const beam::Beam& beam, const beam::Line& line, std::vector<double> stations, double self_weight,
+           const std::vector<double>& eccentricities = {});
   /// Responses of the bridge.
-  Recovery(const beam::Beam& beam, std::vector<double> stations, double self_weight)
-      : Recovery(beam, beam.bridge(), std::move(stations), self_weight) {}
+  Recovery(const beam::Beam& beam, std::vector<double> stations, double self_weight,
+           const std::vector<double>& eccentricities = {})
+      : Recovery(beam, beam.bridge(), std::move(stations), self_weight, eccentricities) {}
   Recovery(Recovery&&) noexcept;
   ~Recovery();
 
@@ -127,8 +135,8 @@ class Recovery {
  private:
   /// Nodal values of a station's element: u1, v1, theta1, u2, v2, theta2.
   using Values = std::array<double, 6>;
-  /// Twists at both ends of a station's element, and their rates and accelerations.
-  using Twists = std::array<std::array<double, 2>, 3>;
+  /// Twists and their rates along x at both ends of a station's element, and the first and second derivatives in time.
+  using Twists = std::array<std::array<double, 4>, 3>;
 
   void gather(const double* v, const double* w, const double* a, const std::vector<std::size_t>& which);
   Response evaluate_section(const RecoverySection& s, const Values& v, const Values& w, const Values& a,
@@ -136,7 +144,10 @@ class Recovery {
   /// The load as one of the element at its place: a wheel may already be beyond the element that it was assigned to.
   ElementLoad in_own_element(ElementLoad load) const;
   void add_beside(const ElementLoad& load, const std::vector<std::size_t>& which, std::vector<Response>& out) const;
-  void add_sleepers(const RecoverySection& s, const Values* values, const double* sleepers, Response& r) const;
+  void add_sleepers(const RecoverySection& s, const Values* values, const Twists& twists, const double* sleepers,
+                    Response& r) const;
+  static double deflection_at(const RecoverySection& s, double xi, double eccentricity, const Values& y,
+                              const std::array<double, 4>& twists);
 
   const beam::Beam& beam_;
   const beam::Line& line_;
@@ -165,8 +176,8 @@ void for_points(const ElementLoad& load, double kink, F f) {
     if (!(to > from)) continue;
     base::at_gauss_points<3>(from, to, [&](double xi, double weight) {
       const double part = weight / load.extent;
-      f(ElementLoad{load.element, xi, part * load.fx, part * load.fy, part * load.moment, load.speed, 0.0,
-                    load.source});
+      f(ElementLoad{load.element, xi, part * load.fx, part * load.fy, part * load.moment, load.speed, 0.0, load.source,
+                    part * load.torque});
     });
   }
 }

@@ -12,6 +12,19 @@ namespace traverse::recovery {
 
 using beam::Direction;
 
+namespace {
+
+/// The twist at xi of an element of length 1 and GJ = 1, held at both ends, under a unit torque at `load`, minus what
+/// cubic twists contain of it. Its part in these is the sum over the two of them that vanish at the ends and whose
+/// rates are orthogonal: 3^(1/2) xi (1 - xi) and 5^(1/2) xi (1 - xi) (1 - 2 xi).
+double kink_beside_cubics(double xi, double load) {
+  const double exact = std::min(xi, load) * (1.0 - std::max(xi, load));
+  const double products = xi * (1.0 - xi) * load * (1.0 - load);
+  return exact - products * (3.0 + 5.0 * (1.0 - 2.0 * xi) * (1.0 - 2.0 * load));
+}
+
+}  // namespace
+
 RecoverySection::RecoverySection(const beam::Line& line, double x)
     : at(line.mesh.locate(x)),
       element(line.mesh.element(at.element)),
@@ -50,19 +63,22 @@ void RecoverySection::add_torsion(const beam::Line& line) {
   const beam::TorsionMatrices matrices = beam::torsion_matrices(line.model, element);
   Twisting t;
   t.unknowns = line.twists(at.element);
-  t.eccentricity = line.eccentricity();
-  t.flexibility = element.length / torsion.GJ.at(element.x + 0.5 * element.length, element.x);
-  for (std::size_t j = 0; j < 2; ++j) {
+  if (!torsion.warping) t.flexibility = element.length / torsion.GJ.at(element.x + 0.5 * element.length, element.x);
+  const beam::Hermite shape = beam::hermite(at.xi, element.length);
+  t.psi = shape.value;
+  t.slope = shape.slope;
+  for (std::size_t j = 0; j < 4; ++j) {
     t.moment[j] = -matrices.stiffness[j];
     t.moment_by_twist[j] = -matrices.mass[j];
+    t.moment_by_bending[j] = -matrices.coupling[4 * j];
   }
-  for (std::size_t i = 0; i < 4; ++i) t.moment_by_bending[i] = -matrices.coupling[2 * i];
   const auto add_until_here = [&](const beam::Distribution& density, double factor, auto add) {
     beam::integrate(density, element.x, element.x + at.xi * element.length,
                     [&](double x, double piece) { add((x - element.x) / element.length, factor * piece); });
   };
   const auto add_twist = [&](double xi, double piece) {
-    for (std::size_t j = 0; j < 2; ++j) t.moment_by_twist[j] += piece * beam::linear(xi)[j];
+    const auto shape = beam::hermite(xi, element.length).value;
+    for (std::size_t j = 0; j < 4; ++j) t.moment_by_twist[j] += piece * shape[j];
   };
   const double e = torsion.mass_centre;
   add_until_here(torsion.inertia, 1.0, add_twist);
@@ -103,6 +119,10 @@ void RecoverySection::add_foundation(const beam::Line& line) {
       if (p.x < element.x - element.length || p.x > element.x + 2.0 * element.length) continue;
       const beam::Station s = beam::station_of(line.mesh, p);
       if (s.element != at.element) continue;
+      if (p.eccentricity != 0.0) {
+        eccentric_springs.push_back({s.xi, p.k, p.c, p.eccentricity});
+        continue;
+      }
       stiffness.add_spring(kind.direction, p.k, s.xi);
       damping.add_spring(kind.direction, p.c, s.xi);
       if (kind.direction == Direction::longitudinal || s.xi <= 0.0 || s.xi >= 1.0) continue;
@@ -170,11 +190,8 @@ void RecoverySection::set_up_held_element(const beam::BeamModel& model, const st
 
 void RecoverySection::add_weight(const beam::BeamModel& model, double gravity) {
   const double h = element.length, x = at.xi * h;
-  if (twisting) {  // the weight acts like a uniform acceleration
+  if (twisting)  // the weight acts like a uniform acceleration
     weight.torsional_moment += gravity * (twisting->moment_by_bending[0] + twisting->moment_by_bending[2]);
-    weight.twist -= 0.5 * gravity * model.torsion->mass_centre * model.mass.at(element.x + 0.5 * h, element.x) * h *
-                    twisting->flexibility * at.xi * (1.0 - at.xi);
-  }
   const auto end = beam::transverse_load(model.mass, element);
   weight.shear += gravity * end[0];
   weight.moment += gravity * (x * end[0] - end[1]);
@@ -237,12 +254,11 @@ void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const
     r.deflection += load.fy * beam::fixed_end_by_force(at.xi, load.xi, h, EI, element.shear) +
                     load.moment * beam::fixed_end_by_moment(at.xi, load.xi, h, EI, element.shear);
   const bool left = beam::is_left(load.xi, at.xi);
-  if (twisting) {
-    const double torque = twisting->eccentricity * load.fy;
-    const double twist = torque * twisting->flexibility * (left ? load.xi * (1.0 - at.xi) : at.xi * (1.0 - load.xi));
+  if (load.torque != 0.0) {
+    r.torsional_moment += load.torque * (beam::hermite(load.xi, h).value[0] - (left ? 1.0 : 0.0));
+    const double twist = load.torque * twisting->flexibility * kink_beside_cubics(at.xi, load.xi);
     r.twist += twist;
     r.deflection += twisting->eccentricity * twist;
-    r.torsional_moment += torque * (left ? -load.xi : 1.0 - load.xi);
   }
   if (left) {
     r.shear += load.fy;

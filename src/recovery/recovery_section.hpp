@@ -26,14 +26,18 @@ struct RecoverySection {
   /// follows from the nodal values.
   void add_load(const ElementLoad& load, Response& r) const;
 
-  /// The twist of the element: coefficients of the twists at its ends, of their accelerations, and of the accelerations
-  /// of the transverse values in the torsional moment.
+  /// The twist of the element, by (twist1, rate1, twist2, rate2): coefficients of these values, of their accelerations,
+  /// and of the accelerations of the transverse values in the torsional moment.
   struct Twisting {
-    std::array<int, 2> unknowns{};  // global
-    double eccentricity = 0.0;      // m, of the track
-    double flexibility = 0.0;       // rad/(N m): length/GJ at the middle
-    std::array<double, 2> moment{}, moment_by_twist{};
-    std::array<double, 4> moment_by_bending{};
+    std::array<int, 4> unknowns{};  // global
+    double eccentricity = 0.0;      // m, of the station to the left of the shear centre
+    double flexibility = 0.0;       // rad/(N m): length/GJ at the middle; 0 with stiffness against warping
+    std::array<double, 4> psi{}, slope{}, moment{}, moment_by_twist{}, moment_by_bending{};
+  };
+
+  /// A vertical spring with a dashpot beside the shear centre, such as a bearing.
+  struct EccentricSpring {
+    double xi = 0.0, k = 0.0, c = 0.0, eccentricity = 0.0;
   };
 
   /// A sleeper of a layered track on this element.
@@ -56,6 +60,7 @@ struct RecoverySection {
   std::optional<beam::HeldElement> held;
   std::array<double, 4> held_by_stiffness{}, held_by_damping{}, held_by_mass{};
   std::optional<Twisting> twisting;
+  std::vector<EccentricSpring> eccentric_springs;
   double support_line = 0.0;  // m: the height of the line through the settled supports
   std::vector<ConnectedSleeper> sleepers;
 

@@ -52,7 +52,7 @@ Evaluation::Evaluation(const scene::Scene& scene, coupling::System& system, cons
                        const Wants& wants, std::vector<std::string>& notes)
     : scene_(scene), system_(system), beam_(beam), wants_(wants) {
   if (beam != nullptr) {
-    recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
+    recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0, scene.output.eccentricities);
     now_.ground.emplace(*beam);
     if (!beam->model().dampers.empty()) now_.dampers.emplace(*beam);
     if (!scene.support_motion.empty()) {
@@ -130,7 +130,10 @@ void Evaluation::sample(const integrate::Instant& instant) {
   record_peaks();
   if (now_.dampers) now_.dampers->evaluate(time_, now_.motion.beam.v, now_.motion.beam.damped_w);
   record_largest_deflection();
-  if (limit_check_) limit_check_->sample(instant.time, beam.v);
+  if (limit_check_) {
+    if (scene_.limits_quantity("bearing_uplift")) evaluate_supports();
+    limit_check_->sample(instant.time, beam.v, now_.probes, now_.supports);
+  }
   axle_passages_.add(instant.time, system_.fleet());
   profiles_.add(system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == train::Drive::free) paths_.add(instant.time, system_.fleet());
@@ -145,15 +148,21 @@ void Evaluation::subtract_support_motion() {
     now_.probes[p].relative_deflection -= support_lines_[p].height(ground_);
 }
 
+void Evaluation::evaluate_supports() {
+  if (beam_ == nullptr) return;
+  const structure::NodalMotion& beam = now_.motion.beam;
+  beam_->reactions(beam.v, beam.damped_w, beam.a, beam.P.data(), now_.supports);
+  if (const structure::SupportMotion* moved = system_.structure()->support_motion())
+    moved->add_reactions(now_.supports);
+}
+
 void Evaluation::store() {
   if (beam_ != nullptr && wants_.stored) {
     const structure::NodalMotion& beam = now_.motion.beam;
     if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.loads, now_.rail);
-    beam_->reactions(beam.v, beam.damped_w, beam.a, beam.P.data(), now_.supports);
-    if (const structure::SupportMotion* moved = system_.structure()->support_motion()) {
-      moved->add_reactions(now_.supports);
+    evaluate_supports();
+    if (const structure::SupportMotion* moved = system_.structure()->support_motion())
       now_.support_motion = {moved->upward(), moved->along()};
-    }
     now_.ground->evaluate(beam.v, beam.damped_w, beam.a);
     if (now_.sleepers) now_.sleepers->evaluate(beam.v, beam.w);
     if (now_.devices && !now_.devices->x().empty()) now_.devices->evaluate(beam.v);

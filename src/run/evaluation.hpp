@@ -90,6 +90,7 @@ class Evaluation {
   void add_wheels(double t);
   void record_separations(Result& result);
   void record_wheels();
+  void evaluate_supports();
   void store();
   void record_peaks();
   void record_largest_deflection();

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 namespace traverse::run {
 
@@ -50,6 +51,18 @@ struct Quantities {
     const Extreme& largest = check.rotations_->at_joints();
     if (largest.value < 0.0) return unknown("no two decks meet at a joint");
     return at(largest.value, largest.time, check.rotations_->joints()[largest.place]);
+  }
+
+  EvaluatedQuantity track_twist() const {
+    if (check.twist_.value < 0.0) return unknown("the beam does not twist (beam_GJ)");
+    return at(check.twist_.value, check.twist_.time, check.scene_.output.probes[check.twist_.place]);
+  }
+
+  EvaluatedQuantity bearing_uplift() const {
+    if (check.uplift_.value < 0.0) return unknown("no support has two bearings (support_bearing_spacing)");
+    const std::vector<double>& spans = check.scene_.beam->spans;
+    const auto before = spans.begin() + static_cast<std::ptrdiff_t>(check.uplift_.place);
+    return at(check.uplift_.value, check.uplift_.time, std::accumulate(spans.begin(), before, 0.0));
   }
 
   EvaluatedQuantity car_acceleration() const {
@@ -138,6 +151,8 @@ constexpr QuantityRow quantity_rows[] = {
     {"deflection_over_span", &Quantities::deflection_over_span},
     {"end_rotation", &Quantities::end_rotation},
     {"joint_rotation", &Quantities::joint_rotation},
+    {"track_twist", &Quantities::track_twist},
+    {"bearing_uplift", &Quantities::bearing_uplift},
     {"car_acceleration", &Quantities::car_acceleration},
     {"wheel_unloading", &Quantities::wheel_unloading},
     {"filtered_wheel_unloading", &Quantities::filtered_wheel_unloading},
@@ -173,11 +188,20 @@ constexpr int rotation = 2, rotation_right = 3;  // unknowns of a node
 LimitCheck::LimitCheck(const scene::Scene& scene, const train::Fleet& fleet, const beam::Beam* beam)
     : scene_(scene), fleet_(fleet), cars_(fleet) {
   if (beam != nullptr) rotations_.emplace(*beam);
+  if (beam != nullptr && beam->model().torsion) torsion_ = &*beam->model().torsion;
 }
 
-void LimitCheck::sample(double t, const double* v) {
+void LimitCheck::sample(double t, const double* v, std::span<const recovery::Response> probes,
+                        std::span<const beam::Reaction> supports) {
   if (rotations_) rotations_->add(t, v);
   cars_.add(t);
+  if (torsion_ == nullptr) return;
+  for (std::size_t p = 0; p < probes.size(); ++p) twist_.raise(std::abs(recovery::track_twist(probes[p])), t, p);
+  for (std::size_t end = 0; end < torsion_->bearing_spacing.size() && end < supports.size(); ++end) {
+    if (torsion_->held[end] == 0 || torsion_->bearing_spacing[end] == 0.0) continue;
+    const auto [left, right] = beam::bearing_forces(*torsion_, end, supports[end]);
+    uplift_.raise(std::max(0.0, -std::min(left, right)), t, end);
+  }
 }
 
 std::vector<results::Verdict> LimitCheck::verdicts(const results::Summary& summary,

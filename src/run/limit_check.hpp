@@ -88,8 +88,10 @@ class LimitCheck {
   /// beam: null without a bridge.
   LimitCheck(const scene::Scene& scene, const train::Fleet& fleet, const beam::Beam* beam);
 
-  /// Collective. Evaluates an observed instant; v: this rank's displacements of the structure.
-  void sample(double t, const double* v);
+  /// Collective. Evaluates an observed instant; v: this rank's displacements of the structure; supports: the reactions,
+  /// which only bearing_uplift needs.
+  void sample(double t, const double* v, std::span<const recovery::Response> probes,
+              std::span<const beam::Reaction> supports);
   /// Evaluates an instant at which only the rotations at the rotations' unknowns are known, rad.
   void rotations(double t, std::span<const double> slopes) { rotations_->record(t, slopes); }
   /// Records the largest magnitudes that are known: DeckRotations::raise, CarAccelerations::raise.
@@ -106,6 +108,7 @@ class LimitCheck {
   void keep(base::Bytes& bytes) {
     if (rotations_) rotations_->keep(bytes);
     cars_.keep(bytes);
+    bytes(twist_, uplift_);
   }
 
  private:
@@ -113,8 +116,10 @@ class LimitCheck {
 
   const scene::Scene& scene_;
   const train::Fleet& fleet_;
+  const beam::Torsion* torsion_ = nullptr;  // null: the beam does not twist
   std::optional<DeckRotations> rotations_;
   CarAccelerations cars_;
+  Extreme twist_{-1.0}, uplift_{-1.0};  // m at a probe; N at a span end; below 0: not known
 };
 
 }  // namespace traverse::run

@@ -210,7 +210,7 @@ void add_nodes(const beam::Beam& beam, const std::vector<double>& v, const std::
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     add(i, 1, 1.0);
-    if (line.eccentricity() != 0.0) add(i, 5, line.eccentricity());
+    if (line.has_tracks_beside()) add(i, 5, line.eccentricity(0));
   }
   MPI_Allreduce(MPI_IN_PLACE, deflection.data(), static_cast<int>(deflection.size()), MPI_DOUBLE, MPI_SUM, beam.comm());
 }

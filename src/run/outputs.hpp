@@ -32,7 +32,7 @@ struct EnergyTerms {
 struct Observed {
   std::vector<recovery::Response> probes;                          // empty without a bridge
   std::vector<recovery::Response> rail;                            // at the probes, then at the stations of output_rail
-  std::vector<std::array<double, 3>> supports;                     // fx, fy, moment on the beam, at the ends of spans
+  std::vector<beam::Reaction> supports;                            // at the ends of spans
   std::array<std::vector<structure::Movement>, 2> support_motion;  // of the supports there, upward and along the beam
   coupling::Observation motion;
   std::optional<recovery::GroundForces> ground;     // with a bridge

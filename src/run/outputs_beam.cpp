@@ -32,12 +32,19 @@ constexpr Row<Response> force_rows[] = {
 constexpr Row<Response> twist_rows[] = {
     {"twist", "rad", of<&Response::twist>},
     {"torsional_moment", "N m", of<&Response::torsional_moment>},
+    {"track_twist", "m", [](const Response& r) { return track_twist(r); }},
 };
 
 // Quantities of the bridge only.
 constexpr Row<Response> shear_rows[] = {{"shear", "N", of<&Response::shear>}};
 
-constexpr Row<Triple> support_rows[] = {{"reaction", "N, N, N m", [](const Triple& reaction) { return reaction; }}};
+constexpr Row<beam::Reaction> support_rows[] = {{"reaction", "N, N, N m", [](const beam::Reaction& r) {
+                                                   return Triple{r[0], r[1], r[2]};
+                                                 }}};
+constexpr Row<std::array<double, 2>> bearing_rows[] = {
+    {"left_bearing", "N", [](const std::array<double, 2>& up) { return up[0]; }},
+    {"right_bearing", "N", [](const std::array<double, 2>& up) { return up[1]; }}};
+constexpr Row<beam::Reaction> torque_rows[] = {{"torque", "N m", [](const beam::Reaction& r) { return r[3]; }}};
 
 constexpr Row<structure::Movement> movement_rows[] = {
     {"displacement", "m", of<&structure::Movement::displacement>},
@@ -75,7 +82,7 @@ Balance balance_of(const Observed& now, double gravity, bool axial, double gradi
     if (axial) b.load[0] += l.fx;
     b.load[1] += l.fy;
   }
-  for (const Triple& r : now.supports) {
+  for (const beam::Reaction& r : now.supports) {
     b.support[0] += r[0];
     b.support[1] += r[1];
   }
@@ -98,9 +105,18 @@ Balance balance_of(const Observed& now, double gravity, bool axial, double gradi
 
 const Response& probe(const Observed& now, std::size_t i) { return now.probes[i]; }
 const Response& rail(const Observed& now, std::size_t i) { return now.rail[i]; }
-const Triple& support(const Observed& now, std::size_t i) { return now.supports[i]; }
+const beam::Reaction& support(const Observed& now, std::size_t i) { return now.supports[i]; }
 const structure::Movement& moved_upward(const Observed& now, std::size_t i) { return now.support_motion[0][i]; }
 const structure::Movement& moved_along(const Observed& now, std::size_t i) { return now.support_motion[1][i]; }
+
+/// The torques of the supports, and the forces of their two bearings.
+void add_bearings(const beam::Torsion& torsion, std::size_t supports, Outputs& outputs) {
+  outputs.add_each("/supports/", torque_rows, supports, support);
+  if (torsion.bearing_spacing.empty()) return;
+  outputs.add_each("/supports/", bearing_rows, supports, [&torsion](const Observed& now, std::size_t i) {
+    return beam::bearing_forces(torsion, i, now.supports[i]);
+  });
+}
 
 }  // namespace
 
@@ -108,6 +124,10 @@ void add_probes(const Source& source, Outputs& outputs) {
   const std::vector<double>& x = source.scene.output.probes;
   if (x.empty()) return;
   outputs.add_constant("/probes/x", x, "m");
+  if (std::vector<double> e = source.scene.output.eccentricities; !e.empty()) {
+    for (double& one : e) one += source.beam->model().torsion->shear_centre;
+    outputs.add_constant("/probes/eccentricity", e, "m");
+  }
   outputs.add_each("/probes/", motion_rows, x.size(), probe);
   if (source.scene.supports_displaced()) outputs.add_each("/probes/", relative_rows, x.size(), probe);
   if (source.beam->model().given) return;
@@ -121,6 +141,7 @@ void add_supports(const Source& source, Outputs& outputs) {
   const std::vector<double> x = source.beam->mesh().span_ends();
   outputs.add_constant("/supports/x", x, "m");
   outputs.add_each("/supports/", support_rows, x.size(), support);
+  if (source.beam->model().torsion) add_bearings(*source.beam->model().torsion, x.size(), outputs);
   if (!source.scene.support_motion.empty()) outputs.add_each("/supports/", movement_rows, x.size(), moved_upward);
   if (!source.scene.support_motion_along.empty())
     outputs.add_each("/supports/", movement_along_rows, x.size(), moved_along);

@@ -15,7 +15,7 @@ namespace {
 
 using options::Options;
 
-constexpr double elements_per_half_wave = 4.0;  // of the highest mode of a track beside the axis
+constexpr double elements_per_half_wave = 2.0;  // of the highest mode of a track beside the axis
 constexpr double most_stations = 1e6;           // limit for equally spaced springs
 
 /// The number of elements per span for the accuracy. It is even, so that midspan is a node. The error of deflections is
@@ -78,18 +78,25 @@ void read_torsion(const Options& o, Scene& scene) {
   beam::BeamModel& beam = *scene.beam;
   beam::Torsion torsion;
   torsion.GJ = read_distribution(o, "beam_GJ");
+  if (o.has("beam_ECw")) torsion.warping = read_distribution(o, "beam_ECw");
   torsion.inertia = read_distribution(o, "beam_polar_inertia");
-  torsion.mass_centre = o.number("beam_mass_centre") - o.number("beam_shear_centre");
-  torsion.track = o.number("track_eccentricity") - o.number("beam_shear_centre");
+  const double shear_centre = torsion.shear_centre = o.number("beam_shear_centre");
+  torsion.mass_centre = o.number("beam_mass_centre") - shear_centre;
+  torsion.tracks = {o.number("track_eccentricity") - shear_centre};
+  for (const Block& block : blocks_of(o, "tracks"))
+    scene.tracks.push_back({block.name, o.number(block.option("eccentricity")) - shear_centre});
+  const bool beside = torsion.tracks.front() != 0.0 ||
+                      std::ranges::any_of(scene.tracks, [](const Track& t) { return t.eccentricity != 0.0; });
+  if (!scene.tracks.empty()) torsion.tracks.clear();  // trains and loads name those that they run on
   const bool by_modes = o.has("model_modes") && o.integer("model_modes") > 0;
-  if (torsion.track != 0.0 && o.choice("scene_analysis") == "transient" && !by_modes)
-    o.refuse("model_modes", "missing: a bridge with a track beside its shear centre is computed by modes; such as 40");
   const std::size_t ends = beam.supports.size();
   const std::vector<std::string> words = o.texts("support_torsion", ends, "one per span end, or one for all");
   for (std::size_t end = 0; end < ends; ++end)
     torsion.held.push_back(beam::fixes_vertical(beam.supports[end]) && words[end] == "held" ? 1 : 0);
-  if (torsion.track != 0.0 && by_modes && scene.mesh_open) {
-    // The spans share the half waves of the modes; accelerations need more elements in each than frequencies do.
+  if (o.has("support_bearing_spacing"))
+    torsion.bearing_spacing = o.numbers("support_bearing_spacing", ends, "one per span end, or one for all");
+  if (beside && by_modes && scene.mesh_open) {
+    // The spans share the half waves of the modes.
     const int in_span = 2 * static_cast<int>(std::ceil(0.5 * elements_per_half_wave * o.integer("model_modes") /
                                                        static_cast<double>(beam.spans.size())));
     for (int& elements : beam.elements) elements = std::max(elements, in_span);
@@ -174,6 +181,7 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
     return kind.direction == beam::Direction::longitudinal ? numbers(what) : std::vector<double>(x.size(), 0.0);
   };
   const std::vector<double> depth = along_x("_depth"), limit = along_x("_limit");
+  const std::vector<double> eccentricity = vertical && beam.torsion ? numbers("_eccentricity") : std::vector<double>();
   const std::vector<std::string> side = words("_side");
   const std::vector<std::string> one_sided =
       vertical ? words("_one_sided") : std::vector<std::string>(x.size(), "false");
@@ -182,6 +190,7 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
     const beam::FoundationLaw law{one_sided[i] == "true", gap[i], cubic[i], limit[i]};
     beam::PointFoundation point{place_on_beam(o, name + "_x", x[i], length), k[i], c[i], false, law};
     point.depth = depth[i];
+    if (!eccentricity.empty()) point.eccentricity = eccentricity[i] - beam.torsion->shear_centre;
     if (point.depth != 0.0 && !is_span_end(beam, point.x))
       o.refuse(name + "_depth", fmt::format("at {:g} m, within a span; allowed: 0, or stations at span ends", point.x));
     add_point(o, beam, name + "_side", side[i], point, points);

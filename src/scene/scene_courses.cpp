@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 
 #include "base/notes.hpp"
 #include "scene_parts.hpp"
@@ -25,12 +26,15 @@ bool is_group(const std::string& name) {
   return name == "vehicle" || std::any_of(rows.begin(), rows.end(), begins);
 }
 
-/// Declares the options of `kind` (train or load) for each name in `list`.
-void declare_list(Options& o, const std::string& list, const std::string& kind) {
+/// Declares the options of `kind` (train, load or track) for each name in `list`, those that `belongs` says.
+void declare_list(Options& o, const std::string& list, const std::string& kind,
+                  const std::function<bool(std::string_view)>& belongs) {
   if (!o.has(list)) return;
-  if (const options::Entry* single = o.first_with_prefix(kind + "_"))
-    o.refuse(single->name, fmt::format("{} names several blocks; give the options of {} in these blocks", list, kind));
   const std::string prefix = kind + "_";
+  for (const options::Row& row : options::fixed_rows())
+    if (row.name.starts_with(prefix) && belongs(row.name.substr(prefix.size())) && o.has(std::string(row.name)))
+      o.refuse(std::string(row.name),
+               fmt::format("{} names several blocks; give the options of {} in these blocks", list, kind));
   for (const std::string& name : o.texts(list)) {
     if (!is_plain_word(name))
       o.refuse(list,
@@ -38,7 +42,7 @@ void declare_list(Options& o, const std::string& list, const std::string& kind) 
                            name));
     if (is_group(name)) o.refuse(list, fmt::format("'{}' is the name of a group of options; choose another one", name));
     for (const options::Row& row : options::fixed_rows()) {
-      if (!row.name.starts_with(prefix)) continue;
+      if (!row.name.starts_with(prefix) || !belongs(row.name.substr(prefix.size()))) continue;
       const std::string full = name + "_" + std::string(row.name.substr(prefix.size()));
       if (options::owned_by_petsc(full))
         o.refuse(list, fmt::format("'{}' cannot be a name: {} is an option of PETSc; choose another one", name, full));
@@ -78,15 +82,46 @@ std::string course_text(const train::Course& course) {
 }  // namespace
 
 void declare_blocks(Options& o) {
-  declare_list(o, "trains", "train");
-  declare_list(o, "loads", "load");
+  const auto all = [](std::string_view) { return true; };
+  declare_list(o, "trains", "train", all);
+  declare_list(o, "loads", "load", all);
+  declare_list(o, "tracks", "track", [](std::string_view word) {
+    return word == "eccentricity" || word == "seed" || word == "wavelengths" || word.starts_with("profile") ||
+           word.starts_with("bump_");
+  });
 }
 
 std::vector<Block> blocks_of(const Options& o, const char* list) {
   std::vector<Block> blocks;
-  if (!o.has(list)) return {{std::string(list) == "trains" ? "train" : "load", {}}};
+  const std::string_view kind = list;
+  if (!o.has(list) && kind == "tracks") return {};
+  if (!o.has(list)) return {{kind == "trains" ? "train" : "load", {}}};
   for (const std::string& name : o.texts(list)) blocks.push_back({name, {}});
   return blocks;
+}
+
+const Track* track_of_block(const Options& o, const Block& block, const Scene& scene) {
+  const std::string option = block.option("track");
+  if (scene.tracks.empty()) {
+    if (o.has(option))
+      o.refuse(option, "names one of the tracks of a bridge that twists, which the option tracks lists");
+    return nullptr;
+  }
+  std::string names;
+  for (const Track& track : scene.tracks) {
+    if (o.has(option) ? o.text(option) == track.name : scene.tracks.size() == 1) return &track;
+    names += (names.empty() ? "" : ", ") + track.name;
+  }
+  o.refuse(option, fmt::format("{}; allowed: {}", o.has(option) ? "there is no such track" : "missing", names));
+}
+
+int carry(const Track* track, Scene& scene) {
+  if (track == nullptr) return 0;
+  std::vector<double>& carrying = scene.beam->torsion->tracks;
+  const auto same = std::ranges::find(carrying, track->eccentricity);
+  const auto index = static_cast<int>(same - carrying.begin());
+  if (same == carrying.end()) carrying.push_back(track->eccentricity);
+  return index;
 }
 
 std::string table_of_motion(const Options& o, const Block& block) {
@@ -146,6 +181,7 @@ bool several_courses(const Scene& scene) {
 }
 
 void check_courses(const Options& o, Scene& scene) {
+  if (scene.beam && scene.beam->torsion && scene.beam->torsion->tracks.empty()) carry(&scene.tracks.front(), scene);
   const std::size_t trains = scene.train.courses.size(), loads = scene.load.courses.size();
   if (trains + loads == 0) return;
   for (const char* sweep : {"sweep_speed", "sweep_hslm_a"})
@@ -161,7 +197,7 @@ void check_courses(const Options& o, Scene& scene) {
   for (const std::vector<train::Course>* courses : {&scene.train.courses, &scene.load.courses})
     for (const train::Course& course : *courses) what += (what.empty() ? "" : "; ") + course_text(course);
   scene.notes.push_back(base::detail("runs: " + what));
-  if (several)
+  if (several && scene.tracks.empty())
     scene.notes.emplace_back("parallel tracks: all wheels and forces act on the beam's axis; its torsion is neglected");
 }
 

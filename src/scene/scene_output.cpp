@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "scene_parts.hpp"
 
@@ -84,6 +85,15 @@ void read_probes(const Options& o, Scene& scene) {
   std::sort(probes.begin(), probes.end());
   const auto same = [](double a, double b) { return b - a < same_station; };
   probes.erase(std::unique(probes.begin(), probes.end(), same), probes.end());
+}
+
+/// Each track with a name has probes of its own at the same stations.
+void repeat_probes_for_tracks(Scene& scene) {
+  const std::vector<double> stations = std::exchange(scene.output.probes, {});
+  for (const Track& track : scene.tracks) {
+    scene.output.probes.insert(scene.output.probes.end(), stations.begin(), stations.end());
+    scene.output.eccentricities.resize(scene.output.probes.size(), track.eccentricity);
+  }
 }
 
 constexpr const char* low_passed_peak = "acceleration_lowpass";  // in accuracy_of
@@ -237,6 +247,7 @@ void read_output(const Options& o, Scene& scene) {
   scene.verbose = o.flag("verbose");
   scene.describe = o.flag("describe");
   read_probes(o, scene);
+  if (!scene.tracks.empty()) repeat_probes_for_tracks(scene);
   read_filter(o, scene);
   read_wheel_filter(o, scene);
   read_passages(o, scene);

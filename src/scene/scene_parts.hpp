@@ -14,9 +14,9 @@
 
 namespace traverse::scene {
 
-/// A block of options of a train or a load.
+/// A block of options of a train, a load or a track.
 struct Block {
-  std::string name;                   // "train", "load" or a name from the options trains and loads
+  std::string name;                   // "train", "load" or a name from the options trains, loads and tracks
   std::vector<std::string> vehicles;  // vehicles of a train, from the front
   /// The name of an option of this block.
   std::string option(std::string_view word) const { return name + "_" + std::string(word); }
@@ -55,10 +55,14 @@ NamedVehicles declare_vehicles(options::Options& options);
 /// Reads one vehicle.
 Vehicle read_vehicle(const options::Options& options, const std::string& name);
 
-/// Declares the options of the trains and loads that `trains` and `loads` name.
+/// Declares the options of the trains, loads and tracks that `trains`, `loads` and `tracks` name.
 void declare_blocks(options::Options& options);
-/// The blocks of `trains` or of `loads`; the block train or load if none are named.
+/// The blocks of `trains`, `loads` or `tracks`; without names the block train or load, but no track.
 std::vector<Block> blocks_of(const options::Options& options, const char* list);
+/// The track that a train or load names; null if no tracks have names.
+const Track* track_of_block(const options::Options& options, const Block& block, const Scene& scene);
+/// The number of a track among those of the beam that carry something; it is added if it is new.
+int carry(const Track* track, Scene& scene);
 /// The option of a block that has a table of its motion, speed_file or position_file; empty without one.
 std::string table_of_motion(const options::Options& options, const Block& block);
 /// x of the first wheel or force at t = 0 by a block's position_file, m; none without one.

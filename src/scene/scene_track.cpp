@@ -92,7 +92,11 @@ ReadProfile read_profile(const Options& o, const std::string& prefix, double sta
 void read_track(const Options& o, Scene& scene) {
   bool to_the_left = false;
   const double start = start_of_roughness(scene, to_the_left);
-  ReadProfile read = read_profile(o, "track", start, to_the_left, scene);
+  // Trains with courses have the profiles of their tracks.
+  const bool one_train = scene.train.courses.empty() && !scene.train.vehicles.empty();
+  const Track* track = one_train ? track_of_block(o, blocks_of(o, "trains").front(), scene) : nullptr;
+  const bool own = track != nullptr && o.has(track->name + "_profile");
+  ReadProfile read = read_profile(o, own ? track->name : "track", start, to_the_left, scene);
   scene.profile = std::move(read.profile);
   scene.roughness = read.roughness;
   read_dips(o, scene);

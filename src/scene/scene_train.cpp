@@ -199,9 +199,14 @@ train::Course course_of_train(const Options& o, const TrainBlock& train, Scene& 
   }
   course.speed = !table_of_motion(o, train.block).empty() ? read_motion(o, train.block, front)
                                                           : base::SpeedLaw(read_speed(o, train, scene));
-  if (o.has(train.block.option("profile")))
-    course.profile = std::make_shared<track::Profile>(
-        read_profile(o, train.block.name, front, train.direction < 0.0, scene).profile);
+  const Track* track = track_of_block(o, train.block, scene);
+  course.track = carry(track, scene);
+  for (const std::string& owner : {train.block.name, track == nullptr ? std::string() : track->name}) {
+    if (owner.empty() || !o.has(owner + "_profile")) continue;
+    course.profile =
+        std::make_shared<track::Profile>(read_profile(o, owner, front, train.direction < 0.0, scene).profile);
+    break;
+  }
   return course;
 }
 
@@ -241,6 +246,7 @@ void read_trains(const Options& o, const NamedVehicles& vehicles, Scene& scene) 
     }
     add_vehicles(o, train, positions, 0.0, vehicles.trains.size() == 1, scene);
     if (!courses) {
+      scene.train.track = carry(track_of_block(o, block, scene), scene);
       scene.train.drive = read_drive(o, train, scene);
       const bool swept = scene.sweep && !scene.sweep->speeds.empty() && !stands(o, block);
       scene.train.speed = swept ? scene.sweep->speeds.front() : read_speed(o, train, scene);

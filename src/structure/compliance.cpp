@@ -48,7 +48,7 @@ Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
     slots = 0;
     for (int kind = 0; kind < static_cast<int>(parts->of_kind.size()); ++kind) {
       kind_slot_.push_back(slots);
-      slots += static_cast<std::size_t>(parts->nodes(kind));
+      slots += static_cast<std::size_t>(parts->nodes(kind)) * static_cast<std::size_t>(line_.tracks());
     }
     const std::vector<int>& begins = beam.parts();
     short_parts_ = true;
@@ -56,6 +56,7 @@ Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
       short_parts_ = short_parts_ && begins[i] - begins[i - 1] <= short_part;
     ++slots;  // the last slot is for the elements of other ranks
   }
+  if (operator_.parts() == nullptr) slots *= static_cast<std::size_t>(line_.tracks());
   of_slot_.assign(slots, columns_.end());
 }
 
@@ -166,7 +167,8 @@ Compliance::Place Compliance::place_of(int element) const {
   const int node = line_.first_column + line_.mesh.element(element).left - beam_.first_column();
   if (node < 0 || node >= beam_.local_columns()) return {of_slot_.size() - 1, 0};
   const solve::Parts::Part& part = parts->at(node);
-  return {kind_slot_[static_cast<std::size_t>(part.kind)] + static_cast<std::size_t>(node - part.first),
+  const std::ptrdiff_t before = (part.past - part.first) * (element / line_.mesh.elements());  // of other tracks
+  return {kind_slot_[static_cast<std::size_t>(part.kind)] + static_cast<std::size_t>(before + node - part.first),
           static_cast<int>(part.first) * beam_.block()};
 }
 
@@ -306,6 +308,11 @@ void Compliance::find_responses() {
   responses_.resize(elements_.size());
   std::size_t begin = 0;
   for (std::size_t b = 0; b < elements_.size(); ++b) {
+    if (line_.tracks() > 1) {  // the elements of a column are not neighbours in the list
+      responses_[b] = {0, static_cast<int>(elements_.size()), begin};
+      begin += elements_.size() * m_ * m_;
+      continue;
+    }
     const Active& c = active_[b];
     const auto first = std::partition_point(elements_.begin(), elements_.end(),
                                             [&](int element) { return left(element) + 1 < c.first; });

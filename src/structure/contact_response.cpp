@@ -25,7 +25,7 @@ ContactResponse::ContactResponse(const beam::Beam& beam, const BeamOperator& op)
 
 // If the beam has a track, the responses extend over few columns, so that columns of the compliance are cheap.
 bool ContactResponse::worthwhile(std::size_t elements) const {
-  return uniform_ && line_.eccentricity() == 0.0 && !operator_.shared() && beam_.block() == line_.per_node &&
+  return uniform_ && !line_.has_tracks_beside() && !operator_.shared() && beam_.block() == line_.per_node &&
          elements >= many_elements;
 }
 

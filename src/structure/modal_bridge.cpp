@@ -34,7 +34,6 @@ ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, modes::B
                          const std::vector<double>& ratios)
     : beam_(beam), statics_(statics), basis_(std::move(basis)) {
   set_damping(ratios);
-  smooth_track();
   influence_ = influence_of(lines_of_modes(), {});
 }
 
@@ -147,19 +146,20 @@ std::vector<double> ModalBridge::static_solution(const std::vector<double>& load
   return all;
 }
 
-void ModalBridge::add_probes(const std::vector<double>& stations, double gravity) {
+void ModalBridge::add_probes(const std::vector<double>& stations, double gravity,
+                             const std::vector<double>& eccentricities) {
   probes_ = {};
   probes_.count = stations.size();
   if (given()) return add_given_probes(stations);
-  recovery::Recovery recovery(beam_, stations, 0.0);
+  recovery::Recovery recovery(beam_, stations, 0.0, eccentricities);
   record_forms(recovery);
   if (forces_on_others_.cols() > 0) record_others(recovery);
-  recovery::Recovery with_weight(beam_, stations, gravity);
+  recovery::Recovery with_weight(beam_, stations, gravity, eccentricities);
   record_weight(with_weight, gravity);
   std::vector<Line> lines = lines_of_modes();
   for (const auto quantity : {&recovery::Response::deflection, &recovery::Response::moment})
     for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
-  influence_ = influence_of(lines, stations);
+  influence_ = influence_of(lines, stations, eccentricities);
 }
 
 // Deflections by the shapes; moments and contributions of other modes are zero.
@@ -206,7 +206,7 @@ void ModalBridge::record_forms(recovery::Recovery& recovery) {
   for (std::size_t i = 0; i < modes(); ++i) {
     recovery.evaluate(shape(i), zero.data(), zero.data(), {}, responses);
     for (std::size_t p = 0; p < responses.size(); ++p) {
-      probes_.deflection.push_back(responses[p].deflection + bend_of_track(i, recovery.stations()[p]));
+      probes_.deflection.push_back(responses[p].deflection);
       probes_.moment.push_back(responses[p].moment);
     }
     recovery.evaluate(zero.data(), zero.data(), shape(i), {}, responses);

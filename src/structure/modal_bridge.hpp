@@ -90,8 +90,8 @@ class ModalBridge {
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count);
 
   /// Collective. Adds the response at stations to probes(), and its static correction to influence(). gravity: 0
-  /// without self-weight.
-  void add_probes(const std::vector<double>& stations, double gravity);
+  /// without self-weight; eccentricities: as of recovery::Recovery.
+  void add_probes(const std::vector<double>& stations, double gravity, const std::vector<double>& eccentricities = {});
 
   /// Collective. Rotations of nodes given by their unknowns, if dampers do not couple modes.
   ModalSlopes slopes(const std::vector<int>& unknowns, double gravity);
@@ -126,27 +126,15 @@ class ModalBridge {
   const beam::Beam& beam() const { return beam_; }
   /// phi_i, this rank's unknowns.
   const double* shape(std::size_t mode) const;
-  /// Whether the track is beside the shear centre, so that bend_of_track() is not zero.
-  bool beside_axis() const { return !bend_of_track_.empty(); }
-  /// By how much the slope of phi_i along the track exceeds that of a twist that is linear along the element, at its
-  /// left (0) or right (1) end. The twist is a cubic spline there: a load that passes the kinks of straight pieces
-  /// would excite the bridge.
-  double bend_of_track(std::size_t mode, int element, int end) const {
-    return bend_of_track_[mode][2 * static_cast<std::size_t>(element) + static_cast<std::size_t>(end)];
-  }
-  /// What this adds to phi_i at x.
-  double bend_of_track(std::size_t mode, double x) const;
 
  private:
   /// Values of a response under a unit downward force along x: the nodal values of an influence line, and the direct
   /// response if the force is inside the probe's element.
   struct Line {
-    std::vector<double> nodal;    // all ranks' unknowns
-    std::vector<double> share{};  // of each mode's shape in them; empty: none
+    std::vector<double> nodal;  // all ranks' unknowns
     std::size_t probe = 0;
     double recovery::Response::*direct = nullptr;  // null: none
   };
-  void smooth_track();
   Eigen::MatrixXd on_shapes(Mat matrix) const;
   Eigen::MatrixXd share_of_modes(const Eigen::MatrixXd& forces) const;
   void set_damping(const std::vector<double>& ratios);
@@ -159,7 +147,8 @@ class ModalBridge {
   std::vector<Line> lines_of_modes() const;
   std::array<double, 4> transverse_values(const std::vector<double>& nodal, int element) const;
   Line line_of(const std::vector<double>& load, const std::function<double(std::size_t)>& form);
-  PiecewiseCubic influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const;
+  PiecewiseCubic influence_of(const std::vector<Line>& lines, const std::vector<double>& stations,
+                              const std::vector<double>& eccentricities = {}) const;
   std::vector<double> static_solution(const std::vector<double>& load);
   std::vector<double> weight_displacements(double gravity);
 
@@ -173,7 +162,6 @@ class ModalBridge {
   mutable std::optional<ComplexModes> complex_modes_;
   ModalProbes probes_;
   PiecewiseCubic influence_;
-  std::vector<std::vector<double>> bend_of_track_;  // [mode][2*element + end]; empty on the line of shear centres
 };
 
 }  // namespace traverse::structure

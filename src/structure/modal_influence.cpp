@@ -1,5 +1,4 @@
-// Influence lines of modes and probes as piecewise cubic functions, by the theorem of Maxwell and Betti, and the modes'
-// shapes along a track beside the shear centre.
+// Influence lines of modes and probes as piecewise cubic functions, by the theorem of Maxwell and Betti.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -14,59 +13,8 @@ std::vector<ModalBridge::Line> ModalBridge::lines_of_modes() const {
   for (const auto& shape : basis_.shape) {
     lines.emplace_back().nodal = shape;
     for (double& value : lines.back().nodal) value = -value;
-    if (!beside_axis()) continue;
-    lines.back().share.assign(modes(), 0.0);
-    lines.back().share[lines.size() - 1] = -1.0;
   }
   return lines;
-}
-
-/// The splines end where supports hold the twist, and at the ends of the beam's parts.
-void ModalBridge::smooth_track() {
-  const beam::Line& line = beam_.bridge();
-  if (line.eccentricity() == 0.0) return;
-  const beam::Mesh& mesh = line.mesh;
-  std::vector<char> ends(static_cast<std::size_t>(mesh.nodes()), 0);
-  for (int end = 0; end <= mesh.spans(); ++end) {
-    const auto [left, right] = mesh.nodes_at(end);
-    const bool held = line.model.torsion->held[static_cast<std::size_t>(end)] != 0;
-    for (const int node : {left, right})
-      if (held || left != right) ends[static_cast<std::size_t>(node)] = 1;
-  }
-  ends.front() = ends.back() = 1;
-  for (const std::vector<double>& shape : basis_.shape) {
-    std::vector<double>& bends = bend_of_track_.emplace_back(2 * static_cast<std::size_t>(mesh.elements()), 0.0);
-    std::vector<double> x, twist;
-    int first = 0;  // element of the first node
-    for (int e = 0; e < mesh.elements(); ++e) {
-      const auto unknowns = line.twists(e);
-      if (x.empty()) {
-        first = e;
-        x.push_back(mesh.element(e).x);
-        twist.push_back(shape[static_cast<std::size_t>(unknowns[0])]);
-      }
-      x.push_back(mesh.element(e).x + mesh.element(e).length);
-      twist.push_back(shape[static_cast<std::size_t>(unknowns[1])]);
-      if (ends[static_cast<std::size_t>(mesh.element(e).left) + 1] == 0) continue;
-      const std::vector<double> slope = beam::spline_slopes(x, twist);
-      for (int k = first; k <= e; ++k) {
-        const auto i = static_cast<std::size_t>(k - first);
-        const double straight = (twist[i + 1] - twist[i]) / mesh.element(k).length;
-        for (std::size_t end = 0; end < 2; ++end)
-          bends[2 * static_cast<std::size_t>(k) + end] = line.eccentricity() * (slope[i + end] - straight);
-      }
-      x.clear();
-      twist.clear();
-    }
-  }
-}
-
-double ModalBridge::bend_of_track(std::size_t mode, double x) const {
-  if (!beside_axis()) return 0.0;
-  const beam::Station at = beam_.mesh().locate(x);
-  const beam::Element& element = beam_.mesh().element(at.element);
-  const auto psi = beam::hermite(at.xi, element.length, element.shear).value;
-  return psi[1] * bend_of_track(mode, at.element, 0) + psi[3] * bend_of_track(mode, at.element, 1);
 }
 
 /// The influence line of a response at a probe, minus the modes' share. By the theorem of Maxwell and Betti it is the
@@ -85,7 +33,7 @@ ModalBridge::Line ModalBridge::correction_of(recovery::Recovery& recovery, std::
   };
   const int element = beam_.mesh().locate(recovery.stations()[p]).element;
   for (const int unknown : beam_.bridge().transverse(element)) add_unit(unknown);
-  if (beam_.bridge().eccentricity() != 0.0)
+  if (beam_.model().torsion)
     for (const int unknown : beam_.bridge().twists(element)) add_unit(unknown);
   const std::vector<double>& form = quantity == &recovery::Response::deflection ? probes_.deflection : probes_.moment;
   Line line = line_of(load, [&](std::size_t mode) { return form[mode * probes_.count + p]; });
@@ -103,7 +51,6 @@ ModalBridge::Line ModalBridge::line_of(const std::vector<double>& load,
   for (std::size_t i = 0; i < modes(); ++i) {
     const double share = form(i) / (basis_.omega[i] * basis_.omega[i]);
     for (std::size_t k = 0; k < line.nodal.size(); ++k) line.nodal[k] += share * basis_.shape[i][k];
-    if (beside_axis()) line.share.push_back(share);
   }
   return line;
 }
@@ -121,10 +68,13 @@ std::array<double, 4> ModalBridge::transverse_values(const std::vector<double>& 
   return values;
 }
 
-PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const {
+PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const std::vector<double>& stations,
+                                         const std::vector<double>& eccentricities) const {
   const beam::Mesh& mesh = beam_.mesh();
   std::vector<recovery::Recovery> recoveries;
-  for (const double x : stations) recoveries.emplace_back(beam_, std::vector<double>{x}, 0.0);
+  for (std::size_t p = 0; p < stations.size(); ++p)
+    recoveries.emplace_back(beam_, std::vector{stations[p]}, 0.0,
+                            eccentricities.empty() ? eccentricities : std::vector{eccentricities[p]});
   PiecewiseCubic influence = {{mesh.start()}, lines.size(), {}};
   for (int e = 0; e < mesh.elements(); ++e) {
     const beam::Element& element = mesh.element(e);
@@ -140,14 +90,12 @@ PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const s
       influence.coefficients.resize(piece + 4 * lines.size());
       for (std::size_t channel = 0; channel < lines.size(); ++channel) {
         const Line& line = lines[channel];
-        std::array<double, 4> nodal = transverse_values(line.nodal, e);
-        for (std::size_t i = 0; i < line.share.size(); ++i)
-          for (int end = 0; end < 2; ++end)
-            nodal[static_cast<std::size_t>(2 * end + 1)] += line.share[i] * bend_of_track(i, e, end);
+        const std::array<double, 4> nodal = transverse_values(line.nodal, e);
         beam::Cubic cubic = beam::shifted(beam::hermite_cubic(nodal, element.length, element.shear), left);
         if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
           const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {
-            const recovery::ElementLoad unit = {e, (left + x) / element.length, 0.0, -1.0, 0.0};
+            recovery::ElementLoad unit = {e, (left + x) / element.length, 0.0, -1.0, 0.0};
+            unit.torque = -beam_.bridge().eccentricity(e);
             return recoveries[line.probe].inside_response(0, unit).*line.direct;
           });
           for (std::size_t k = 0; k < 4; ++k) cubic[k] += more[k];

@@ -26,7 +26,7 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
   by_unknown_.resize(modes_ * shape.front().size());
   for (std::size_t i = 0; i < modes_; ++i)
     for (std::size_t u = 0; u < shape[i].size(); ++u) by_unknown_[u * modes_ + i] = shape[i][u];
-  if (bridge_.beside_axis()) find_shapes_of_track();
+  if (line_.has_tracks_beside()) find_shapes_of_track();
   for (const std::vector<double>& nodal : shape)
     mode_extents_.push_back(extent_of(nodal.data(), beam_.layout(), static_cast<int>(nodal.size())));
 
@@ -61,16 +61,15 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
 
 void ModalStructure::find_shapes_of_track() {
   const auto values = 2 * static_cast<std::size_t>(per_node());
-  by_element_.assign(values * static_cast<std::size_t>(line_.mesh.elements()) * modes_, 0.0);
-  for (int element = 0; element < line_.mesh.elements(); ++element) {
+  const int elements = line_.tracks() * line_.mesh.elements();
+  by_element_.assign(values * static_cast<std::size_t>(elements) * modes_, 0.0);
+  for (int element = 0; element < elements; ++element) {
     const auto phi = [&](int k) {
       return &by_element_[(values * static_cast<std::size_t>(element) + static_cast<std::size_t>(k)) * modes_];
     };
     line_.for_unknowns(element, [&](int k, int unknown, double factor) {
       for (std::size_t i = 0; i < modes_; ++i) phi(k)[i] += factor * shapes(unknown)[i];
     });
-    for (std::size_t i = 0; i < modes_; ++i)
-      for (int end = 0; end < 2; ++end) phi((end + 1) * per_node() - 1)[i] += bridge_.bend_of_track(i, element, end);
   }
 }
 
@@ -177,18 +176,6 @@ StructureEnergy ModalStructure::energy(const double* v, const double* w) {
   return e;
 }
 
-/// The modal forces of loads on a track beside the axis are those of its smooth shapes.
-void ModalStructure::add_bends_of_track(const ElementLoads& contacts, double* modal) const {
-  const auto per = static_cast<std::size_t>(per_node());
-  const auto add = [&](int element, const double* parts) {
-    for (std::size_t i = 0; i < modes_; ++i)
-      for (int end = 0; end < 2; ++end)
-        modal[i] += parts[(static_cast<std::size_t>(end) + 1) * per - 1] * bridge_.bend_of_track(i, element, end);
-  };
-  for (const recovery::ElementLoad& force : forces_) add(force.element, on_unknowns(line_, force).data());
-  for (std::size_t a = 0; a < contacts.elements.size(); ++a) add(contacts.elements[a], &contacts.values[2 * per * a]);
-}
-
 void ModalStructure::observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
                              bool /*with_loads*/, NodalMotion& out) {
   const auto size = static_cast<std::size_t>(beam_.local_unknowns());
@@ -216,7 +203,6 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   const Eigen::Map<const ByRows> phi(by_unknown_.data() + first * modes_, rows, modes);
   Eigen::Map<Eigen::VectorXd>(share.data(), modes).noalias() =
       phi.transpose() * Eigen::Map<const Eigen::VectorXd>(static_displacement_.data(), rows);
-  if (n_ > 0 && bridge_.beside_axis()) add_bends_of_track(contacts, share.data());
   MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(modes_), MPI_DOUBLE, MPI_SUM, beam_.comm());
   if (bridge_.given()) {  // there are no other modes
     std::fill(static_displacement_.begin(), static_displacement_.end(), 0.0);

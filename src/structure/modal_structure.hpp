@@ -80,7 +80,6 @@ class ModalStructure final : public MovingStructure {
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                   double* w_elements) const override;
   void find_shapes_of_track();
-  void add_bends_of_track(const ElementLoads& contacts, double* modal) const;
   void add_modal_forces(const ElementLoads& contacts, double* to) const;
   double work_rate(const double* w) const;
   double damping(const double* w) const;

@@ -147,7 +147,10 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<recovery::
       forces.open_gaps[static_cast<std::size_t>(p.source.index)] = p.predicted + p.source.law.gap;
       if (!p.source.on_bridge && p.source.below < 0) forces.of_ground += p.state.force;
       if (p.source.on_bridge && p.state.force != 0.0)
-        own_loads.push_back({p.source.at.element, p.source.at.xi, 0.0, -p.state.force});
+        own_loads.push_back({.element = p.source.at.element,
+                             .xi = p.source.at.xi,
+                             .fy = -p.state.force,
+                             .torque = -p.source.eccentricity * p.state.force});
       continue;
     }
     if (p.state.force == 0.0) continue;
@@ -164,6 +167,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<recovery::
      : p.source.direction == Direction::longitudinal ? load.fx
                                                      : load.moment) = p.state.force;
     if (p.source.depth != 0.0) load.moment = p.source.depth * p.state.force;
+    load.torque = p.source.eccentricity * p.state.force;
     own_loads.push_back(load);
   }
   const auto sum = [&](std::vector<double>& list) {

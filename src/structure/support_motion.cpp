@@ -75,11 +75,11 @@ void SupportMotion::set_time(double t) {
   }
 }
 
-void SupportMotion::add_reactions(std::vector<std::array<double, 3>>& reactions) const {
+void SupportMotion::add_reactions(std::vector<beam::Reaction>& reactions) const {
   for (const Unit& unit : units_) {
     const Movement& now = now_[unit.direction][unit.support];
     for (std::size_t end = 0; end < unit.by_displacement.size(); ++end)
-      for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t c = 0; c < reactions[end].size(); ++c)
         reactions[end][c] +=
             now.displacement * unit.by_displacement[end][c] + now.acceleration * unit.by_acceleration[end][c];
   }

@@ -45,13 +45,13 @@ class SupportMotion {
   const std::vector<Movement>& along() const { return now_[1]; }
   /// The parts of the reactions that come from the motion of the held unknowns themselves (Beam::reactions has those of
   /// the free ones): {fx, fy, moment} at every span end.
-  void add_reactions(std::vector<std::array<double, 3>>& reactions) const;
+  void add_reactions(std::vector<beam::Reaction>& reactions) const;
 
  private:
   struct Unit {  // a unit displacement of one support: upward (0) or along the beam (1)
     std::size_t direction = 0, support = 0;
-    std::vector<double> shape, inertia;                                   // R_s and M R_s
-    std::vector<std::array<double, 3>> by_displacement, by_acceleration;  // reactions
+    std::vector<double> shape, inertia;                            // R_s and M R_s
+    std::vector<beam::Reaction> by_displacement, by_acceleration;  // reactions
   };
   void add_unit(const beam::Beam& beam, std::size_t direction, std::size_t support);
 

@@ -41,9 +41,11 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
   speeds_.assign(assembled.units.size(), 0.0);
   for (const Course& course : train.courses) profiles_.push_back(course.profile);
   course_.assign(assembled.units.size(), -1);
+  std::vector<int> track(assembled.units.size(), 0);
   for (std::size_t i = members.size(); i-- > 0;) {
     const auto unit = static_cast<std::size_t>(members[i].unit);
     if (!frozen) speeds_[unit] = speed_of(train, i, 0.0);
+    track[unit] = track_of(train, i);
     if (const Course* course = course_of(train, i)) course_[unit] = static_cast<int>(course - train.courses.data());
   }
   couplers = std::move(assembled.couplers);
@@ -55,6 +57,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       WheelContact c;
       c.vehicle = static_cast<int>(k);
       c.wheel = static_cast<int>(i);
+      c.track = track[k];
       c.body = vehicle.wheels[i].body;
       c.law = vehicle.wheels[i].law;
       c.kinematics.penetration = static_penetration(c);
@@ -66,6 +69,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       c.may_touch_several_points = track::is_sharp(this->profile(c), vehicle.wheels[i].radius);
       if (!c.may_touch_several_points && (mesh_ == nullptr || mesh_->steps().empty())) continue;
       c.wheel = static_cast<int>(i);
+      c.track = track[k];
       c.body = vehicle.wheels[i].body;
       c.law = vehicle.wheels[i].law;
       c.is_further = true;

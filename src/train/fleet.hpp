@@ -91,6 +91,7 @@ struct PairContact : Contact {
 /// An entry for either end has these forces.
 struct WheelContact : Contact {
   int wheel = 0;                 // index of the wheel in its vehicle
+  int track = 0;                 // of beam::Torsion::tracks
   std::array<Patch, 2> patches;  // the surface under the wheel, and beyond a near kink
   int candidates = 1;
   bool turns = false;        // it turns with its body; otherwise its angle is the distance over its radius

@@ -49,7 +49,7 @@ void Fleet::find_patches(WheelContact& c, double x, double from, double to, doub
   }
   const double start = mesh_->start(), end = mesh_->end();
   const auto add_beam = [&](double at, bool from_left) {
-    const int element = mesh_->locate(at, from_left).element;
+    const int element = mesh_->on_track(mesh_->locate(at, from_left), c.track).element;
     const auto reach_of_element = mesh_->smooth_reach(element);
     add_patch(c, element, x, std::max(low, reach_of_element.first), std::min(high, reach_of_element.second));
     return reach_of_element;
@@ -81,7 +81,7 @@ void Fleet::set_end(WheelContact& c, double step, bool left) {
   if (step == (left ? mesh_->start() : mesh_->end()))
     add_ground(c, left, step, step, step);
   else
-    add_patch(c, mesh_->locate(step, left).element, step, step, step);
+    add_patch(c, mesh_->on_track(mesh_->locate(step, left), c.track).element, step, step, step);
 }
 
 std::span<const double> Fleet::height_jumps_near(const WheelContact& c) const {

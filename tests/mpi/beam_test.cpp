@@ -112,7 +112,7 @@ TEST_P(CutBeam, SameRows) {
 TEST_P(CutBeam, SameReactionsAndResponses) {
   const auto v = numbers(0.7, 1e-3, false), w = numbers(1.3, 0.1, false), a = numbers(2.9, 5.0, false),
              P = numbers(0.3, 1e4, true);
-  std::vector<std::array<double, 3>> mine, all;
+  std::vector<beam::Reaction> mine, all;
   cut_.reactions(v.data() + first_, w.data() + first_, a.data() + first_, P.data() + first_, mine);
   whole_.reactions(v.data(), w.data(), a.data(), P.data(), all);
   double largest = 0.0;

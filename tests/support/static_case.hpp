@@ -32,9 +32,9 @@ struct Case {
     recovery::Recovery(beam, {x}, gravity).evaluate(v.data(), zero.data(), zero.data(), loads, out);
     return out[0];
   }
-  std::vector<std::array<double, 3>> reactions() {
+  std::vector<beam::Reaction> reactions() {
     const std::vector<double> zero(v.size(), 0.0);
-    std::vector<std::array<double, 3>> out;
+    std::vector<beam::Reaction> out;
     beam.reactions(v.data(), zero.data(), zero.data(), P.data(), out);
     return out;
   }

@@ -191,7 +191,7 @@ TEST(Reactions, AreTheRowsOfTheFullMatrices) {
     if (b.fixed()[i]) continue;
     v[i] = 1e-3 * between(random), w[i] = 0.1 * between(random), a[i] = 10 * between(random);
   }
-  std::vector<std::array<double, 3>> R;
+  std::vector<beam::Reaction> R;
   b.reactions(v.data(), w.data(), a.data(), P.data(), R);
   ASSERT_EQ(R.size(), 4u);
   const auto M = test::local_rows(full.mass()), C = test::local_rows(full.damping()),

@@ -160,7 +160,7 @@ TEST(Recovery, SectionForcesPassThroughNodes) {
   EXPECT_NEAR(r.back().moment, 0.0, 1e-2);
   EXPECT_NEAR(r.back().shear, 0.0, 1e-2);
   EXPECT_NEAR(r.back().axial_force, 0.0, 1e-2);
-  std::vector<std::array<double, 3>> R;
+  std::vector<beam::Reaction> R;
   s.b->reactions(s.v.data(), s.w.data(), s.a.data(), s.P.data(), R);
   EXPECT_NEAR(R[0][0], -r[0].axial_force, 1e-2);
   EXPECT_NEAR(R[0][1], r[0].shear, 1e-2);

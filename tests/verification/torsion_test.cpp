@@ -36,16 +36,16 @@ std::vector<double> frequencies_where(Results& run, const char* marks) {
 TEST(Torsion, FrequenciesBetweenForks) {
   std::array<double, 2> error{};
   for (const int fine : {0, 1}) {
-    Results run = run_yaml(bridge(fine ? ", elements_per_span: 32" : ", elements_per_span: 16",
+    Results run = run_yaml(bridge(fine ? ", elements_per_span: 16" : ", elements_per_span: 8",
                                   "scene: {analysis: modes}\nmodes: {count: 8}\n"));
     const std::vector<double> found = frequencies_where(run, "/modes/twisting");
     ASSERT_GE(found.size(), 3U);
     for (int n = 1; n <= 3; ++n)
-      EXPECT_NEAR(found[static_cast<std::size_t>(n - 1)] / (omega_of_twist(n) / (2.0 * pi)), 1.0, fine ? 2e-5 : 3e-4)
+      EXPECT_NEAR(found[static_cast<std::size_t>(n - 1)] / (omega_of_twist(n) / (2.0 * pi)), 1.0, fine ? 2e-6 : 6e-5)
           << n;
     error[static_cast<std::size_t>(fine)] = std::abs(found[2] / (omega_of_twist(3) / (2.0 * pi)) - 1.0);
   }
-  EXPECT_NEAR(std::log2(error[0] / error[1]), 4.0, 0.2) << "of fourth order";
+  EXPECT_NEAR(std::log2(error[0] / error[1]), 6.0, 0.3) << "of sixth order";
 }
 
 TEST(Torsion, FrequenciesOfACantileverAndOfThreeSpans) {
@@ -54,7 +54,7 @@ TEST(Torsion, FrequenciesOfACantileverAndOfThreeSpans) {
       "support: {types: [clamped, free]}\nscene: {analysis: modes}\nmodes: {count: 8}\n");
   const std::vector<double> of_jib = frequencies_where(jib, "/modes/twisting");
   for (int n = 1; n <= 2; ++n)
-    EXPECT_NEAR(of_jib[static_cast<std::size_t>(n - 1)], (2.0 * n - 1.0) / (4.0 * L) * std::sqrt(GJ / inertia), 1e-4)
+    EXPECT_NEAR(of_jib[static_cast<std::size_t>(n - 1)], (2.0 * n - 1.0) / (4.0 * L) * std::sqrt(GJ / inertia), 1e-6)
         << n;
   // Inner forks hold the twist, single bearings do not.
   for (const bool forks : {true, false}) {
@@ -64,15 +64,15 @@ TEST(Torsion, FrequenciesOfACantileverAndOfThreeSpans) {
         "support: {types: [pinned, roller, roller, roller], torsion: [held, " +
         std::string(forks ? "held, held" : "free, free") + ", held]}\nscene: {analysis: modes}\nmodes: {count: 10}\n");
     EXPECT_NEAR(frequencies_where(run, "/modes/twisting").front(),
-                1.0 / (2.0 * (forks ? 14.0 : 34.0)) * std::sqrt(GJ / inertia), 3e-4);
+                1.0 / (2.0 * (forks ? 14.0 : 34.0)) * std::sqrt(GJ / inertia), 1e-6);
   }
 }
 
 TEST(Torsion, TheDampingIsThatOfBending) {
   const std::string rest = "scene: {analysis: modes}\nmodes: {count: 8}\n";
-  Results with = run_yaml(bridge(", damping_ratios: 0.02", rest)),
+  Results with = run_yaml(bridge(", damping_ratios: 0.02, elements_per_span: 16", rest)),
           without = run_yaml(
-              "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, damping_ratios: 0.02}\n"
+              "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, damping_ratios: 0.02, elements_per_span: 16}\n"
               "support: {types: [pinned, roller]}\n" +
               rest);
   for (const char* name : {"rayleigh_a", "rayleigh_b"})
@@ -97,17 +97,50 @@ TEST(Torsion, CoupledFrequencies) {
   std::vector<double> found;
   for (std::size_t i = 0; i < run("/modes/frequency").size(); ++i)
     if (run("/modes/axial")[i] == 0.0) found.push_back(run("/modes/frequency")[i]);
-  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(found[i] / exact[i], 1.0, 3e-5) << i;
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(found[i] / exact[i], 1.0, 1e-5) << i;
 }
 
-/// At rest on the track, at a node and within an element: modes with static correction.
-TEST(Torsion, AForceBesideTheAxis) {
-  for (const double x : {12.0, 11.3}) {
+// With stiffness against warping and free warping at the forks: I w^2 = k^2 (GJ + EC k^2), k = n pi/L.
+TEST(Torsion, FrequenciesWithWarping) {
+  constexpr double EC = 3.0e11;
+  std::array<double, 2> error{};
+  for (const int fine : {0, 1}) {
+    Results run = run_yaml(bridge(std::string(", ECw: 3.0e11, elements_per_span: ") + (fine ? "16" : "8"),
+                                  "scene: {analysis: modes}\nmodes: {count: 8}\n"));
+    const std::vector<double> found = frequencies_where(run, "/modes/twisting");
+    for (int n = 1; n <= 2; ++n) {
+      const double k = n * pi / L, exact = k * std::sqrt((GJ + EC * k * k) / inertia) / (2.0 * pi);
+      error[static_cast<std::size_t>(fine)] = std::abs(found[static_cast<std::size_t>(n - 1)] / exact - 1.0);
+      EXPECT_LT(error[static_cast<std::size_t>(fine)], fine ? 2e-5 : 3e-4) << n;
+    }
+  }
+  EXPECT_NEAR(std::log2(error[0] / error[1]), 4.0, 0.2) << "of fourth order";
+}
+
+// A cantilever of Vlasov's theory, whose wall prevents warping, under a torque at its end: with b = (GJ/EC)^(1/2) the
+// twist of the end is T/GJ (L - tanh(b L)/b). Without stiffness against warping it is T L/GJ.
+TEST(Torsion, ACantileverThatWarps) {
+  for (const bool warping : {true, false}) {
     Results run =
-        run_yaml(bridge(", elements_per_span: 12",
-                        "model: {modes: 6, damping_ratios: 0.02}\ntrack: {eccentricity: 2.25}\n"
-                        "load: {forces: 2.0e5, speed: 0}\nts_max_time: 60\noutput: {probes: [6, 12, 11.3]}\n"),
-                 {{"load_positions", text(x)}, {"output_interval", "60"}});
+        run_yaml("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4, elements_per_span: 24" +
+                 std::string(warping ? ", ECw: 3.0e11" : "") +
+                 "}\nsupport: {types: [clamped, free]}\ntrack: {eccentricity: 2.25}\n"
+                 "load: {forces: 2.0e5, positions: 24, speed: 0}\nts_max_time: 1\noutput: {probes: [12, 24]}\n");
+    const double b = std::sqrt(GJ / 3.0e11), T = -F * e;
+    const double exact = T / GJ * (warping ? L - std::tanh(b * L) / b : L);
+    EXPECT_NEAR(run.column("/probes/twist", 1).front(), exact, 2e-6 * std::abs(exact)) << warping;
+    EXPECT_NEAR(run.column("/probes/torsional_moment", 0).front(), T, 1e-8 * std::abs(T)) << warping;
+    EXPECT_NEAR(run("/supports/torque").front(), -T, 1e-8 * std::abs(T)) << warping;
+  }
+}
+
+/// At rest on the track, at a node and within an element: modes with static correction, and elements.
+TEST(Torsion, AForceBesideTheAxis) {
+  for (const auto& [x, modes] : {std::pair(12.0, "6"), {11.3, "6"}, {12.0, "0"}, {11.3, "0"}}) {
+    Results run = run_yaml(bridge(", elements_per_span: 12",
+                                  "track: {eccentricity: 2.25}\nsupport_bearing_spacing: 3\n"
+                                  "load: {forces: 2.0e5, speed: 0}\nts_max_time: 1\noutput: {probes: [6, 12, 11.3]}\n"),
+                           {{"load_positions", text(x)}, {"output_interval", "1"}, {"model_modes", modes}});
     const auto last = [&](const char* name, std::size_t i) { return run.column(name, i).back(); };
     const double twist = -F * e * (L - x) * 6.0 / (GJ * L), under = -F * e * (L - x) * x / (GJ * L);
     EXPECT_NEAR(last("/probes/twist", 0), twist, 1e-6 * std::abs(twist)) << x;
@@ -117,6 +150,11 @@ TEST(Torsion, AForceBesideTheAxis) {
     EXPECT_NEAR(last("/probes/deflection", here), bent + e * under, 1e-6 * std::abs(bent)) << x;
     EXPECT_NEAR(last("/probes/torsional_moment", 0), -F * e * (L - x) / L, 1e-6 * F * e) << x;
     EXPECT_NEAR(last("/probes/moment", here), F * x * (L - x) / L, 1e-6 * F * L) << x;
+    // The left support carries the part (L - x)/L of force and torque.
+    const double part = (L - x) / L;
+    EXPECT_NEAR(last("/supports/torque", 0), F * e * part, 1e-6 * F * e) << x;
+    EXPECT_NEAR(last("/supports/left_bearing", 0), F * part * (0.5 + e / 3.0), 1e-6 * F) << x;
+    EXPECT_NEAR(last("/supports/right_bearing", 0), F * part * (0.5 - e / 3.0), 1e-6 * F) << x;
   }
 }
 
@@ -188,10 +226,10 @@ TEST(Torsion, AMovingForceBesideTheAxis) {
   record("acceleration", fine[1]);
   record("twist", fine[2]);
   EXPECT_LT(fine[0], 3e-4);
-  EXPECT_LT(fine[1], 2e-2);
+  EXPECT_LT(fine[1], 3e-3);
   EXPECT_LT(fine[2], 1e-3);
   EXPECT_LT(coarse[0], 1e-3);
-  EXPECT_LT(coarse[1], 0.4);
+  EXPECT_LT(coarse[1], 8e-2);
 }
 
 /// Vehicles on the track, linear and as mechanisms, on two meshes.
@@ -218,14 +256,13 @@ TEST(Torsion, AVehicleBesideTheAxis) {
 
 TEST(Torsion, Refusals) {
   const auto refused = [](const std::string& yaml) { return message_of([&] { run_yaml(yaml); }); };
-  EXPECT_EQ(refused(bridge("", "track: {eccentricity: 1}\nload: {forces: 1, speed: 1}\n")).find("model_modes"), 0U);
   EXPECT_EQ(refused("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10}\n").find("beam_GJ"), 0U);
   EXPECT_NE(refused(bridge("", "track: {eccentricity: 1}\nscene: {analysis: envelope}\nload: {forces: 1, speed: 1}\n"))
                 .find("static effects and screens have no torsion"),
             std::string::npos);
   EXPECT_NE(refused("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4}\n"
                     "support: {torsion: free}\nload: {forces: 1, speed: 1}\n")
-                .find("nothing holds the twist"),
+                .find("can twist"),
             std::string::npos);
 }
 

@@ -98,6 +98,7 @@ struct PointFoundation {
   bool from_left = false;  // between two separate spans or at a hinge: it holds the left side
   FoundationLaw law = {};
   double depth = 0.0;            // depth of a longitudinal point below the beam's axis, m; only at span ends
+  double eccentricity = 0.0;     // of a vertical point to the left of the shear centre, m; only if the beam twists
   std::string_view option = {};  // that defines k; empty: foundation_KIND_k
 };
 

@@ -89,13 +89,18 @@ struct Temperature {
 
 /// Torsion of the beam: the twist of its sections about the line of their shear centres, to which the deflection v of
 /// the beam belongs. It is positive if the left side, seen along x, goes up: a point at the distance e to the left of
-/// the shear centre has the deflection v + e*twist.
+/// the shear centre has the deflection v + e*twist. With the twist p, the inertia I about the shear centre and an
+/// external moment t per length:  I p'' (in time) - (GJ p')' + (EC p'')'' = t.
 struct Torsion {
-  Distribution GJ;           // N m2, > 0: stiffness of St. Venant
-  Distribution inertia;      // kg m, > 0: moment of inertia of the mass per length about its centre
-  double mass_centre = 0.0;  // m, to the left of the shear centre
-  std::vector<char> held;    // at each span end: non-zero if the support holds the twist
-  double track = 0.0;        // m, of the track to the left of the shear centre
+  Distribution GJ;                      // N m2, > 0: stiffness of St. Venant
+  std::optional<Distribution> warping;  // N m4, > 0: stiffness EC against warping (Vlasov); empty: none
+  Distribution inertia;                 // kg m, > 0: moment of inertia of the mass per length about its centre
+  double shear_centre = 0.0;            // m, to the left of the axis from which the user measures; for results
+  double mass_centre = 0.0;             // m, to the left of the shear centre
+  std::vector<char> held;               // at each span end: non-zero if the support holds the twist
+  std::vector<double>
+      bearing_spacing;                 // m, between the two bearings of each support that holds the twist; 0: not known
+  std::vector<double> tracks = {0.0};  // m, to the left of the shear centre: tracks that carry wheels or forces
 };
 
 struct BeamModel {
@@ -198,6 +203,7 @@ struct RigidMotion {
   bool axial = false;
   std::vector<double> x;           // stations of the part's ends and hinges
   std::vector<double> deflection;  // deflection at the stations; for an axial motion the displacement along x
+  double twist = 0.0;              // rad, if the deflections are in m
 
   /// Deflection and slope at a station of the part; at a hinge the slope on its right, or on its left.
   double value(double station) const;

@@ -69,20 +69,21 @@ struct Damping {
 
 /// The stored and reported results of a run.
 struct Output {
-  std::string file;                 // HDF5 file; empty: none
-  std::optional<double> interval;   // s; none: selected with the step
-  std::vector<double> probes;       // stations, m; default: midspan of the first 200 spans
-  std::optional<double> low_pass;   // Hz, cut-off of deck accelerations; 0: no filter; none: by EN 1990
-  bool series = true;               // false: peaks only, and trains beside the bridge are not computed
-  bool low_pass_requested = false;  // false: deck accelerations are filtered only for limits
-  bool low_passed_series = false;   // filtered accelerations are stored over time
-  double wheel_low_pass = 20.0;     // Hz, cut-off of wheel forces
-  bool wheels_filtered = false;     // true: wheel forces are filtered by request; false: only for limits
-  double unloading_level = 0.6;     // lost fraction of its force from which on a wheel counts as unloaded
-  std::vector<double> passages;     // m: places at which the force of each passing wheel is stored
-  std::vector<double> sleepers;     // m: stations of the sleepers whose forces are stored
-  std::vector<double> rail;         // m: further stations of the rail, also beyond the bridge
-  bool contact_points = false;      // the motion of the running surface under each wheel is stored
+  std::string file;                // HDF5 file; empty: none
+  std::optional<double> interval;  // s; none: selected with the step
+  std::vector<double> probes;      // stations, m; default: midspan of the first 200 spans; once for each named track
+  std::vector<double> eccentricities;  // m, of each probe to the left of the shear centre; empty: of the only track
+  std::optional<double> low_pass;      // Hz, cut-off of deck accelerations; 0: no filter; none: by EN 1990
+  bool series = true;                  // false: peaks only, and trains beside the bridge are not computed
+  bool low_pass_requested = false;     // false: deck accelerations are filtered only for limits
+  bool low_passed_series = false;      // filtered accelerations are stored over time
+  double wheel_low_pass = 20.0;        // Hz, cut-off of wheel forces
+  bool wheels_filtered = false;        // true: wheel forces are filtered by request; false: only for limits
+  double unloading_level = 0.6;        // lost fraction of its force from which on a wheel counts as unloaded
+  std::vector<double> passages;        // m: places at which the force of each passing wheel is stored
+  std::vector<double> sleepers;        // m: stations of the sleepers whose forces are stored
+  std::vector<double> rail;            // m: further stations of the rail, also beyond the bridge
+  bool contact_points = false;         // the motion of the running surface under each wheel is stored
   /// m: distance of the stations at which the running surface's height is stored; 0: none; empty: selected.
   std::optional<double> profile = 0.0;
 };
@@ -117,6 +118,12 @@ struct Sweep {
   std::vector<std::uint64_t> seeds;  // seeds of the study's random tracks; empty: only the seed of the scene
 };
 
+/// A track beside the axis of a beam that twists.
+struct Track {
+  std::string name;
+  double eccentricity = 0.0;  // m, to the left of the shear centre
+};
+
 /// All data of one problem.
 struct Scene {
   std::string name;                     // from the options file, for messages and default file names
@@ -128,6 +135,7 @@ struct Scene {
   std::vector<Vehicle> vehicles;  // types of vehicles in the trains
   Train train;
   MovingLoad load;
+  std::vector<Track> tracks;  // those with names; empty: one track at track_eccentricity
   track::Profile profile;
   std::optional<Roughness> roughness;  // roughness whose sample is the profile
   double gravity = 9.81;

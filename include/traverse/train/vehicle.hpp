@@ -85,6 +85,7 @@ struct Course {
   Drive drive = Drive::constant;
   std::shared_ptr<const track::Profile> profile;  // profile under its wheels; null: the profile of the track
   ForceVariation variation;                       // variation of each force of the group
+  int track = 0;                                  // of beam::Torsion::tracks
 };
 
 /// The trains on the track. Without courses: one train that runs to the right at a constant speed.
@@ -95,6 +96,7 @@ struct Train {
   Drive drive = Drive::constant;  // with courses: free if one of them is free
   std::vector<Coupler> couplers;  // with gaps in the order of all vehicles
   std::vector<Course> courses;    // ascending in `first`
+  int track = 0;                  // of beam::Torsion::tracks; unused with courses
 
   /// Whether vehicles run and the speed of all of them is prescribed.
   bool driven() const { return drive == Drive::constant && speed > 0.0; }
@@ -108,6 +110,7 @@ struct MovingLoad {
   std::vector<Course> courses = {};  // same meaning as in Train
   std::vector<double> lengths = {};  // length over which the force is spread uniformly, m; 0: concentrated
   std::vector<double> moments = {};  // N m, counter-clockwise, concentrated
+  int track = 0;                     // same meaning as in Train
 };
 
 /// The course of vehicle or force `i`; null without courses.
@@ -116,6 +119,13 @@ const Course* course_of(const Moving& moving, std::size_t i) {
   const auto next = std::upper_bound(moving.courses.begin(), moving.courses.end(), i,
                                      [](std::size_t at, const Course& course) { return at < course.first; });
   return next == moving.courses.begin() ? nullptr : &*std::prev(next);
+}
+
+/// The track of vehicle or force `i`, of beam::Torsion::tracks.
+template <class Moving>
+int track_of(const Moving& moving, std::size_t i) {
+  const Course* course = course_of(moving, i);
+  return course == nullptr ? moving.track : course->track;
 }
 
 /// The speed law of vehicle or force `i` of a train or load.

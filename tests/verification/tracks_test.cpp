@@ -1,0 +1,147 @@
+// Several tracks on a bridge that twists: superposition of trains and forces on two of them, by elements and by modes,
+// the probes of each, and bearings beside the axis with equilibrium and uplift.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/curve.hpp"
+#include "support/folders.hpp"
+#include "support/message.hpp"
+
+namespace traverse::test {
+namespace {
+
+constexpr double L = 24.0, e = 2.25;
+
+/// A bridge on forks with two tracks.
+std::string bridge(const std::string& rest, const std::string& more = "") {
+  return "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4, damping_ratios: 0.02" + more +
+         "}\nsupport: {types: [pinned, roller]}\n"
+         "tracks: {left: {eccentricity: 2.25}, right: {eccentricity: -2.25}}\n"
+         "output: {probes: [6, 12], interval: 2e-3}\nts: {max_time: 0.6, dt: 5e-4}\n" +
+         rest;
+}
+
+const std::string up = "up: {forces: [2.0e5, 1.5e5], positions: [0, -3], speed: 50, track: left}\n",
+                  down = "down: {forces: 1.8e5, speed: -40, track: right}\n";
+
+// By modes, the forces in one direction alone are exact in time; then the difference is the error of the steps.
+TEST(Tracks, ForcesOnTwoTracksAddUp) {
+  for (const auto& [modes, bound] : {std::pair("0", 1e-9), {"24", 2e-4}}) {
+    const Values model = {{"model_modes", modes}};
+    Results both = run_yaml(bridge("loads: [up, down]\n" + up + down), model),
+            first = run_yaml(bridge("loads: up\n" + up), model),
+            second = run_yaml(bridge("loads: down\n" + down), model);
+    for (const char* name : {"/probes/deflection", "/probes/acceleration", "/probes/twist", "/probes/torsional_moment",
+                             "/probes/moment", "/supports/torque"}) {
+      std::vector<double> sum = first(name);
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += second(name)[i];
+      EXPECT_LT(relative_difference(both(name), sum), bound) << name << ", modes " << modes;
+    }
+    EXPECT_LT(energy_error(both), 1e-4) << modes;
+  }
+}
+
+// The probes of both tracks: half of the sum of their deflections is that of the axis, half of the difference e times
+// the twist.
+TEST(Tracks, EachTrackHasItsProbes) {
+  Results run = run_yaml(bridge("loads: up\n" + up));
+  EXPECT_EQ(run("/probes/x"), (std::vector<double>{6, 12, 6, 12}));
+  EXPECT_EQ(run("/probes/eccentricity"), (std::vector<double>{e, e, -e, -e}));
+  for (std::size_t p = 0; p < 2; ++p) {
+    std::vector<double> difference = run.column("/probes/deflection", p), twist = run.column("/probes/twist", p);
+    const std::vector<double> right = run.column("/probes/deflection", p + 2);
+    for (std::size_t i = 0; i < difference.size(); ++i) {
+      difference[i] -= right[i];
+      twist[i] *= 2.0 * e;
+    }
+    EXPECT_LT(relative_difference(difference, twist), 1e-9) << p;
+  }
+}
+
+// A scene with names, a scene without, and the other direction on the mirrored track agree.
+TEST(Tracks, OneTrackWithAName) {
+  const std::string start = "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4}\n",
+                    rest =
+                        "support: {types: [pinned, roller]}\noutput: {probes: 12, interval: 2e-3}\n"
+                        "load: {forces: 2.0e5, speed: 50}\nmodel: {modes: 12}\n";
+  Results named = run_yaml(start + "tracks: {left: {eccentricity: 2.25}}\n" + rest),
+          plain = run_yaml(start + "track: {eccentricity: 2.25}\n" + rest);
+  for (const char* name : {"/probes/deflection", "/probes/acceleration", "/probes/twist"})
+    EXPECT_EQ(named(name), plain(name)) << name;
+}
+
+/// Vehicles on two tracks in both directions, by elements and by modes.
+TEST(Tracks, TrainsOnTwoTracks) {
+  const std::string rest = "vehicle:\n  coach:\n    file: " + source_folder() +
+                           "/options/vehicles/manchester.yml\n"
+                           "trains: {up: {vehicles: coach, speed: 60, track: left}, "
+                           "down: {vehicles: coach, speed: -50, track: right}}\n",
+                    more = ", elements_per_span: 48";
+  const Values wide = {{"ts_max_time", "0.9"}};
+  Results elements = run_yaml(bridge(rest, more), wide);
+  Values by_modes = wide, full = wide;
+  by_modes.emplace_back("model_modes", "40");
+  full.emplace_back("model_vehicles", "full");
+  Results modes = run_yaml(bridge(rest, more), by_modes), mechanisms = run_yaml(bridge(rest, more), full);
+  for (const char* name : {"/probes/deflection", "/probes/twist"}) {
+    EXPECT_LT(relative_difference(modes(name), elements(name)), 3e-3) << name;
+    EXPECT_LT(relative_difference(mechanisms(name), elements(name)), 1e-4) << name;
+  }
+  EXPECT_LT(energy_error(elements), 1e-4);
+}
+
+/// The last value of each bearing under a force that stands.
+std::vector<double> bearings(const std::string& one_sided, double eccentricity, double skew) {
+  Results run = run_yaml(
+      "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4, self_weight: true}\n"
+      "support: {types: [free, free]}\n"
+      "foundation: {vertical: {k: 2.0e9, eccentricity: [-2, 2, -2, 2], one_sided: " +
+          one_sided +
+          "}}\n"
+          "load: {forces: 1.2e6, positions: 10, speed: 0}\nts: {max_time: 0.01}\noutput: {probes: 12}\n",
+      {{"track_eccentricity", text(eccentricity)},
+       {"foundation_vertical_x", text(0.0) + "," + text(skew) + "," + text(L - skew) + "," + text(L)}});
+  const std::vector<double> all = run("/foundation/vertical/force");
+  return {all.end() - 4, all.end()};
+}
+
+// Bearings of a skew bridge are at different x on both sides. Their forces balance weight and load about both axes.
+TEST(Tracks, BearingsOfASkewBridge) {
+  constexpr double F = 1.2e6, weight = 9.0e3 * 9.81 * L, x = 10.0, skew = 1.5;
+  for (const char* one_sided : {"false", "true"})
+    for (const double from_axis : {1.0, 5.0}) {
+      const std::vector<double> R = bearings(one_sided, from_axis, skew), at = {0.0, skew, L - skew, L},
+                                side = {-2.0, 2.0, -2.0, 2.0};
+      double force = 0.0, moment = 0.0, torque = 0.0;
+      for (std::size_t i = 0; i < 4; ++i) {
+        force += R[i];
+        moment += R[i] * at[i];
+        torque += R[i] * side[i];
+      }
+      EXPECT_NEAR(force, F + weight, 1e-6 * F);
+      EXPECT_NEAR(moment, F * x + weight * 0.5 * L, 1e-6 * F * L);
+      EXPECT_NEAR(torque, F * from_axis, 1e-6 * F * from_axis);
+      const double least = *std::min_element(R.begin(), R.end());
+      if (from_axis == 1.0) EXPECT_GT(least, 1e5);
+      if (from_axis == 5.0 && one_sided == std::string("false")) EXPECT_LT(least, -1e5);
+      if (one_sided == std::string("true")) EXPECT_GE(least, -1e-6 * F);
+    }
+}
+
+TEST(Tracks, Refusals) {
+  const auto refused = [](const std::string& yaml) { return message_of([&] { run_yaml(yaml); }); };
+  EXPECT_EQ(refused(bridge("load: {forces: 1, speed: 1}\n")).find("load_track (missing"), std::string::npos);
+  EXPECT_NE(refused(bridge("load: {forces: 1, speed: 1}\n")).find("allowed: left, right"), std::string::npos);
+  EXPECT_NE(refused(bridge("load: {forces: 1, speed: 1, track: middle}\n")).find("there is no such track"),
+            std::string::npos);
+  EXPECT_EQ(refused("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3}\nload: {forces: 1, speed: 1, track: left}\n")
+                .find("load_track"),
+            0U);
+  EXPECT_EQ(refused("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3}\ntracks: {left: {eccentricity: 1}}\n").find("tracks"),
+            0U);
+}
+
+}  // namespace
+}  // namespace traverse::test
