@@ -240,12 +240,18 @@ double dead_load_effect(const norm::InfluenceLine& line, const beam::BeamModel& 
   return sum;
 }
 
+/// The influence line of the deflection of the first track, for loads on it.
+norm::InfluenceLine deflection_line(norm::StaticBridge& bridge, double x) {
+  const std::optional<beam::Torsion>& torsion = bridge.model().torsion;
+  return bridge.lines_at(x, torsion ? torsion->tracks.front() : 0.0).front().front();
+}
+
 void compute_deflection(norm::StaticBridge& bridge, const std::vector<norm::LoadModel>& trains,
                         StaticResponse& response) {
   double start = bridge.model().start;
   for (const double span : bridge.model().spans) {
     const double middle = start + 0.5 * span;
-    const double deflection = greatest_of(bridge.lines_at(middle)[0].times(-1.0), trains);
+    const double deflection = greatest_of(deflection_line(bridge, middle).times(-1.0), trains);
     if (deflection * response.span > response.deflection * span || response.span == 0.0) {
       response.deflection = deflection;
       response.at = middle;
@@ -257,7 +263,7 @@ void compute_deflection(norm::StaticBridge& bridge, const std::vector<norm::Load
 
 /// The largest magnitude of the static displacement on one side of a surface jump under the trains.
 double largest_displacement(norm::StaticBridge& bridge, double x, const std::vector<norm::LoadModel>& trains) {
-  const norm::InfluenceLine line = bridge.lines_at(x)[0];
+  const norm::InfluenceLine line = deflection_line(bridge, x);
   return std::max(greatest_of(line, trains), greatest_of(line.times(-1.0), trains));
 }
 
@@ -277,7 +283,7 @@ void compute_steps(norm::StaticBridge& bridge, const beam::BeamModel& beam, cons
 void compute_reactions(norm::StaticBridge& bridge, double gravity, const std::vector<norm::LoadModel>& trains,
                        StaticResponse& response) {
   for (const norm::StaticBridge::Bearing& bearing : bridge.bearings()) {
-    const norm::InfluenceLine line = bridge.reaction(bearing);
+    const norm::InfluenceLine line = bridge.reaction(bearing).front();
     response.supports.push_back({bearing.x, bearing.span_end < 0, dead_load_effect(line, bridge.model(), gravity),
                                  -greatest_of(line.times(-1.0), trains), greatest_of(line, trains)});
   }

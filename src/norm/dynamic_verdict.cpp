@@ -19,7 +19,9 @@ constexpr double min_static_share = 0.25;  // relative to the greatest static ef
 NormCheck::NormCheck(const beam::BeamModel& model, const options::NormRules& rules, std::vector<LoadModel> trains,
                      const std::vector<double>& probes)
     : rules_(rules), lengths_(determinant_lengths(model)), trains_(trains.size()), models_(rules.load_models) {
-  StaticBridge bridge(model);
+  beam::BeamModel with_tracks = model;
+  if (rules.second_track) with_tracks.torsion->tracks.push_back(*rules.second_track);
+  StaticBridge bridge(with_tracks);
   n0_ = bridge.first_frequency();
   const bool continuous = lengths_ != model.spans;
   const auto selected = [&](const char* name) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <numeric>
 
@@ -31,7 +32,8 @@ beam::BeamModel model_for_statics(const beam::BeamModel& given) {
   const beam::Foundation& f = model.foundation;
   const bool uniform = model.EI.uniform() && (!model.GA || model.GA->uniform()) && model.cracks.empty() &&
                        f.vertical.empty() && f.rotational.empty() && !f.vertical_bed && !f.rotational_bed &&
-                       model.hinges.empty();
+                       model.hinges.empty() &&
+                       (!model.torsion || (model.torsion->GJ.uniform() && !model.torsion->warping));
   double decay = 0.0;
   beam::for_beds(f, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
     decay = std::max(decay, beam::bending_decay_rate(kind.direction, bed.k.maximum(), model.EI.minimum()));
@@ -89,7 +91,8 @@ StaticBridge::StaticBridge(const beam::BeamModel& model)
   const std::vector<double>& ends = beam_.mesh().span_ends();
   for (std::size_t i = 0; i < ends.size(); ++i)
     if (beam::fixes_vertical(beam_.model().supports[i])) bearings_.push_back({ends[i], static_cast<int>(i), 0.0});
-  for (const beam::PointFoundation& p : beam_.model().foundation.vertical) bearings_.push_back({p.x, -1, p.k});
+  for (const beam::PointFoundation& p : beam_.model().foundation.vertical)
+    bearings_.push_back({p.x, -1, p.k, p.eccentricity});
   std::stable_sort(bearings_.begin(), bearings_.end(), [](const Bearing& a, const Bearing& b) { return a.x < b.x; });
 }
 
@@ -98,9 +101,10 @@ double StaticBridge::first_frequency() const {
 }
 
 /// The line with these nodal values, plus the direct effect of a force on the element of the recovery's station.
-InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const recovery::Recovery* recovery,
+InfluenceLine StaticBridge::line_of(const std::vector<double>& nodal, int track, const recovery::Recovery* recovery,
                                     double recovery::Response::*direct) {
-  const beam::Mesh& mesh = beam_.mesh();
+  const beam::Line& bridge = beam_.bridge();
+  const beam::Mesh& mesh = bridge.mesh;
   const std::size_t count = static_cast<std::size_t>(mesh.elements());
   const double section = recovery != nullptr ? recovery->stations().front() : 0.0;
   const int loaded_element = recovery != nullptr ? mesh.locate(section).element : -1;
@@ -110,16 +114,20 @@ InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const recovery::R
   pieces.reserve(count + 1);
   for (int e = 0; e < mesh.elements(); ++e) {
     const beam::Element& element = mesh.element(e);
-    const auto unknowns = beam_.bridge().transverse(e);
+    const int number = mesh.on_track({e, 0.0}, track).element;
     std::array<double, 4> ends{};
-    for (std::size_t k = 0; k < 4; ++k) ends[k] = nodal[static_cast<std::size_t>(unknowns[k])];
+    bridge.for_unknowns(number, [&](int k, int unknown, double factor) {
+      ends[static_cast<std::size_t>(k)] += factor * nodal[static_cast<std::size_t>(unknown)];
+    });
     const beam::Cubic cubic = beam::hermite_cubic(ends, element.length, element.shear);
     double start = 0.0;
     const auto add_piece = [&](double end) {
       beam::Cubic piece = beam::shifted(cubic, start);
       if (e == loaded_element) {
         const beam::Cubic more = beam::cubic_through(end - start, [&](double x) {
-          return recovery->inside_response(0, {e, (start + x) / element.length, 0.0, -1.0, 0.0}).*direct;
+          recovery::ElementLoad unit{e, (start + x) / element.length, 0.0, -1.0};
+          unit.torque = -bridge.eccentricity(number);
+          return recovery->inside_response(0, unit).*direct;
         });
         for (std::size_t k = 0; k < 4; ++k) piece[k] += more[k];
       }
@@ -134,56 +142,70 @@ InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const recovery::R
   return {std::move(breaks), std::move(pieces)};
 }
 
-std::array<InfluenceLine, 3> StaticBridge::lines_at(double x) {
-  recovery::Recovery recovery(beam_, {x}, 0.0);
-  const auto unknowns = beam_.bridge().transverse(beam_.mesh().locate(x).element);
+std::vector<std::array<InfluenceLine, 3>> StaticBridge::lines_at(double x, double eccentricity) {
+  recovery::Recovery recovery(beam_, {x}, 0.0, {eccentricity});
+  const int element = beam_.mesh().locate(x).element;
+  const auto transverse = beam_.bridge().transverse(element);
+  std::vector<int> unknowns(transverse.begin(), transverse.end());
+  if (beam_.model().torsion) std::ranges::copy(beam_.bridge().twists(element), std::back_inserter(unknowns));
   const std::vector<double> zero(static_cast<std::size_t>(beam_.local_unknowns()), 0.0);
   std::vector<double> unit = zero;
-  std::array<recovery::Response, 4> forms;
-  std::vector<recovery::Response> responses;
-  for (std::size_t k = 0; k < 4; ++k) {
-    unit[static_cast<std::size_t>(unknowns[k])] = 1.0;
+  std::vector<recovery::Response> forms, responses;
+  for (const int unknown : unknowns) {
+    unit[static_cast<std::size_t>(unknown)] = 1.0;
     recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, responses);
-    unit[static_cast<std::size_t>(unknowns[k])] = 0.0;
-    forms[k] = responses.front();
+    unit[static_cast<std::size_t>(unknown)] = 0.0;
+    forms.push_back(responses.front());
   }
-  std::array<InfluenceLine, 3> lines;
+  std::vector<std::array<InfluenceLine, 3>> lines(static_cast<std::size_t>(tracks()));
   constexpr double recovery::Response::*quantities[] = {&recovery::Response::deflection, &recovery::Response::moment,
                                                         &recovery::Response::shear};
-  for (std::size_t q = 0; q < lines.size(); ++q) {
+  for (std::size_t q = 0; q < std::size(quantities); ++q) {
     std::vector<double> nodal = zero;
-    for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t k = 0; k < unknowns.size(); ++k) {
       const auto unknown = static_cast<std::size_t>(unknowns[k]);
       if (beam_.fixed()[unknown] == 0) nodal[unknown] = -(forms[k].*quantities[q]);
     }
     statics_.solve_static(nodal.data());
-    lines[q] = line_of(std::move(nodal), &recovery, quantities[q]);
+    for (int track = 0; track < tracks(); ++track)
+      lines[static_cast<std::size_t>(track)][q] = line_of(nodal, track, &recovery, quantities[q]);
   }
   return lines;
 }
 
+std::vector<InfluenceLine> StaticBridge::lines_of(const std::vector<double>& nodal) {
+  std::vector<InfluenceLine> lines;
+  for (int track = 0; track < tracks(); ++track) lines.push_back(line_of(nodal, track, nullptr, nullptr));
+  return lines;
+}
+
 // The deflection of the bridge under a unit displacement of the support (Mueller-Breslau).
-InfluenceLine StaticBridge::reaction(const Bearing& bearing) {
-  if (bearing.span_end < 0) return lines_at(bearing.x)[0].times(-bearing.stiffness);
+std::vector<InfluenceLine> StaticBridge::reaction(const Bearing& bearing) {
+  if (bearing.span_end < 0) {
+    std::vector<InfluenceLine> lines;
+    for (const auto& line : lines_at(bearing.x, bearing.eccentricity))
+      lines.push_back(line[0].times(-bearing.stiffness));
+    return lines;
+  }
   std::vector<double> nodal(static_cast<std::size_t>(beam_.local_unknowns()), 0.0);
   beam_.add_reaction_form(bearing.span_end, deflection, -1.0, nodal.data());
   statics_.solve_static(nodal.data());
   const auto [left, right] = beam_.mesh().nodes_at(bearing.span_end);
   for (int node = left; node <= right; ++node)
     nodal[static_cast<std::size_t>(beam_.bridge().unknown(node, deflection))] = 1.0;
-  return line_of(std::move(nodal), nullptr, nullptr);
+  return lines_of(nodal);
 }
 
 /// The influence line of a sum of rotations: unknowns and factors.
-InfluenceLine StaticBridge::rotation_of(const std::vector<std::pair<int, double>>& form) {
+std::vector<InfluenceLine> StaticBridge::rotation_of(const std::vector<std::pair<int, double>>& form) {
   std::vector<double> nodal(static_cast<std::size_t>(beam_.local_unknowns()), 0.0);
   for (const auto& [unknown, factor] : form)
     if (beam_.fixed()[static_cast<std::size_t>(unknown)] == 0) nodal[static_cast<std::size_t>(unknown)] = -factor;
   statics_.solve_static(nodal.data());
-  return line_of(std::move(nodal), nullptr, nullptr);
+  return lines_of(nodal);
 }
 
-InfluenceLine StaticBridge::end_rotation(bool right) {
+std::vector<InfluenceLine> StaticBridge::end_rotation(bool right) {
   return rotation_of({{beam_.bridge().unknown(right ? beam_.mesh().nodes() - 1 : 0, rotation), 1.0}});
 }
 
@@ -195,7 +217,7 @@ std::vector<int> StaticBridge::joints() const {
   return joint_ends;
 }
 
-InfluenceLine StaticBridge::joint_rotation(int span_end) {
+std::vector<InfluenceLine> StaticBridge::joint_rotation(int span_end) {
   const auto [left, right] = beam_.mesh().nodes_at(span_end);
   return rotation_of({{beam_.bridge().unknown(left, rotation), -1.0},
                       {beam_.bridge().unknown(right, left == right ? rotation_right : rotation), 1.0}});
@@ -222,20 +244,29 @@ StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads,
         .push_back(place_of(model, std::accumulate(model.spans.begin(), model.spans.begin() + i, 0.0)));
   for (std::size_t e = 0; e < effect_count; ++e) result.values[e].resize(result.loads.size() * result.places[e].size());
 
-  const auto store = [&](Effect effect, std::size_t place, const InfluenceLine& line) {
+  // Load models are on all tracks, a train of the user on the first one.
+  const auto store = [&](Effect effect, std::size_t place, const std::vector<InfluenceLine>& lines) {
     const auto e = static_cast<std::size_t>(effect);
-    const InfluenceLine mirrored = line.times(-1.0);
     for (std::size_t load = 0; load < result.loads.size(); ++load) {
       Extremes& extremes = result.values[e][load * result.places[e].size() + place];
-      extremes = {greatest(mirrored, result.loads[load]), greatest(line, result.loads[load])};
-      extremes.least.value = -extremes.least.value;
+      const std::size_t tracks = result.loads[load].clause.empty() ? 1 : lines.size();
+      for (std::size_t track = 0; track < tracks; ++track) {
+        const Placed least = greatest(lines[track].times(-1.0), result.loads[load]),
+                     most = greatest(lines[track], result.loads[load]);
+        extremes.least = {extremes.least.value - least.value, track == 0 ? least.x : extremes.least.x};
+        extremes.greatest = {extremes.greatest.value + most.value, track == 0 ? most.x : extremes.greatest.x};
+      }
     }
   };
+  const double eccentricity = model.torsion ? model.torsion->tracks.front() : 0.0;
   for (std::size_t i = 0; i < places(Effect::deflection).size(); ++i) {
-    const auto lines = bridge.lines_at(places(Effect::deflection)[i].x);
-    store(Effect::deflection, i, lines[0]);
-    store(Effect::moment, i, lines[1]);
-    store(Effect::shear, i, lines[2]);
+    const auto on_tracks = bridge.lines_at(places(Effect::deflection)[i].x, eccentricity);
+    constexpr Effect effects[] = {Effect::deflection, Effect::moment, Effect::shear};
+    for (std::size_t q = 0; q < std::size(effects); ++q) {
+      std::vector<InfluenceLine> lines;
+      for (const auto& line : on_tracks) lines.push_back(line[q]);
+      store(effects[q], i, lines);
+    }
   }
   for (std::size_t i = 0; i < bearings.size(); ++i) store(Effect::reaction, i, bridge.reaction(bearings[i]));
   store(Effect::end_rotation, 0, bridge.end_rotation(false));

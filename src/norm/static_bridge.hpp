@@ -28,29 +28,34 @@ class StaticBridge {
   StaticBridge(const StaticBridge&) = delete;
   StaticBridge& operator=(const StaticBridge&) = delete;
 
-  /// Lines at a station: deflection (m/N, upward), moment (m, sagging) and shear (1, d moment/dx).
-  std::array<InfluenceLine, 3> lines_at(double x);
+  /// The tracks on which loads move; the lines below are for a load on each of them.
+  int tracks() const { return beam_.bridge().tracks(); }
+  /// Lines at a station, at this distance to the left of the shear centre (m): deflection (m/N, upward), moment (m,
+  /// sagging) and shear (1, d moment/dx).
+  std::vector<std::array<InfluenceLine, 3>> lines_at(double x, double eccentricity = 0.0);
   /// A support or a point spring, whose force on the bridge under a unit force is positive upward.
   struct Bearing {
     double x = 0.0;
-    int span_end = -1;       // number of a support's span end; -1: a spring
-    double stiffness = 0.0;  // stiffness of a spring, N/m
+    int span_end = -1;          // number of a support's span end; -1: a spring
+    double stiffness = 0.0;     // stiffness of a spring, N/m
+    double eccentricity = 0.0;  // of a spring, m
   };
   const std::vector<Bearing>& bearings() const { return bearings_; }
-  InfluenceLine reaction(const Bearing& bearing);
+  std::vector<InfluenceLine> reaction(const Bearing& bearing);
   /// Rotation of the deck at the left or right end of the bridge, 1/N.
-  InfluenceLine end_rotation(bool right);
+  std::vector<InfluenceLine> end_rotation(bool right);
   /// Inner span ends at which the slope may jump, and the difference of the rotations of both sides there, 1/N.
   std::vector<int> joints() const;
-  InfluenceLine joint_rotation(int span_end);
+  std::vector<InfluenceLine> joint_rotation(int span_end);
 
   const beam::BeamModel& model() const { return beam_.model(); }
   /// The first bending frequency, Hz.
   double first_frequency() const;
 
  private:
-  InfluenceLine rotation_of(const std::vector<std::pair<int, double>>& form);
-  InfluenceLine line_of(std::vector<double> nodal, const recovery::Recovery* recovery,
+  std::vector<InfluenceLine> rotation_of(const std::vector<std::pair<int, double>>& form);
+  std::vector<InfluenceLine> lines_of(const std::vector<double>& nodal);
+  InfluenceLine line_of(const std::vector<double>& nodal, int track, const recovery::Recovery* recovery,
                         double recovery::Response::*direct);
 
   beam::Beam beam_;

@@ -69,7 +69,8 @@ void read_damping_bound(const Options& o, Scene& scene) {
 void read_norm(const Options& o, Scene& scene) {
   const std::string asked = option_of_static_effects(o, scene);
   if (asked.empty()) {
-    for (const char* name : {"norm_alpha", "norm_track", "norm_length", "norm_spacing", "norm_lane_load", "norm_range"})
+    for (const char* name : {"norm_alpha", "norm_track", "norm_length", "norm_spacing", "norm_lane_load", "norm_range",
+                             "norm_second_track"})
       if (o.has(name))
         scene.notes.push_back(std::string(name) + " has no effect: norm_load_models names no load model");
     return;
@@ -82,6 +83,12 @@ void read_norm(const Options& o, Scene& scene) {
   }
   if (several_courses(scene))
     o.refuse(asked, "static effects are computed for one train or load; several are given (trains, loads)");
+  if (!scene.tracks.empty()) {
+    const std::string why = "static effects of tracks are those of track_eccentricity and norm_second_track";
+    if (asked != "limits") o.refuse(asked, why + "; remove the names of tracks");
+    scene.notes.push_back(asked + ": " + why + "; with names of tracks there is no verdict of EN 1991-2");
+    return;
+  }
   if (!only_axle_loads(scene.load)) {
     const std::string why = "static effects are computed for constant concentrated forces";
     if (asked == "scene_analysis") o.refuse(asked, why);
@@ -102,6 +109,8 @@ void read_norm(const Options& o, Scene& scene) {
     rules.load_models = o.texts("norm_load_models");
   else if (asked == "limits" || !scene.limits.empty())
     rules.load_models = {"lm71"};
+  if (o.has("norm_second_track"))
+    rules.second_track = o.number("norm_second_track") - scene.beam->torsion->shear_centre;
   rules.alpha = o.number("norm_alpha");
   rules.careful = o.choice("norm_track") == "careful";
   rules.length = o.optional_number("norm_length");

@@ -257,9 +257,6 @@ TEST(Torsion, AVehicleBesideTheAxis) {
 TEST(Torsion, Refusals) {
   const auto refused = [](const std::string& yaml) { return message_of([&] { run_yaml(yaml); }); };
   EXPECT_EQ(refused("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10}\n").find("beam_GJ"), 0U);
-  EXPECT_NE(refused(bridge("", "track: {eccentricity: 1}\nscene: {analysis: envelope}\nload: {forces: 1, speed: 1}\n"))
-                .find("static effects and screens have no torsion"),
-            std::string::npos);
   EXPECT_NE(refused("beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4}\n"
                     "support: {torsion: free}\nload: {forces: 1, speed: 1}\n")
                 .find("can twist"),

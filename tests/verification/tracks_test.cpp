@@ -8,6 +8,7 @@
 #include "support/curve.hpp"
 #include "support/folders.hpp"
 #include "support/message.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace traverse::test {
 namespace {
@@ -128,6 +129,48 @@ TEST(Tracks, BearingsOfASkewBridge) {
       if (from_axis == 5.0 && one_sided == std::string("false")) EXPECT_LT(least, -1e5);
       if (one_sided == std::string("true")) EXPECT_GE(least, -1e-6 * F);
     }
+}
+
+// Static effects: a force on the track, and LM71 on one track or on both, whose torques cancel.
+TEST(Tracks, LoadModelsOnOneAndTwoTracks) {
+  const std::string flat = "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3", twisting = ", GJ: 1.1e10, polar_inertia: 4.0e4",
+                    rest =
+                        "}\nsupport: {types: [pinned, roller]}\nscene: {analysis: envelope}\n"
+                        "norm_load_models: lm71\nload: {forces: 2.0e5}\noutput: {probes: 12}\n";
+  Results plain = run_yaml(flat + rest), one = run_yaml(flat + twisting + rest, {{"track_eccentricity", "2.25"}}),
+          two = run_yaml(flat + twisting + rest, {{"track_eccentricity", "2.25"}, {"norm_second_track", "-2.25"}});
+  const std::size_t places = plain("/static/x").size(), middle = places / 2;
+  const auto least = [&](Results& run, const char* name, std::size_t load) {
+    return run(name)[2 * (load * places + middle)];
+  };
+  const auto greatest = [&](Results& run, const char* name, std::size_t load) {
+    return run(name)[2 * (load * places + middle) + 1];
+  };
+  constexpr double F = 2.0e5, EI = 3.0e10, GJ = 1.1e10;
+  const double force = -F * (std::pow(L, 3) / (48.0 * EI) + e * e * L / (4.0 * GJ));
+  EXPECT_NEAR(least(one, "/static/deflection", 0), force, 1e-9 * std::abs(force));
+  EXPECT_NEAR(least(two, "/static/deflection", 0), force, 1e-9 * std::abs(force));
+  EXPECT_LT(least(one, "/static/deflection", 1), 1.05 * least(plain, "/static/deflection", 1));
+  EXPECT_NEAR(least(two, "/static/deflection", 1) / least(plain, "/static/deflection", 1), 2.0, 1e-9);
+  EXPECT_NEAR(greatest(one, "/static/moment", 1) / greatest(plain, "/static/moment", 1), 1.0, 1e-9);
+  EXPECT_NEAR(greatest(two, "/static/moment", 1) / greatest(plain, "/static/moment", 1), 2.0, 1e-9);
+}
+
+// The largest twist at the probes and the uplift of a bearing as limits.
+TEST(Tracks, LimitsOfTwistAndUplift) {
+  const TemporaryFolder folder;
+  const std::string limits =
+      folder.write("limits.yml", "- {quantity: track_twist, value: 1e-3}\n- {quantity: bearing_uplift, value: 1}\n");
+  Results run = run_yaml(bridge("load: {forces: 2.0e5, speed: 40, track: left}\nsupport_bearing_spacing: 3\n"),
+                         {{"limits", limits}, {"output_interval", "5e-4"}});
+  double twist = 0.0, uplift = 0.0;
+  for (const double one : run("/probes/track_twist")) twist = std::max(twist, std::abs(one));
+  for (const double one : run("/supports/right_bearing")) uplift = std::max(uplift, -one);
+  const std::vector<double> found = run("/verdicts/value");
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_NEAR(found[0] / twist, 1.0, 1e-2);
+  EXPECT_GT(uplift, 1e4);
+  EXPECT_NEAR(found[1] / uplift, 1.0, 5e-2);
 }
 
 TEST(Tracks, Refusals) {

@@ -37,6 +37,7 @@ struct NormRules {
   bool careful = false;                  // true: careful maintenance of the track, Phi2; false: Phi3
   std::optional<double> length;          // L_Phi of the whole bridge, m; default: computed from the spans
   double spacing = 0.0;                  // m, distance of sections; 0: a twentieth of each span
+  std::optional<double> second_track;    // m, to the left of the shear centre: load models stand on it too
   /// A uniform load that accompanies the train of the scene in its static effects, where it is unfavourable, N/m; and
   /// the range without it, m from the foremost force.
   double lane_load = 0.0, lane_gap_from = 0.0, lane_gap_to = 0.0;
