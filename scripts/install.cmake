@@ -24,6 +24,7 @@ install(FILES examples/three_span_train.py examples/bridge.yml DESTINATION ${sha
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_BINARY_DIR}/site/html DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)  # if scripts/site.sh made it
 
 # The Python package, where Debian's Python looks: under /usr for all its versions, under /usr/local for the one there is.
 # Under any other prefix PYTHONPATH has to say so.

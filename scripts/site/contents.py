@@ -1,0 +1,56 @@
+"""The navigation: chapters from the lists of links in doc/guide.md, and what the guide does not list."""
+
+import pathlib
+import re
+
+GUIDE = "doc/guide"
+DECISIONS = "doc/decisions/README"
+OVERVIEW = ("Overview", ["doc/index", "README", GUIDE, "doc/gallery"])
+OTHERS = [
+    ("Reference", ["doc/results_file", "doc/words", "doc/accuracy"]),
+    ("Theory and evidence", ["doc/theory", "doc/verification", "doc/comparison", "doc/performance", "doc/scaling"]),
+    ("Development", ["doc/architecture", "doc/new_joint", DECISIONS, "CONTRIBUTING", "SECURITY", "CHANGELOG"]),
+]
+
+
+def chapters_of_guide(text):
+    """Each heading of the guide with the pages that its list links to."""
+    parts = re.split(r"^## +(.+)$", text, flags=re.MULTILINE)[1:]
+    return [(heading, [f"doc/{name}" for name in re.findall(r"^- \[[^\]]+\]\(([\w/]+)\.md\)", body, re.MULTILINE)])
+            for heading, body in zip(parts[::2], parts[1::2])]
+
+
+def chapters(app):
+    guide = pathlib.Path(app.srcdir, f"{GUIDE}.md").read_text(encoding="utf-8")
+    return [OVERVIEW, *chapters_of_guide(guide), *OTHERS]
+
+
+def toctree(pages, options):
+    return "\n\n```{toctree}\n" + options + "\n" + "\n".join(f"/{page}" for page in pages) + "\n```\n"
+
+
+def add_toctrees(app, docname, source):
+    """Sphinx takes the order of the pages from the start page, and that of the decisions from theirs."""
+    if docname == app.config.root_doc:
+        app.env.note_dependency(str(pathlib.Path(app.srcdir, f"{GUIDE}.md")))
+        pages = [page for _, pages in chapters(app) for page in pages if page != docname]
+        source[0] += toctree(pages, ":hidden:")
+    elif docname == DECISIONS:
+        source[0] += toctree(["doc/decisions/0*"], ":glob:")
+
+
+def add_chapters(app, pagename, templatename, context, doctree):
+    """What the layout shows at the left of each page."""
+    own = DECISIONS if pagename.startswith("doc/decisions/") else pagename
+    context["chapters"] = [
+        {"heading": heading, "open": own in pages,
+         "pages": [{"title": app.env.titles[page].astext(), "uri": context["pathto"](page), "current": page == own} for page in pages]}
+        for heading, pages in chapters(app)]
+    if app.config.traverse_has_api:
+        context["chapters"][-1]["pages"].append({"title": "Public headers", "uri": context["pathto"]("api/index.html", 1)})
+
+
+def setup(app):
+    app.connect("source-read", add_toctrees)
+    app.connect("html-page-context", add_chapters)
+    return {"parallel_read_safe": True}
