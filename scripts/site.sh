@@ -10,8 +10,10 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 locked install_packages "${document_packages[@]}"
 
 folder=${folder:-$PWD/build/site}
+read_before=$folder/doctrees/environment.pickle  # without it all documents are read again
+[ -z "$(find scripts/site -name '*.py' -newer "$read_before" 2>/dev/null)" ] || rm -f "$read_before"
 if ! /usr/bin/python3 -B -m sphinx -q -W --keep-going -c scripts/site -d "$folder/doctrees" . "$folder/html"; then
-  rm -f "$folder/doctrees/environment.pickle"  # so that the next try repeats the warnings
+  rm -f "$read_before"  # so that the next try repeats the warnings
   exit 1
 fi
 echo "The documents are in $folder/html/index.html."

@@ -18,6 +18,7 @@ extensions = ["myst_parser", "api_pages", "contents", "formulas", "source_pages"
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
 highlight_language = "text"
+smartquotes = False  # v' is a derivative
 
 html_theme_path = ["."]
 html_theme = "theme"

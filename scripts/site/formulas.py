@@ -4,20 +4,24 @@ import html
 import pathlib
 import shutil
 
+from docutils import nodes
+
 KATEX = pathlib.Path("/usr/share/javascript/katex")
 
 
 def inline(writer, node):
     writer.body.append(f'<span class="formula">{html.escape(node.astext())}</span>')
+    raise nodes.SkipNode
 
 
 def block(writer, node):
     writer.body.append(f'<div class="formula block">{html.escape(node.astext())}</div>')
+    raise nodes.SkipNode
 
 
 def add_katex(app, pagename, templatename, context, doctree):
     """Loads KaTeX on pages with formulas only."""
-    if doctree and any(doctree.findall(lambda node: node.tagname in ("math", "math_block"))):
+    if doctree and any(doctree.findall(lambda node: isinstance(node, (nodes.math, nodes.math_block)))):
         app.add_css_file("katex/katex.min.css")
         app.add_js_file("katex/katex.js")
         app.add_js_file("formulas.js")

@@ -36,7 +36,8 @@ def link_to_listings(app, doctree):
             page = f"{path}/README.html"
         else:
             page = f"source/{path}.html"
-            app.env.note_dependency(str(pathlib.Path(app.srcdir, path)))
+            if pathlib.Path(app.srcdir, path).is_file():
+                app.env.note_dependency(str(pathlib.Path(app.srcdir, path)))
             app.env.traverse_listed.setdefault(docname, set()).add(path)
         link.replace_self(nodes.reference("", "", *link.children, internal=True, refuri=to_root + page))
 

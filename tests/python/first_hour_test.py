@@ -5,7 +5,6 @@ import os
 import pathlib
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -13,21 +12,34 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from guide_commands_test import PROGRAM, SOURCE, missing_in  # noqa: E402
+from project_copy import copy_project  # noqa: E402
 
 PAGES = sorted((SOURCE / "doc/first_hour").glob("*.md"))
-FOLDERS = ("benchmarks", "examples", "include", "options", "python", "scripts", "src", "tests")
 SLOW = re.compile(r"#.*\b(seconds|minutes?)\b")
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 RELATIVE = 2e-3  # two runs, each with the accuracy of 1e-3 by default
 
 
+def commands_of(block):
+    """Each command with its comment: those that go on in the next line are one."""
+    found, ahead = [], ""
+    for line in block.replace("\\\n", " ").splitlines():
+        ahead += line + "\n"
+        try:
+            shlex.split(ahead, comments=True)
+        except ValueError:  # a quotation goes on
+            continue
+        found.append(ahead)
+        ahead = ""
+    return found
+
+
 def steps(page):
     """Each block of commands with the lines that are quoted below it."""
-    blocks = re.findall(r"^```(sh|text)\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
     found = []
-    for kind, text in blocks:
+    for kind, text in re.findall(r"^```(sh|text)\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL):
         if kind == "sh":
-            found.append((text.splitlines(), []))
+            found.append((commands_of(text), []))
         else:
             found[-1][1].extend(text.splitlines())
     return found
@@ -71,19 +83,17 @@ class FirstHour(unittest.TestCase):
         self.assertGreater(checked, 15)
 
     def test_quick_commands_print_what_is_quoted(self):
-        """In a copy of the project's root, which has a place of its own for results."""
+        """In a copy of the project, with results of its own."""
         environment = os.environ | {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
         compared = 0
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            for name in FOLDERS:
-                shutil.copytree(SOURCE / name, root / name)
-            (root / "build").mkdir()
+            copy_project(root)
             (root / "build/traverse").symlink_to(pathlib.Path(PROGRAM).resolve())
             for page, commands, quoted in ((page, *step) for page in PAGES for step in steps(page)):
                 if not quoted or any(SLOW.search(command) for command in commands):
                     continue
-                ended = subprocess.run(["bash", "-c", "\n".join(commands)], cwd=root, env=environment, capture_output=True, text=True)
+                ended = subprocess.run(["bash", "-c", "".join(commands)], cwd=root, env=environment, capture_output=True, text=True)
                 printed = (ended.stdout + ended.stderr).splitlines()
                 for line in quoted:
                     compared += 1
