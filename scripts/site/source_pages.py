@@ -3,6 +3,7 @@
 import html
 import pathlib
 import posixpath
+import re
 
 from docutils import nodes
 from pygments import highlight
@@ -12,6 +13,7 @@ from pygments.util import ClassNotFound
 from sphinx import addnodes
 
 OF_SPHINX = (".md", ".png")  # what Sphinx makes pages of or copies by itself
+NAMED = re.compile(r"(benchmarks|examples|include|options|packaging|python|scripts|src|tests)/[\w./-]+\.\w+")
 
 
 def linked_path(app, docname, target):
@@ -22,24 +24,37 @@ def linked_path(app, docname, target):
     return path
 
 
-def link_to_listings(app, doctree):
-    """Lets the links to files and folders lead to their listings, and notes that these are needed."""
-    docname = app.env.docname
+def address(app, docname, path):
+    """Where a file or folder is listed, as seen from a document; notes that this is needed."""
     to_root = "../" * docname.count("/")
+    place = pathlib.Path(app.srcdir, path)
+    if (place / "README.md").exists():  # it stands for its folder
+        return f"{to_root}{path}/README.html"
+    if place.is_file():
+        app.env.note_dependency(str(place))
+    app.env.traverse_listed.setdefault(docname, set()).add(path)
+    return f"{to_root}source/{path}.html"
+
+
+def link_to_listings(app, doctree):
+    """Lets links to files and folders of the project, and names of files in running text, lead to their listings."""
+    docname = app.env.docname
     for link in list(doctree.findall(nodes.Element)):
-        if not isinstance(link, (addnodes.download_reference, addnodes.pending_xref)):
-            continue
-        path = linked_path(app, docname, link["reftarget"])
-        if path is None:
-            continue
-        if pathlib.Path(app.srcdir, path, "README.md").exists():  # it stands for its folder
-            page = f"{path}/README.html"
+        if isinstance(link, (addnodes.download_reference, addnodes.pending_xref)):
+            path, inner = linked_path(app, docname, link["reftarget"]), link.children
+        elif isinstance(link, nodes.literal) and NAMED.fullmatch(link.astext()) and not in_link(link):
+            path, inner = linked_path(app, "", link.astext()), [link.deepcopy()]
         else:
-            page = f"source/{path}.html"
-            if pathlib.Path(app.srcdir, path).is_file():
-                app.env.note_dependency(str(pathlib.Path(app.srcdir, path)))
-            app.env.traverse_listed.setdefault(docname, set()).add(path)
-        link.replace_self(nodes.reference("", "", *link.children, internal=True, refuri=to_root + page))
+            continue
+        if path is not None:
+            link.replace_self(nodes.reference("", "", *inner, internal=True, refuri=address(app, docname, path)))
+
+
+def in_link(node):
+    while node := node.parent:
+        if isinstance(node, (nodes.reference, addnodes.download_reference, addnodes.pending_xref)):
+            return True
+    return False
 
 
 def start(app):
