@@ -24,7 +24,16 @@ install(FILES examples/three_span_train.py examples/bridge.yml DESTINATION ${sha
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY ${PROJECT_BINARY_DIR}/site/html DESTINATION ${CMAKE_INSTALL_DOCDIR} OPTIONAL)  # if scripts/site.sh made it
+
+# The documents as a site, with its entry in the desktop's menu, if scripts/site.sh has made it.
+install(CODE "
+  if(EXISTS \"${PROJECT_BINARY_DIR}/site/html/index.html\")
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}\" TYPE DIRECTORY FILES \"${PROJECT_BINARY_DIR}/site/html\")
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\" TYPE PROGRAM
+         FILES \"${PROJECT_SOURCE_DIR}/packaging/desktop/traverse-documents\")
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/applications\" TYPE FILE
+         FILES \"${PROJECT_SOURCE_DIR}/packaging/desktop/traverse-documents.desktop\")
+  endif()")
 
 # The Python package, where Debian's Python looks: under /usr for all its versions, under /usr/local for the one there is.
 # Under any other prefix PYTHONPATH has to say so.
@@ -86,6 +95,7 @@ set(CPACK_DEBIAN_TRAVERSE_PACKAGE_NAME traverse)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_RECOMMENDS "openmpi-bin, libjs-chart.js, python3-h5py, python3-matplotlib, python3-openpyxl, python3-scipy, python3-xarray, python3-yaml")
+set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SUGGESTS "xdg-utils")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtraverse-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
