@@ -54,7 +54,8 @@ class Site(unittest.TestCase):
 
     def complaints(self, browser):
         """Exceptions, messages of the console, and what the page asked for besides files of the site."""
-        asked = [message["params"]["request"]["url"] for message in browser.messages if message.get("method") == "Network.requestWillBeSent"]
+        asked = [message["params"]["request"]["url"] for message in browser.messages
+                 if message.get("method") == "Network.requestWillBeSent"]
         return ([message for message in browser.messages if message.get("method") in ("Runtime.exceptionThrown", "Log.entryAdded")]
                 + [address for address in asked if not address.startswith((self.html.as_uri(), "data:"))])
 
