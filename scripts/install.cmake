@@ -25,6 +25,16 @@ install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
+# The documents as a site, with its entry in the desktop's menu, if scripts/site.sh has made it.
+install(CODE "
+  if(EXISTS \"${PROJECT_BINARY_DIR}/site/html/index.html\")
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}\" TYPE DIRECTORY FILES \"${PROJECT_BINARY_DIR}/site/html\")
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\" TYPE PROGRAM
+         FILES \"${PROJECT_SOURCE_DIR}/packaging/desktop/traverse-documents\")
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/applications\" TYPE FILE
+         FILES \"${PROJECT_SOURCE_DIR}/packaging/desktop/traverse-documents.desktop\")
+  endif()")
+
 # The Python package, where Debian's Python looks: under /usr for all its versions, under /usr/local for the one there is.
 # Under any other prefix PYTHONPATH has to say so.
 execute_process(COMMAND /usr/bin/python3 -c "import sys; print('python%d.%d' % sys.version_info[:2], end='')"

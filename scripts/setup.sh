@@ -11,6 +11,7 @@ program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-re
   libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev libboost-dev libjs-chart.js python3-h5py python3-matplotlib
   python3-openpyxl python3-scipy python3-xarray python3-yaml)
 test_packages=(ccache chromium libgtest-dev python3-h5netcdf python3-netcdf4)
+document_packages=(libjs-katex python3-myst-parser python3-sphinx)
 benchmark_packages=(libbenchmark-dev)
 check_packages=(clang-format clang-tidy)
 
@@ -107,9 +108,11 @@ show_progress() {
 
 # The program alone; the program and its tests; the benchmarks too.
 set_up_program() { install_packages "${program_packages[@]}" && build traverse; }
-set_up_tests() { install_packages "${program_packages[@]}" "${test_packages[@]}" && build all -DTRAVERSE_TESTS=ON; }
+set_up_tests() {
+  install_packages "${program_packages[@]}" "${document_packages[@]}" "${test_packages[@]}" && build all -DTRAVERSE_TESTS=ON
+}
 set_up_benchmarks() {
-  install_packages "${program_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}" &&
+  install_packages "${program_packages[@]}" "${document_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}" &&
     build all -DTRAVERSE_TESTS=ON -DTRAVERSE_BENCHMARKS=ON
 }
 
