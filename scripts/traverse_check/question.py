@@ -25,6 +25,8 @@ VALUES = {
     "torsional-frequency": "first natural frequency of torsion, for figure 6.9",
     "GJ": "torsional stiffness between forks instead of this frequency, such as 90 GN.m2",
     "polar-inertia": "with GJ: polar moment of inertia of the mass per length, such as 160 t.m",
+    "eccentricity": "with GJ: distance of the track under the trains from the axis, such as 2.25 m; the bridge twists",
+    "tracks": "1 (default) or 2: with eccentricity, load models stand on a second track on the other side of the axis too",
     "hslm-b": "number N of forces and their distance d in m, from the chart of HSLM-B: simple spans below 7 m",
     "load-spread": "sleeper spacing: each axle force acts on three sleepers",
     "limits": "file of limits, such as those of a national annex; default: options/limits/en1991_2.yml",
@@ -54,6 +56,8 @@ class Question(NamedTuple):
     torsional_frequency: Optional[float]  # Hz
     GJ: Optional[float]                   # N m2
     polar_inertia: Optional[float]        # kg m
+    eccentricity: Optional[float]         # m; None: the bridge does not twist
+    tracks: int
     hslm_b: Optional[tuple]   # N, d in m
     load_spread: Optional[float]
     limits: Optional[str]     # a file
@@ -219,13 +223,18 @@ def ask(given):
         masses=bounds("mass", words), type=TYPES[choice("type", words, TYPES)], line_speed=one("line-speed", words),
         track=choice("track", words, ("ballast", "direct"), "ballast"), alpha=number("alpha", words.get("alpha", "1")),
         torsional_frequency=one("torsional-frequency", words), GJ=one("GJ", words),
-        polar_inertia=one("polar-inertia", words), hslm_b=train_b(words), load_spread=one("load-spread", words),
+        polar_inertia=one("polar-inertia", words), eccentricity=one("eccentricity", words),
+        tracks=int(choice("tracks", words, ("1", "2"), "1")), hslm_b=train_b(words), load_spread=one("load-spread", words),
         limits=words.get("limits"), folder=folder,
         simply_supported=flag("simply-supported", words), complex=flag("complex", words),
         careful=flag("careful", words), additional_damping=flag("additional-damping", words),
         always=flag("always", words), report=not flag("no-report", words),
         title=title_of(words, folder), program=program)
     _ = asked.torsional_wave_speed  # refuses what does not belong together
+    if asked.eccentricity is not None and asked.GJ is None:
+        raise CheckError("--eccentricity needs --GJ and --polar-inertia, by which the bridge twists")
+    if asked.tracks == 2 and asked.eccentricity is None:
+        raise CheckError("--tracks 2 needs --eccentricity, the distance of the tracks from the axis")
     if asked.frequencies and len(asked.masses) > 1:
         raise CheckError("a measured frequency belongs to one mass: give two masses only with --EI")
     short = asked.separate and min(asked.spans) < rule("short_span")["value"]

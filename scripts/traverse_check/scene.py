@@ -78,7 +78,10 @@ def beam_text(spans, case, question):
          + (f"; bounds: {clause('mass')}" if len(question.masses) > 1 else "")))
     if question.simply_supported and len(spans) > 1:
         text += "  continuity: simply_supported\n"
-    return text
+    if question.eccentricity is None:
+        return text
+    return (text + rows((f"GJ: {question.GJ!r}", "N m2"), (f"polar_inertia: {question.polar_inertia!r}", "kg m"))
+            + "track:\n" + rows((f"eccentricity: {question.eccentricity!r}", "m from the axis: the track of the trains")))
 
 
 def norm_text(question):
@@ -86,6 +89,8 @@ def norm_text(question):
     return "norm:\n" + rows(
         (f"load_models: [{models}]", "EN 1991-2 6.3"),
         (f"alpha: {question.alpha!r}", "EN 1991-2 6.3.2"),
+        *([(f"second_track: {-question.eccentricity!r}", "m: load models stand on both tracks")]
+          if question.tracks == 2 else []),
         (f"track: {'careful' if question.careful else 'standard'}", "EN 1991-2 6.4.5.2: careful: Phi2; standard: Phi3"))
 
 

@@ -29,6 +29,7 @@ KINDS = {
     "EI": Kind("bending_stiffness", (1e5, 1e16), 1e7, example="260 GN.m2"),
     "mass": Kind("mass_per_length", (50.0, 1e6), 500.0, example="19 t/m"),
     "GJ": Kind("bending_stiffness", (1e5, 1e16), 1e7, example="90 GN.m2"),
+    "eccentricity": Kind("length", (0.01, 30.0)),
     "polar-inertia": Kind("rotational_inertia_per_length", (50.0, 1e7), 500.0, example="160 t.m"),
     "frequency": Kind("frequency", (0.01, 500.0)),
     "torsional-frequency": Kind("frequency", (0.01, 1e3)),

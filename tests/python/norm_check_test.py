@@ -105,6 +105,8 @@ class Questions(unittest.TestCase):
         self.assertIn("belong together", self.refused(*BRIDGE, "--GJ", "90 GN.m2"))
         self.assertIn("one of them", self.refused(*BRIDGE, "--GJ", "90 GN.m2", "--polar-inertia", "160 t.m",
                                                   "--torsional-frequency", "9 Hz"))
+        self.assertIn("needs --GJ", self.refused(*BRIDGE, "--eccentricity", "2 m"))
+        self.assertIn("needs --eccentricity", self.refused(*BRIDGE, "--tracks", "2"))
         self.assertIn("--spam", self.refused(*BRIDGE, "--spam", "3"))
         self.assertIn("belongs to one mass", self.refused("--span", "28", "--frequency", "4 Hz", "--mass", "18,20 t/m",
                                                           "--type", "steel", "--line-speed", "250 km/h"))
@@ -300,6 +302,19 @@ class Commands(unittest.TestCase):
         self.assertEqual(scope["need for a dynamic analysis"], "no dynamic analysis is necessary")
         self.assertEqual(scope["range of speeds"], "not applicable: no dynamic analysis is necessary")
         self.assertEqual(scope["unrestrained uplift at the bearings"], "no uplift: no load lifts a bearing")
+
+    def test_two_tracks_beside_the_axis(self):
+        beside = ("--GJ", "260 GN.m2", "--polar-inertia", "160 t.m", "--eccentricity", "2.25 m")
+        effects = {}
+        for name, words in (("axis", ()), ("one", beside), ("two", (*beside, "--tracks", "2"))):
+            status, said = self.inside("--span", "28", "--EI", "260 GN.m2", "--mass", "19 t/m", "--type", "prestressed",
+                                       "--line-speed", "160 km/h", "--no-report", "--folder", name, *words)
+            self.assertEqual(status, 0, said)
+            with h5py.File(self.folder / name / "check.h5") as file:
+                effects[name] = [np.abs(file[f"static/{effect}"][:]).max() for effect in ("deflection", "moment")]
+        self.assertGreater(effects["one"][0], 1.02 * effects["axis"][0])
+        self.assertAlmostEqual(effects["one"][1] / effects["axis"][1], 1.0, 6)
+        np.testing.assert_allclose(effects["two"], 2.0 * np.array(effects["axis"]), rtol=1e-3)
 
     def test_a_limit_that_cannot_be_evaluated(self):
         (self.folder / "own.yml").write_text('- {clause: "EN 1990 A2.4.4.3", quantity: car_acceleration, value: 1.0}\n',
