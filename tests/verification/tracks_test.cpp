@@ -159,8 +159,9 @@ TEST(Tracks, LoadModelsOnOneAndTwoTracks) {
 // The largest twist at the probes and the uplift of a bearing as limits.
 TEST(Tracks, LimitsOfTwistAndUplift) {
   const TemporaryFolder folder;
-  const std::string limits =
-      folder.write("limits.yml", "- {quantity: track_twist, value: 1e-3}\n- {quantity: bearing_uplift, value: 1}\n");
+  const std::string limits = folder.write("limits.yml",
+                                          "- {clause: EN 1990, quantity: track_twist, value: 1e-3}\n"
+                                          "- {clause: none, quantity: bearing_uplift, value: 1}\n");
   Results run = run_yaml(bridge("load: {forces: 2.0e5, speed: 40, track: left}\nsupport_bearing_spacing: 3\n"),
                          {{"limits", limits}, {"output_interval", "5e-4"}});
   double twist = 0.0, uplift = 0.0;
@@ -175,7 +176,7 @@ TEST(Tracks, LimitsOfTwistAndUplift) {
 
 TEST(Tracks, Refusals) {
   const auto refused = [](const std::string& yaml) { return message_of([&] { run_yaml(yaml); }); };
-  EXPECT_EQ(refused(bridge("load: {forces: 1, speed: 1}\n")).find("load_track (missing"), std::string::npos);
+  EXPECT_EQ(refused(bridge("load: {forces: 1, speed: 1}\n")).find("load_track"), 0U);
   EXPECT_NE(refused(bridge("load: {forces: 1, speed: 1}\n")).find("allowed: left, right"), std::string::npos);
   EXPECT_NE(refused(bridge("load: {forces: 1, speed: 1, track: middle}\n")).find("there is no such track"),
             std::string::npos);
