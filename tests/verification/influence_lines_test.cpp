@@ -171,7 +171,8 @@ TEST(StaticEffects, NothingIsWorseOnACloseGrid) {
   model.EI = beam::Distribution({0.0, 18.0, 41.0}, {2e9, 6e9, 2e9}, "EI");
   norm::StaticBridge bridge(model);
   for (const double section : {7.0, 17.3, 30.0}) {
-    for (const norm::InfluenceLine& line : bridge.lines_at(section).front()) {
+    const auto lines = bridge.lines_at(section).front();
+    for (const norm::InfluenceLine& line : lines) {
       const norm::InfluenceLine both[] = {line, line.times(-1.0)};
       for (const norm::InfluenceLine& one : both) {
         double lm71 = 0.0, sw0 = 0.0, train = 0.0;
