@@ -91,17 +91,23 @@ def report_command():
     raise CheckError("traverse-report is not beside this command", 4)
 
 
-def documents(traverse, asked, files):
-    """A report of all results files, and a picture and a page of each. Returns the names of the files."""
-    folder, more = asked.folder, []
+def report_words(traverse, asked, files):
+    """The words of the command that makes the report of results files of a check."""
+    more = []
     if asked.torsional_frequency is not None:
         more = ["--torsional-frequency", f"{asked.torsional_frequency!r} Hz"]
     if asked.GJ is not None:
         more = ["--GJ", f"{asked.GJ!r} N.m2", "--polar-inertia", f"{asked.polar_inertia!r} kg.m"]
     if asked.complex:
         more.append("--complex")
-    report = start(folder, report_command(), *files, "-o", "report", "--program", traverse, "--folder", ".",
-                   "--line-speed", f"{asked.line_speed!r} m/s", *more)
+    return [report_command(), *files, "-o", "report", "--program", traverse, "--folder", ".", "--line-speed",
+            f"{asked.line_speed!r} m/s", *more]
+
+
+def documents(traverse, asked, files):
+    """A report of all results files, and a picture and a page of each. Returns the names of the files."""
+    folder = asked.folder
+    report = start(folder, *report_words(traverse, asked, files))
     made = ["report.pdf", "report.xlsx"]
     for name in files:
         for script, ending in (("picture.py", ".png"), ("page.py", ".html")):
