@@ -1,6 +1,6 @@
 """The page of each results file of a run: documents.py FOLDER
 
-A file that has nothing to show has no page.
+A file that has nothing to show has no page, and a line says so.
 """
 
 import pathlib
@@ -12,14 +12,12 @@ from checked_results import in_one_line  # noqa: E402
 
 
 def main():
-    failed = 0
     for results in sorted(pathlib.Path(sys.argv[1]).glob("*.h5")):
         try:
             page.write(results, results.with_suffix(".html"))
         except Exception as error:
             print(f"{results.name}: {in_one_line(error)}", flush=True)
-            failed += 1
-    return 1 if failed else 0
+    return 0
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ from .jobs import kept_process
 
 SECONDS, LONGEST = 30.0, 1_000_000  # of one process, and bytes of what it prints
 AT_REST = (("modes", "-modes_count", "1"), ("static",))  # analyses whose files have the model
+MANY = ("sweep", "study", "find", "fit", "limits")  # blocks of scenes that ask for more than one run
 OUTPUT = ("-output_file", "results.h5", "-skip_petscrc")
 
 
@@ -63,7 +64,8 @@ class Drafts:
             with self.written(files) as folder, contextlib.suppress(Failed, OSError, ValueError, LookupError, TypeError):
                 self.run(folder, "-scene_analysis", analysis, *words, "-output_quiet")
                 with h5py.File(folder / "results.h5", "r", locking=False) as file:
-                    return stage.still(Results(file))
+                    results = Results(file)
+                    return stage.still(results) or stage.moving(results)
         return None
 
     def described(self, files):
@@ -164,5 +166,5 @@ def scene_of(form, values, language):
         files = inputs.checked({"scene.yml": inputs.with_library(text, "scene.yml", files)} | files)
     except inputs.InputError as error:
         raise inputs.InputError(str(error), error.field or "text") from None
-    return files, files
+    return files, files | {"scene.yml": inputs.without_blocks(files["scene.yml"], MANY)}
 

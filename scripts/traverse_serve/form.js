@@ -36,6 +36,7 @@ function showErrors(answer) {
 
 function showStage(stage) {
   byId("side").classList.toggle("late", !stage);
+  byId("described").open = !stage;
   if (!stage) return;
   if (view.stage) {
     view.stage.stage = stage;

@@ -11,6 +11,7 @@ import yaml
 
 OPTIONS = pathlib.Path(__file__).resolve().parents[2] / "options"
 MOST_BYTES, MOST_FILES = 2_000_000, 20  # of all files of a run together
+MOST_YAML = 300_000  # characters of one
 NAME = re.compile(r"[A-Za-z0-9][\w-]{0,60}\.(csv|txt|yml|yaml)")
 OWN = ("scene.yml", "bridge.yml", "limits.yml")  # names of the files that the forms write
 BREAKS = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\x85\u2028\u2029]")  # line ends for some readers of YAML only
@@ -30,6 +31,8 @@ def scalars(text, name):
     """The nodes of all scalars of a YAML text, keys too, as they are written."""
     if BREAKS.search(text):
         raise InputError(f"{name}: has control characters")
+    if len(text) > MOST_YAML:
+        raise InputError(f"{name}: allowed: at most {MOST_YAML:,} characters of YAML")
     try:
         nodes = [yaml.compose(text, yaml.SafeLoader)]
     except (yaml.YAMLError, ValueError, RecursionError) as error:
@@ -47,6 +50,15 @@ def scalars(text, name):
         else:
             nodes += [part for pair in node.value for part in (pair if isinstance(pair, tuple) else (pair,))]
     return found
+
+
+def without_blocks(text, names):
+    """A text of a scene without its outermost blocks of these names."""
+    root = yaml.compose(text, yaml.SafeLoader)
+    for key, value in reversed(root.value if isinstance(root, yaml.MappingNode) and not root.flow_style else []):
+        if key.value in names:
+            text = text[:key.start_mark.index] + text[value.end_mark.index:]
+    return text
 
 
 def library_file(word):

@@ -146,8 +146,8 @@ def links_of(root, language, job, results, report):
     return "".join(made)
 
 
-def run_page(root, language, job, results, report):
-    """The page of a run: its progress, or its results."""
+def run_page(root, language, job, results, files):
+    """The page of a run: its progress, or its results. results: names that have a page; files: names of all its files."""
     title = f"{t(forms()[job.form].title)}, {t('run {number}', number=job.number)}"
     again = (f'<a class="button" href="{root}{language}/{job.form}?from={job.number}">{said("change the input")}</a>')
     head = f'<div class="bar"><h1>{escape(title)}</h1>'
@@ -159,8 +159,11 @@ def run_page(root, language, job, results, report):
         if len(results) > 1:
             several = (f'<label>{said("results")} <select id="which">'
                        + "".join(f"<option>{escape(one)}</option>" for one in results) + "</select></label>")
+        frames = frames or f'<p class="card wait">{escape(job.message())}</p>'
+        report = {"report.pdf", "report.xlsx"} <= set(files)
         content = (f'{head}<p class="buttons">{several}{links_of(root, language, job, results, report)}{again}</p>'
-                   f'<p id="making" role="status"></p>{details(job)}</div>{frames}')
+                   f'<p id="making" role="status"></p>{details(f"{root}{language}/run/{job.number}/file/", job, files)}</div>'
+                   f"{frames}")
     else:
         stop = f'<button id="stop" type="button">{said("stop")}</button>' if job.state in ("waiting", "running") else ""
         shown = "" if job.state in ("waiting", "running", "stopping") else " hidden"
@@ -175,11 +178,12 @@ def run_page(root, language, job, results, report):
                     "making": t("The report is being made ..."), "failed": t("The report could not be made: {message}")}})
 
 
-def details(job):
-    """What gives the same results on the command line."""
+def details(base, job, files):
+    """What gives the same results on the command line, all files, and what the program has printed."""
     name = "check bridge.yml" if job.form == "check" else "-options_file scene.yml"
     return (f'<details class="small"><summary>{said("on the command line")}</summary><p>'
-            f'{escape(t("The same results, in the folder of the downloaded scene:"))} <code>traverse {name}</code></p>'
+            f'{escape(t("The same results, in the folder of the downloaded scene:"))} <code>traverse {name}</code></p><p>{said("files")}: '
+            + ", ".join(f'<a href="{base}{escape(file)}">{escape(file)}</a>' for file in files) + "</p>"
             f'<pre>{escape(chr(10).join(job.lines))}</pre></details>')
 
 

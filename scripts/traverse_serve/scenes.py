@@ -3,9 +3,10 @@
 import math
 
 from traverse_check.scene import quoted, rows
+from traverse_report.language import t
 
 from . import inputs
-from .forms import HSLM
+from .forms import HSLM, forms
 
 TRAINS = "hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]"
 MODEL = ("beam", "model", "vehicle", "train", "load")  # blocks of what is drawn
@@ -176,7 +177,8 @@ def scene_files(name, given, language):
     """{file: text} of a form, with scene.yml."""
     files = {}
     blocks = BLOCKS[name](given, files)
-    text = HEAD.format(what=WHAT[name]) + text_of(blocks | {"report": [(f"language: {language}", "")]})
+    named = [(f"name: {quoted(t(forms()[name].title))}", ""), *blocks.get("scene", ())]
+    text = HEAD.format(what=WHAT[name]) + text_of(blocks | {"scene": named, "report": [(f"language: {language}", "")]})
     return {"scene.yml": text} | files
 
 

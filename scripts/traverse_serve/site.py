@@ -146,10 +146,7 @@ class Site:
         if rest[0] != "run":
             raise Answer(404, "There is no such page.")
         job = self.job(rest[1])
-        return self.html(pages.run_page(self.root, language, job, results_of(job), self.has_report(job)))
-
-    def has_report(self, job):
-        return all((job.folder / name).is_file() for name in REPORT)
+        return self.html(pages.run_page(self.root, language, job, results_of(job), files_of(job)))
 
     def part_of_run(self, language, rest, query):
         """The state of a run, or the archive of its scene."""
@@ -163,7 +160,7 @@ class Site:
             raise Answer(404, "There is no such page.")
         report = next((one for one in reversed(self.queue.jobs.values()) if one.of is job), None)
         return as_json(self.state(job) | {"report": report and {"state": report.state, "message": report.message()},
-                                          "has_report": self.has_report(job)})
+                                          "has_report": has_report(job)})
 
     def state(self, job):
         before = self.queue.before(job)
@@ -181,7 +178,7 @@ class Site:
         if job is None or rest[2] != "report" or job.state != "done":
             raise Answer(404, "There is no such page.")
         busy = any(one.of is job and one.state in ("waiting", "running") for one in list(self.queue.jobs.values()))
-        if not busy and not self.has_report(job):
+        if not busy and not has_report(job):
             try:
                 self.queue.add(Job(job.form, {}, job.folder, [self.report_step(job, language)], of=job))
             except QueueFull:
@@ -221,6 +218,16 @@ class Site:
 def results_of(job):
     """The names of the results files of a run that have a page, without ending."""
     return sorted(path.stem for path in job.folder.glob("*.h5") if path.with_suffix(".html").is_file())
+
+
+def files_of(job):
+    """The names of the files of a run that the server sends."""
+    return sorted(path.name for path in job.folder.iterdir() if path.suffix in KINDS and path.is_file() and
+                  not path.is_symlink())
+
+
+def has_report(job):
+    return set(REPORT) <= set(files_of(job))
 
 
 def archive(job):
