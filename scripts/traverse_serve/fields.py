@@ -67,7 +67,7 @@ def number(field, word):
         value = float(word)
     except ValueError:
         value = float("nan")
-    if not re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", word) or abs(value) == float("inf"):
+    if not re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?", word) or abs(value) == float("inf"):
         raise InputError(f"{word}: allowed: a number, with a decimal point", field.name)
     return value
 

@@ -97,8 +97,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
         if self.headers.get("Content-Type", "").partition(";")[0] != "application/json":
             self.close_connection = True
             raise Answer(415, "Only JSON is taken.")
-        length = self.headers.get("Content-Length", "")
-        if not re.fullmatch(r"\d{1,12}", length) or "Transfer-Encoding" in self.headers:
+        length, *others = self.headers.get_all("Content-Length", [""])
+        if others or not re.fullmatch(r"[0-9]{1,1000}", length) or "Transfer-Encoding" in self.headers:
             self.close_connection = True
             raise Answer(411, "The length is missing.")
         if int(length) > MOST_BYTES:

@@ -73,7 +73,7 @@ class Site:
                 jobs = [job for job in reversed(self.queue.jobs.values()) if job.of is None]
             return self.html(pages.runs_page(self.root, language, jobs))
         form = self.form(name)
-        job = self.queue.jobs.get(int(query["from"])) if re.fullmatch(r"\d{1,9}", query.get("from", "")) else None
+        job = self.queue.jobs.get(int(query["from"])) if re.fullmatch(r"[0-9]{1,9}", query.get("from", "")) else None
         values = job.values if job is not None and job.form == name else {}
         return self.html(pages.form_page(self.root, language, form, values, self.table, form_words(language)))
 
@@ -131,7 +131,7 @@ class Site:
             Step([*script, HERE / "documents.py", folder], "the pages of results are being made")]
 
     def job(self, number):
-        job = self.queue.jobs.get(int(number)) if re.fullmatch(r"\d{1,9}", number) else None
+        job = self.queue.jobs.get(int(number)) if re.fullmatch(r"[0-9]{1,9}", number) else None
         if job is None or job.of is not None:
             raise Answer(404, "There is no such run.")
         return job
