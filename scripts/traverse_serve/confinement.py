@@ -12,9 +12,8 @@ VERSION_OF_KERNEL, BENEATH, NO_NEW_PRIVILEGES = 1, 1, 38
 EXECUTE, WRITE, READ, READ_FOLDER = 1 << 0, 1 << 1, 1 << 2, 1 << 3
 OF_FILES = EXECUTE | WRITE | READ | 1 << 14
 ALL = {1: (1 << 13) - 1, 2: (1 << 14) - 1, 3: (1 << 15) - 1}  # rights that a version of Landlock knows
-# What programs, libraries, fonts and Open MPI read of a system.
-SYSTEM = ("/usr", "/lib", "/lib64", "/bin", "/opt", "/proc", "/sys", "/dev", "/etc/alternatives", "/etc/fonts",
-          "/etc/hosts", "/etc/ld.so.cache", "/etc/localtime", "/etc/matplotlibrc", "/etc/nsswitch.conf", "/etc/openmpi", "/etc/passwd",
+# What programs, libraries, fonts and Open MPI read of a system, in addition to the files of /etc that everybody may read.
+SYSTEM = ("/usr", "/lib", "/lib64", "/bin", "/opt", "/proc", "/sys", "/dev", "/etc/alternatives", "/etc/fonts", "/etc/openmpi",
           "/etc/pmix", "/etc/prte", "/etc/python3", f"/etc/python3.{sys.version_info.minor}")
 DEVICES = ("/dev/null", "/dev/shm")
 
@@ -39,6 +38,12 @@ def allow(library, rules, path, rights):
         os.close(place)
 
 
+def settings():
+    """The files of /etc itself that everybody may read."""
+    with os.scandir("/etc") as entries:
+        return [entry.path for entry in entries if entry.is_file() and entry.stat().st_mode & 0o004]
+
+
 def confine(folder, readable):
     """Allows writing in the folder only, reading in it, in the named places and in the system. Returns whether the
     kernel does so."""
@@ -49,7 +54,7 @@ def confine(folder, readable):
     rights = ALL[min(version, 3)]
     try:
         rules = call(library, CREATE_RULESET, struct.pack("=Q", rights), 8, 0)
-        for path in (*SYSTEM, *readable):
+        for path in (*SYSTEM, *settings(), *readable):
             allow(library, rules, path, EXECUTE | READ | READ_FOLDER)
         for path in (folder, *DEVICES):
             allow(library, rules, path, rights)

@@ -32,7 +32,7 @@ class Step(NamedTuple):
 def environment(scratch):
     """Of the processes of a run: nothing of the user's own settings, temporary files in the folder of the server."""
     kept = {name: value for name, value in os.environ.items() if name in TAKEN_OVER or name.startswith(("OMPI_", "PRTE_"))}
-    return kept | {"TMPDIR": str(scratch), "MPLCONFIGDIR": str(scratch / "matplotlib"), "PYTHONDONTWRITEBYTECODE": "1",
+    return kept | {"TMPDIR": str(scratch), "MPLCONFIGDIR": str(scratch.parent / "cache"), "PYTHONDONTWRITEBYTECODE": "1",
                    "PYTHONUNBUFFERED": "1"}
 
 
