@@ -7,8 +7,9 @@ set(share ${CMAKE_INSTALL_DATADIR}/traverse)  # where the program looks for scen
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME traverse)
 
 install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
-install(PROGRAMS scripts/traverse-check scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_report DESTINATION ${share}/python
+install(PROGRAMS scripts/traverse-check scripts/traverse-report scripts/traverse-serve DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_report scripts/traverse_serve
+        DESTINATION ${share}/python
         FILES_MATCHING PATTERN *.py PATTERN *.csv PATTERN *.yml PATTERN *.html PATTERN *.css PATTERN *.js)
 file(GLOB several CONFIGURE_DEPENDS scripts/picture*.py scripts/convert*.py)
 install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py

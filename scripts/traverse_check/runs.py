@@ -83,12 +83,12 @@ def finish(process, what):
         raise CheckError(f"{what} could not be written: {lines[-1]}", 4)
 
 
-def report_command():
-    """The command traverse-report, beside this command or in the sources."""
+def command(name):
+    """A command such as traverse-report, beside this command or in the sources."""
     for place in (pathlib.Path(sys.argv[0]).resolve().parent, SCRIPTS):
-        if (place / "traverse-report").is_file():
-            return place / "traverse-report"
-    raise CheckError("traverse-report is not beside this command", 4)
+        if (place / name).is_file():
+            return place / name
+    raise CheckError(f"{name} is not beside this command", 4)
 
 
 def report_words(traverse, asked, files):
@@ -100,7 +100,7 @@ def report_words(traverse, asked, files):
         more = ["--GJ", f"{asked.GJ!r} N.m2", "--polar-inertia", f"{asked.polar_inertia!r} kg.m"]
     if asked.complex:
         more.append("--complex")
-    return [report_command(), *files, "-o", "report", "--program", traverse, "--folder", ".", "--line-speed",
+    return [command("traverse-report"), *files, "-o", "report", "--program", traverse, "--folder", ".", "--line-speed",
             f"{asked.line_speed!r} m/s", *more]
 
 

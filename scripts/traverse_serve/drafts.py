@@ -73,17 +73,17 @@ class Drafts:
         with self.written(files) as folder:
             return self.run(folder, "-describe")
 
-    def draft(self, form, values, language):
-        """{errors, general, facts, unusual, stage, cost, described} of a form."""
+    def draft(self, form, values, language, draw=True):
+        """{errors, general, facts, unusual, stage, cost, described} of a form; without `draw` no stage."""
         answer = {"errors": {}, "general": "", "facts": [], "unusual": [], "stage": None, "cost": "", "described": ""}
         with self.lock:
             try:
                 if form.name == "check":
-                    self.draft_of_check(form, values, language, answer)
+                    drawn = self.examine_check(form, values, language, answer)
                 else:
                     files, drawn = scene_of(form, values, language)
                     self.add_description(self.described(files), answer, form.name == "scene")
-                    answer["stage"] = self.drawing(drawn)
+                answer["stage"] = self.drawing(drawn) if draw else None
             except inputs.InputError as error:
                 tell(answer, error.field, str(error))
             except CheckError as error:
@@ -106,8 +106,8 @@ class Drafts:
             answer["cost"] = t("expected: {time}", time=parts["time"].split(" on ")[0])
         answer["described"] = printed if whole else ""
 
-    def draft_of_check(self, form, values, language, answer):
-        """The need for a dynamic analysis and the drawing, of the first combination of bounds."""
+    def examine_check(self, form, values, language, answer):
+        """Adds the need for a dynamic analysis of the first combination of bounds. Returns the files of the drawing."""
         with self.written({}) as folder:
             file = folder / "bridge.yml"
             file.write_text(check_text(form, values, language), encoding="utf-8")
@@ -116,8 +116,6 @@ class Drafts:
             except CheckError as error:
                 raise CheckError(str(error).replace(f"{file}: ", "")) from None
         case = scene.cases(asked, checking.stiffnesses_of(asked, self.program))[0]
-        beam = scene.beam_text(asked.spans, case, asked)
-        answer["stage"] = self.drawing({"scene.yml": beam + "load: {hslm_a: 1, speed: 50.0}\n"})
         needed = False
         for part in checking.parts_of(asked, case, self.program):
             found = flow_chart.answer(part, asked)
@@ -130,6 +128,7 @@ class Drafts:
                                                                                 last=speeds[1]) if speeds else t("no")])
         if asked.frequencies:
             answer["facts"].append([capital(t("bending stiffness EI")), units.in_words("EI", case.EI)])
+        return {"scene.yml": scene.beam_text(asked.spans, case, asked) + "load: {hslm_a: 1, speed: 50.0}\n"}
 
 
 def check_text(form, values, language):

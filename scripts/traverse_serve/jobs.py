@@ -96,10 +96,13 @@ class Queue:
             self.changed.notify_all()
         return job
 
+    def all(self):
+        with self.changed:
+            return list(self.jobs.values())
+
     def before(self, job):
         """How many runs are computed before this one."""
-        with self.changed:
-            return sum(one.state in ("waiting", "running") and one.number < job.number for one in list(self.jobs.values()))
+        return sum(one.state in ("waiting", "running") and one.number < job.number for one in self.all())
 
     def work(self):
         while True:
@@ -153,7 +156,6 @@ class Queue:
         """Ends everything."""
         with self.changed:
             self.closed = True
-            running = list(self.jobs.values())
-        for job in running:
+        for job in self.all():
             self.stop(job)
         self.worker.join(10.0)

@@ -4,11 +4,14 @@ Every address begins with a random token. The name of the host is that of this m
 bound to it; what changes something is sent by a page of this server (Origin), and has a limited size.
 """
 
+import contextlib
 import hmac
 import http.server
 import json
+import os
 import re
 import secrets
+import shutil
 import socket
 import sys
 import threading
@@ -26,12 +29,25 @@ HEAD = {"X-Content-Type-Options": "nosniff", "Referrer-Policy": "same-origin", "
 
 
 class Answer(Exception):
-    """What is sent back. As an exception, from the middle of the work."""
+    """What is sent back: a text, bytes, or an open file, which is closed. As an exception, from the middle of the work."""
 
     def __init__(self, status, content=b"", kind="text/plain; charset=utf-8", head=None):
         super().__init__(status)
         self.status, self.kind, self.head = status, kind, head or {}
         self.content = content.encode("utf-8") if isinstance(content, str) else content
+
+    def length(self):
+        return len(self.content) if isinstance(self.content, bytes) else os.fstat(self.content.fileno()).st_size
+
+    def write_to(self, stream):
+        if isinstance(self.content, bytes):
+            stream.write(self.content)
+        else:
+            shutil.copyfileobj(self.content, stream)
+
+    def close(self):
+        if not isinstance(self.content, bytes):
+            self.content.close()
 
 
 def as_json(data, status=200):
@@ -64,7 +80,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
                 raise
             except OSError as error:  # a full disk, for example
                 answer = Answer(500, f"{error.filename or 'The server'}: {error.strerror or error}")
-            self.send(answer)
+            with contextlib.closing(answer):
+                self.send(answer)
         except (BrokenPipeError, ConnectionResetError, TimeoutError):
             self.close_connection = True
 
@@ -115,14 +132,14 @@ class Handler(http.server.BaseHTTPRequestHandler):
     def send(self, answer):
         self.send_response(answer.status)
         head = HEAD | {"Content-Security-Policy": POLICY, "Content-Type": answer.kind,
-                       "Content-Length": str(len(answer.content))} | answer.head
+                       "Content-Length": str(answer.length())} | answer.head
         for name, value in head.items():
             self.send_header(name, value)
         if self.close_connection:
             self.send_header("Connection", "close")
         self.end_headers()
         if self.command != "HEAD":
-            self.wfile.write(answer.content)
+            answer.write_to(self.wfile)
 
     def log_message(self, form, *words):
         """Nothing: an address has the token."""

@@ -69,8 +69,7 @@ class Site:
         """A form, filled in as an earlier run (from) if wanted; or the list of runs."""
         name = rest[0] or "check"
         if name == "runs":
-            with self.queue.changed:
-                jobs = [job for job in reversed(self.queue.jobs.values()) if job.of is None]
+            jobs = [job for job in reversed(self.queue.all()) if job.of is None]
             return self.html(pages.runs_page(self.root, language, jobs))
         form = self.form(name)
         job = self.queue.jobs.get(int(query["from"])) if re.fullmatch(r"[0-9]{1,9}", query.get("from", "")) else None
@@ -94,24 +93,20 @@ class Site:
 
     def start(self, form, values, language):
         """Writes the files of a run and puts it into the queue."""
+        answer = self.drafts.draft(form, values, language, draw=False)
+        if answer["errors"] or answer["general"]:
+            return as_json(answer, 422)
+        files, steps = self.files_and_steps(form, values, language)
         try:
-            files, steps = self.files_and_steps(form, values, language)
             number = self.queue.next_number()
-        except inputs.InputError as error:
-            return as_json({"errors": {error.field: str(error)} if error.field else {},
-                            "general": "" if error.field else str(error)}, 422)
         except QueueFull:
             return as_json({"errors": {}, "general": t("So many runs wait already that no other is taken: stop one, or try "
                                                        "again later.")}, 429)
         folder = self.folder / f"run_{number}"
-        try:
-            folder.mkdir()
-            for name, text in files.items():
-                place = folder / name
-                place.parent.mkdir(exist_ok=True)
-                place.write_text(text, encoding="utf-8", errors="replace")
-        except OSError as error:
-            return as_json({"errors": {}, "general": f"{error.filename or folder}: {error.strerror}"}, 507)
+        for name, text in files.items():
+            place = folder / name
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(text, encoding="utf-8", errors="replace")
         self.queue.add(Job(form.name, values, folder, steps(folder), list(files)), number)
         return as_json({"run": number})
 
@@ -121,7 +116,7 @@ class Site:
         if form.name == "check":
             files = {"bridge/bridge.yml": drafts.check_text(form, values, language)}
             return files, lambda folder: [
-                Step([*script, SCRIPTS / "traverse-check", "bridge/bridge.yml", "--folder", ".", "--program", self.program,
+                Step([*script, runs.command("traverse-check"), "bridge/bridge.yml", "--folder", ".", "--program", self.program,
                       "--no-report"], "the check is being computed", judged=True),
                 Step([*script, HERE / "documents.py", folder], "the pages of results are being made")]
         files, _ = drafts.scene_of(form, values, language)
@@ -158,7 +153,7 @@ class Site:
                           {"Content-Disposition": f'attachment; filename="traverse_{job.form}_{job.number}.zip"'})
         if rest[2] != "state":
             raise Answer(404, "There is no such page.")
-        report = next((one for one in reversed(self.queue.jobs.values()) if one.of is job), None)
+        report = next((one for one in reversed(self.queue.all()) if one.of is job), None)
         return as_json(self.state(job) | {"report": report and {"state": report.state, "message": report.message()},
                                           "has_report": has_report(job)})
 
@@ -177,7 +172,7 @@ class Site:
             return as_json({})
         if job is None or rest[2] != "report" or job.state != "done":
             raise Answer(404, "There is no such page.")
-        busy = any(one.of is job and one.state in ("waiting", "running") for one in list(self.queue.jobs.values()))
+        busy = any(one.of is job and one.state in ("waiting", "running") for one in self.queue.all())
         if not busy and not has_report(job):
             try:
                 self.queue.add(Job(job.form, {}, job.folder, [self.report_step(job, language)], of=job))
@@ -186,14 +181,14 @@ class Site:
         return as_json({})
 
     def report_step(self, job, language):
-        words = [sys.executable, "-B", SCRIPTS / "traverse-report"]
         results = [f"{name}.h5" for name in results_of(job)]
         if job.form == "check":
             asked = question.ask([str(job.folder / "bridge/bridge.yml"), "--folder", str(job.folder)])
-            words = [sys.executable, "-B", *runs.report_words(self.program, asked, results)]
+            words = runs.report_words(self.program, asked, results)
         else:
-            words += [*results, "-o", "report", "--program", self.program, "--folder", ".", "--language", language]
-        return Step(words, "the report is being made")
+            words = [runs.command("traverse-report"), *results, "-o", "report", "--program", self.program, "--folder", ".",
+                     "--language", language]
+        return Step([sys.executable, "-B", *words], "the report is being made")
 
     def file_of_run(self, language, rest, query):
         """A file of the folder of a run: an ordinary one with a known ending, no link."""
@@ -207,12 +202,13 @@ class Site:
             kind = None
         if kind is None:
             raise Answer(404, "There is no such file.")
-        with open(handle, "rb") as file:
-            if not stat.S_ISREG(os.fstat(handle).st_mode):
-                raise Answer(404, "There is no such file.")
-            head = {"Content-Security-Policy": RESULTS_POLICY} if kind == "text/html" else \
-                {"Content-Disposition": f'attachment; filename="{name}"'}
-            return Answer(200, file.read(), with_charset(kind), head)
+        file = open(handle, "rb")  # the server closes it
+        if not stat.S_ISREG(os.fstat(handle).st_mode):
+            file.close()
+            raise Answer(404, "There is no such file.")
+        head = {"Content-Security-Policy": RESULTS_POLICY} if kind == "text/html" else \
+            {"Content-Disposition": f'attachment; filename="{name}"'}
+        return Answer(200, file, with_charset(kind), head)
 
 
 def results_of(job):
