@@ -20,6 +20,7 @@ install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfo
         scripts/search_answers.py scripts/sensitivity_measures.py
         DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
+install(FILES packaging/traverse.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
 install(FILES examples/three_span_train.py examples/bridge.yml DESTINATION ${share}/examples)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -95,7 +95,8 @@ def written(field, values):
         raise InputError(f"{found}: allowed: {', '.join(field.choices)}", field.name)
     if field.kind == "flag" and found not in ("", "true"):
         raise InputError("allowed: true, or nothing", field.name)
-    return found
+    # In a field of one number a comma can only be its decimal sign; elsewhere it separates numbers.
+    return found.replace(",", ".") if field.kind == "number" and not field.many else found
 
 
 def read(fields, values, numbers=True):

@@ -92,6 +92,9 @@ def check():
                         flag("complex", "no simple structure: skew, flexible supports, torsion", more=True),
                         Field("torsional-frequency", "first natural frequency of torsion", "", ("Hz",), optional=True,
                               more=True),
+                        Field("GJ", "torsional stiffness GJ", "", EI, optional=True, more=True, hint="instead of it"),
+                        Field("polar-inertia", "polar moment of inertia per length", "", ("t m", "kg m"), optional=True,
+                              more=True, hint="with GJ"),
                         text("hslm-b", "N, d of HSLM-B", more=True, hint="simple spans below 7 m: from its chart"))),
                     ("title page of the report", tuple(
                         text(f"report-{name}", words, more=True) for name, words in (

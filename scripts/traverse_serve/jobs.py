@@ -32,14 +32,15 @@ class Step(NamedTuple):
 def environment(scratch):
     """Of the processes of a run: nothing of the user's own settings, temporary files in the folder of the server."""
     kept = {name: value for name, value in os.environ.items() if name in TAKEN_OVER or name.startswith(("OMPI_", "PRTE_"))}
-    return kept | {"TMPDIR": str(scratch), "MPLCONFIGDIR": str(scratch.parent / "cache"), "PYTHONDONTWRITEBYTECODE": "1",
+    return kept | {"TMPDIR": str(scratch), "MPLCONFIGDIR": str(scratch), "PYTHONDONTWRITEBYTECODE": "1",
                    "PYTHONUNBUFFERED": "1"}
 
 
 def kept_process(folder, allowed, program, scratch, words):
     """Starts a command under its keeper; closing its standard input ends it."""
     return subprocess.Popen([sys.executable, "-B", str(KEEPER), str(allowed), str(program), *map(str, words)], cwd=folder,
-                            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment(scratch))
+                            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment(scratch),
+                            start_new_session=True)  # so that Ctrl+C in a terminal reaches the server only
 
 
 class Job:
@@ -68,10 +69,10 @@ class Job:
 
 
 class Queue:
-    """program: traverse. folder: the only one that is written."""
+    """program: traverse. folder: the only one that is written. scratch: one in it, for temporary files."""
 
-    def __init__(self, program, folder):
-        self.program, self.folder, self.scratch = program, folder, folder / "scratch"
+    def __init__(self, program, folder, scratch):
+        self.program, self.folder, self.scratch = program, folder, scratch
         self.jobs, self.count, self.closed = collections.OrderedDict(), 0, False
         self.changed = threading.Condition()
         self.worker = threading.Thread(target=self.work, daemon=True)

@@ -29,11 +29,13 @@ def main():
     confinement.confine(folder, confinement.own_places(program))
     child = subprocess.Popen(command, stdin=subprocess.DEVNULL, process_group=0)
     ended = os.pidfd_open(child.pid)
-    readable, _, _ = select.select([sys.stdin.buffer, ended], [], [])
-    if ended not in readable:
-        send(child.pid, signal.SIGTERM)
-        select.select([ended], [], [], PATIENCE)
-    send(child.pid, signal.SIGKILL)  # what is left of the group
+    try:
+        readable, _, _ = select.select([sys.stdin.buffer, ended], [], [])
+        if ended not in readable:
+            send(child.pid, signal.SIGTERM)
+            select.select([ended], [], [], PATIENCE)
+    finally:
+        send(child.pid, signal.SIGKILL)  # what is left of the group
     status = child.wait()
     return 128 - status if status < 0 else status
 

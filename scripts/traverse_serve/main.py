@@ -6,6 +6,7 @@ import os
 import pathlib
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
@@ -17,7 +18,7 @@ from traverse_check.rules import CheckError, printable
 from .server import Server
 from .site import Site
 
-START = "start.html"
+LOCK = ".traverse_serve.lock"
 
 
 def arguments_of(given):
@@ -33,31 +34,25 @@ def arguments_of(given):
 
 
 def prepared(folder):
-    """The folder, which nobody else may read, with an empty one for temporary files."""
+    """(folder, a new one in it for temporary files): of this user alone, and of this server alone until it ends."""
     folder = pathlib.Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     folder = folder.resolve()
-    os.chmod(folder, 0o700)
-    scratch = folder / "scratch"
-    lock = os.open(folder / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)  # until this process ends
+    if folder.stat().st_mode & 0o022:
+        raise CheckError(f"--folder {folder}: other users may write in it; allowed: a folder of your own", 4)
+    lock = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o600)
     try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # until this process ends
     except BlockingIOError:
         raise CheckError(f"--folder {folder}: another traverse serve uses it", 4) from None
-    if scratch.is_symlink():
-        raise CheckError(f"{scratch} is a link", 4)
-    shutil.rmtree(scratch, ignore_errors=True)
-    scratch.mkdir(exist_ok=True)
-    tempfile.tempdir = str(scratch)
-    return folder
+    tempfile.tempdir = tempfile.mkdtemp(prefix=".traverse_serve_", dir=folder)
+    return folder, pathlib.Path(tempfile.tempdir)
 
 
-def open_browser(server, folder):
+def open_browser(server, scratch):
     """Opens a file that leads to the page, so that no list of processes shows the token."""
-    place = folder / START
-    place.unlink(missing_ok=True)
-    with os.fdopen(os.open(place, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
-        file.write(f'<meta http-equiv="refresh" content="0; url={server.address}">\n')
+    place = scratch / "start.html"
+    place.write_text(f'<meta http-equiv="refresh" content="0; url={server.address}">\n')
     if not webbrowser.open(place.as_uri()):
         print("No browser was found: open the address above in one.", flush=True)
 
@@ -65,21 +60,26 @@ def open_browser(server, folder):
 def run(words):
     given = arguments_of(words)
     program = runs.program(given.program)
-    folder = prepared(given.folder)
-    site = Site(program, folder)
+    folder, scratch = prepared(given.folder)
+    try:
+        serve(Site(program, folder, scratch), given)
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+def serve(site, given):
+    """Answers until a signal ends it."""
     server = Server(site, given.port)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: threading.Thread(target=server.shutdown).start())
-    print(f"Open this address in a browser on this machine: {server.address}\nFiles: {folder}\nCtrl+C ends it.", flush=True)
+    print(f"Open this address in a browser on this machine: {server.address}\nFiles: {site.folder}\nCtrl+C ends it.", flush=True)
     if given.browser:
-        open_browser(server, folder)
+        open_browser(server, site.queue.scratch)
     try:
         server.serve_forever(poll_interval=0.2)
     finally:
         server.server_close()
         site.queue.close()
-        (folder / START).unlink(missing_ok=True)
-        shutil.rmtree(folder / "scratch", ignore_errors=True)
 
 
 def main():
@@ -88,6 +88,9 @@ def main():
     except CheckError as error:
         print(f"traverse serve: {error}", file=sys.stderr)
         return error.status
+    except subprocess.SubprocessError:
+        print("traverse serve: the program traverse does not answer to -help", file=sys.stderr)
+        return 4
     except (OSError, OverflowError) as error:
         print(f"traverse serve: {printable(getattr(error, 'filename', None) or 'start')}: "
               f"{printable(getattr(error, 'strerror', None) or error)}", file=sys.stderr)

@@ -30,8 +30,8 @@ def page(root, language, here, title, content, data, scripts=("serve.js",)):
     links = "".join(f'<a href="{root}{language}/{name}"{current(name, here)}>{said(form.title)}</a>'
                     for name, form in forms().items())
     links += f'<a href="{root}{language}/runs"{current("runs", here)}>{said("runs")}</a>'
-    languages = "".join(f'<a href="{root}{other}/{here}" hreflang="{other}" lang="{other}"{current(other, language)}>'
-                        f"{NAMES[other]}</a>" for other in LANGUAGES)
+    languages = "".join(f'<a href="{root}{other}/{here}" hreflang="{other}" lang="{other}" aria-label="{NAMES[other]}"'
+                        f'{current(other, language)}>{other.upper()}</a>' for other in LANGUAGES)
     parts = {"language": language, "title": escape(title), "root": root, "links": links, "languages": languages,
              "skip": said("Go to the results") if here.startswith("run") else said("Go to the fields"),
              "menu": said("kinds of computation"), "of_language": said("language"), "content": content,

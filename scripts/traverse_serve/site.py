@@ -32,13 +32,13 @@ def with_charset(kind):
 
 
 class Site:
-    """program: traverse. folder: the only one that is read and written."""
+    """program: traverse. folder: the only one that is read and written. scratch: one in it, for temporary files."""
 
-    def __init__(self, program, folder):
+    def __init__(self, program, folder, scratch):
         self.program, self.folder = program, folder
         self.table = options.table(program)
-        self.queue = Queue(program, folder)
-        self.drafts = drafts.Drafts(program, folder, self.queue.scratch)
+        self.queue = Queue(program, folder, scratch)
+        self.drafts = drafts.Drafts(program, folder, scratch)
         self.root = ""  # the address up to the token, which the server sets
 
     def answer(self, method, parts, query, sent):

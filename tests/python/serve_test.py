@@ -82,7 +82,7 @@ class Requests(Served):
             self.assertEqual(self.request("GET", path)[0], 404)
         status, head, content = self.request("GET", f"en/run/{run}/file/results.html")
         self.assertEqual((status, head["Content-Security-Policy"].split(";")[0]), (200, "sandbox allow-scripts"))
-        self.assertEqual((self.folder.stat().st_mode & 0o777, (self.folder / "scratch").exists()), (0o700, True))
+        self.assertEqual(self.folder.stat().st_mode & 0o777, 0o700)
 
     def test_scenes_that_name_files_elsewhere(self):
         before = sorted(self.folder.iterdir())
@@ -155,11 +155,16 @@ class Runs(Served):
         self.until(lambda: not processes_in(self.folder / f"run_{started[0]}"), 10.0)
         self.assertEqual(self.request("GET", f"en/run/{started[0]}")[0], 200)
 
-    def test_another_server_of_the_folder_is_refused(self):
-        ended = subprocess.run([sys.executable, "-B", SERVE, "--folder", self.folder, "--program", BINARY], timeout=60,
-                               capture_output=True, text=True)
-        self.assertEqual((ended.returncode, len(ended.stderr.splitlines())), (4, 1))
-        self.assertIn("another traverse serve", ended.stderr)
+    def test_folders_of_others_are_refused(self):
+        shared, file = self.outside / "shared", self.outside / "file"
+        shared.mkdir()
+        shared.chmod(0o777)
+        file.write_text("")
+        for folder, why in ((self.folder, "another traverse serve"), (shared, "other users"), (file, "exists")):
+            ended = subprocess.run([sys.executable, "-B", SERVE, "--folder", folder, "--program", BINARY], timeout=60,
+                                   capture_output=True, text=True)
+            self.assertEqual((ended.returncode, len(ended.stderr.splitlines())), (4, 1))
+            self.assertIn(why, ended.stderr)
 
 
 class Killed(Served):
@@ -221,7 +226,8 @@ class Tables(unittest.TestCase):
         self.assertEqual((given["beam_EI"], given["beam_spans"], given["sweep_speed.to"]), (2.6e11, [20.0, 25.0, 30.0], 90.0))
         self.assertAlmostEqual(given["sweep_speed.from"], 150.0 / 3.6, places=9)
         self.assertEqual(fields.read(forms.forms()["crane"].fields, {})["vehicle_trolley_load_mass"], 10000.0)
-        for wrong in ("", "1,5", "0x10", "1e999", "nan", "1_0", "١"):
+        self.assertEqual(fields.read(form, {"beam_EI": "1,5"})["beam_EI"], 1.5e9)
+        for wrong in ("", "1 5", "1,5,5", "0x10", "1e999", "nan", "1_0", "١"):
             with self.assertRaises(inputs.InputError) as caught:
                 fields.read(form, {"beam_EI": wrong})
             self.assertEqual(caught.exception.field, "beam_EI")
