@@ -157,6 +157,7 @@ class Queue:
         """Ends everything."""
         with self.changed:
             self.closed = True
+            self.changed.notify_all()
         for job in self.all():
             self.stop(job)
         self.worker.join(10.0)

@@ -12,7 +12,6 @@ from traverse_check import question, runs
 from traverse_report.language import LANGUAGES, choose, t
 
 from . import drafts, inputs, options, pages
-
 from .forms import examples, forms
 from .jobs import Job, Queue, QueueFull, Step
 from .server import RESULTS_POLICY, Answer, as_json

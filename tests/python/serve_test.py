@@ -152,7 +152,7 @@ class Runs(Served):
             self.assertEqual(self.post(f"en/run/{run}/stop", {})[0], 200)
         for run in started:
             self.ended(run, "stopped")
-        self.until(lambda: not processes_in(self.folder / f"run_{started[0]}"), 10.0)
+        self.until(lambda: not processes_in(self.folder / f"run_{started[0]}"))
         self.assertEqual(self.request("GET", f"en/run/{started[0]}")[0], 200)
 
     def test_folders_of_others_are_refused(self):
@@ -172,7 +172,7 @@ class Killed(Served):
         run = self.post("en/scene/run", {"text": ENDLESS, "files": {}})[1]["run"]
         self.until(lambda: any(b"scene.yml" in words for words in processes_in(self.folder / f"run_{run}")))
         self.server.send_signal(signal.SIGKILL)
-        self.until(lambda: not processes_in(self.folder / f"run_{run}"), 10.0)
+        self.until(lambda: not processes_in(self.folder / f"run_{run}"))
 
 
 class FullDisk(Served):

@@ -52,7 +52,7 @@ class Served(unittest.TestCase):
 
     def request(self, method, path, body=None, whole=False, **head):
         """(status, head, content) of a request; whole: the path is as given, without the token before it."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=300)
         try:
             connection.request(method, path if whole else f"/{self.token}/{path}", body,
                                {name.replace("_", "-"): value for name, value in head.items()})
@@ -73,7 +73,7 @@ class Served(unittest.TestCase):
     def state(self, run):
         return json.loads(self.request("GET", f"en/run/{run}/state")[2])
 
-    def until(self, what, seconds=60.0):
+    def until(self, what, seconds=300.0):
         """Waits until what() is true, which it must become."""
         end = time.monotonic() + seconds
         while not (found := what()):
