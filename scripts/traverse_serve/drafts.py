@@ -87,8 +87,8 @@ class Drafts:
             except inputs.InputError as error:
                 tell(answer, error.field, str(error))
             except CheckError as error:
-                name = re.match(r"(?:--)?([a-zA-Z]+(?:-[a-zA-Z]+)*)", str(error).removeprefix("bridge.yml: "))
-                tell(answer, named(form, [name[1]] if name else []), str(error))
+                words = re.findall(r"^([\w-]+) |--([\w-]+)", str(error))
+                tell(answer, named(form, [first or other for first, other in words]), str(error))
             except Failed as error:
                 option = options.named_in(str(error), [field.option for field in form.fields])
                 field = "text" if form.name == "scene" else named(form, [option])
@@ -137,8 +137,8 @@ def check_text(form, values, language):
 
 
 def named(form, names):
-    """The first field of one of these options or words; empty if there is none."""
-    return next((field.name for field in form.fields if field.option in names), "")
+    """The field of the first of these options or words that has one; empty if none has."""
+    return next((field.name for name in names for field in form.fields if field.option == name), "")
 
 
 def tell(answer, field, message):

@@ -31,6 +31,13 @@ TROLLEY = """    length: 2.8                    # m
 STEEL = 1.75e6 * 8.0  # N, EA of a fall of overhead_crane.yml
 
 
+def whole(given, name):
+    """A count."""
+    if given[name] != int(given[name]) or given[name] < 1.0:
+        raise inputs.InputError("allowed: a whole number of at least 1", name)
+    return int(given[name])
+
+
 def listed(values):
     return f"[{', '.join(repr(value) for value in values)}]"
 
@@ -57,9 +64,9 @@ def coaches(given, speed, files, start=None):
     name = given["train_vehicles"]
     source = (inputs.OPTIONS / "vehicles" / f"{name}.yml")
     files[source.name] = inputs.with_library(source.read_text(encoding="utf-8"), source.name, files, source.parent)
-    count = given["train_vehicles.count"]
+    count = whole(given, "train_vehicles.count")
     return {"vehicle": [(f"coach: {{file: {source.name}}}", "")],
-            "train": [(f"vehicles: coach*{count:.6g}", "the front one first"), (f"speed: {speed!r}", "m/s"),
+            "train": [(f"vehicles: coach*{count}", "the front one first"), (f"speed: {speed!r}", "m/s"),
                       *([(f"positions: {start!r}", "m: the roughness has its full height at the bridge")] if start else [])]}
 
 
@@ -102,10 +109,9 @@ def rough(given, files):
         if None in waves:
             raise inputs.InputError("allowed: both lengths of waves, or none", "track_wavelengths.from")
         track.append((f"wavelengths: {listed(waves)}", "m"))
-    seeds = given["study_vary_track_seed"]
     return bridge(given, given["beam_EI"]) | coaches(given, given["train_speed"], files, -120.0) | {
         "track": track, "output": stations(given),
-        "study": [(f"vary: {{track_seed: 1:{seeds:.6g}}}", "first and last seed"),
+        "study": [(f"vary: {{track_seed: 1:{whole(given, 'study_vary_track_seed')}}}", "first and last seed"),
                   ("statistics: {over: track_seed, quantiles: [0.5, 0.9]}", "")], "accuracy": "1.0e-2"}
 
 

@@ -117,7 +117,10 @@ class Requests(Served):
                                     ("sweep", {"sweep_speed.from": "900"}, "sweep_speed.from"),
                                     ("find", {"find_between.from": "600"}, "find_between.from"),
                                     ("crane", {"train_speed_file.way": "1"}, "train_speed_file.way"),
-                                    ("rough", {"beam_mass": "x"}, "beam_mass"), ("scene", {"text": "beam_span: 3"}, "text")):
+                                    ("check", {"span": "5"}, "hslm-b"), ("check", {"frequency": "4"}, "EI"),
+                                    ("rough", {"beam_mass": "x"}, "beam_mass"),
+                                    ("rough", {"study_vary_track_seed": "1.5"}, "study_vary_track_seed"),
+                                    ("rough", {"train_vehicles.count": "0"}, "train_vehicles.count"), ("scene", {"text": "beam_span: 3"}, "text")):
             with self.subTest(values):
                 answer = self.post(f"en/{form}/draft", values)[1]
                 self.assertEqual((list(answer["errors"]), answer["general"]), ([field], ""))
