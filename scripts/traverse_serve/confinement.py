@@ -69,4 +69,5 @@ def confine(folder, readable):
 def own_places(program):
     """What is of Traverse and of Python: to be read, outside of the system."""
     scripts = pathlib.Path(__file__).resolve().parents[1]
-    return [str(place) for place in (pathlib.Path(program).parent, scripts, scripts.parent / "options", sys.prefix, sys.base_prefix)]
+    places = (pathlib.Path(program).parent, scripts, scripts.parent / "options", sys.prefix, sys.base_prefix)
+    return [str(place) for place in places]

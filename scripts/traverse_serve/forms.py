@@ -126,8 +126,8 @@ def rough():
     spectra = {"german_low": "German railways, low disturbance", "german_high": "German railways, high disturbance",
                "fra_6": "FRA, class 6", "fra_4": "FRA, class 4", "iso8608_A": "road, ISO 8608 class A",
                "iso8608_C": "road, ISO 8608 class C"}
-    return Form("rough", "Rough track", "Computes a train on many random tracks: mean and quantiles of deflections, accelerations "
-                "and wheel forces.", (
+    return Form("rough", "Rough track", "Computes a train on many random tracks: mean and quantiles of deflections, "
+                "accelerations and wheel forces.", (
                     bridge("25", "30", "15"),
                     ("train", (*coaches(vehicles(), "velaro", "2"), Field("train_speed", "speed", "250", SPEED))),
                     ("track", (
@@ -152,7 +152,8 @@ def crane():
                         Field("vehicle_trolley_front_fall_winding_table", "height of hoisting", "2", ("m",),
                               hint="0: the load hangs"))),
                     ("travel", (
-                        Field("train_positions", "place of the trolley at the start", "5", ("m",), hint="from the left end of the girder"),
+                        Field("train_positions", "place of the trolley at the start", "5", ("m",),
+                              hint="from the left end of the girder"),
                         Field("train_speed_file.way", "way", "11.9", ("m",)),
                         Field("train_speed_file.speed", "speed", "72", ("m/min", "m/s")),
                         Field("train_speed_file.time", "time of accelerating and of braking", "4.9", ("s",)),

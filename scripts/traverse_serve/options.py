@@ -27,5 +27,5 @@ def table(program):
 
 def named_in(message, names):
     """The first of the names, as words, of a message of the program; empty if there is none."""
-    places = {name: found.start() for name in names if (found := re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", message))}
-    return min(places, key=places.get, default="")
+    found = re.search("|".join(rf"(?<![\w-]){re.escape(name)}(?![\w-])" for name in names), message)
+    return found[0] if found else ""

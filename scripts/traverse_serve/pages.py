@@ -66,7 +66,8 @@ def control(field, values, option):
     if field.kind == "flag":
         return f'<input type="checkbox" value="true" {about}{tip}{" checked" if value == "true" else ""}>'
     numeric = ' inputmode="decimal"' if field.kind == "number" and not field.many else ""
-    made = f'<input type="text" autocomplete="off" spellcheck="false" maxlength="200" value="{escape(value)}" {about}{tip}{numeric}>'
+    made = (f'<input type="text" autocomplete="off" spellcheck="false" maxlength="200" value="{escape(value)}" '
+            f"{about}{tip}{numeric}>")
     if len(field.units) > 1:
         units = {unit: unit.replace("m2", "m²") for unit in field.units}
         chosen = values.get(f"{field.name}:unit", field.units[0])
@@ -152,9 +153,9 @@ def run_page(root, language, job, results, files):
     again = (f'<a class="button" href="{root}{language}/{job.form}?from={job.number}">{said("change the input")}</a>')
     head = f'<div class="bar"><h1>{escape(title)}</h1>'
     if job.state == "done":
-        frames = "".join(
-            f'<iframe src="{root}{language}/run/{job.number}/file/{one}.html" sandbox="allow-scripts" '
-            f'title="{said("result")} {escape(one)}"{"" if i == 0 else " hidden"}></iframe>' for i, one in enumerate(results))
+        base = f"{root}{language}/run/{job.number}/file/"
+        frames = "".join(f'<iframe src="{base}{one}.html" sandbox="allow-scripts" title="{said("result")} {escape(one)}"'
+                         f'{"" if i == 0 else " hidden"}></iframe>' for i, one in enumerate(results))
         several = ""
         if len(results) > 1:
             several = (f'<label>{said("results")} <select id="which">'
@@ -162,7 +163,7 @@ def run_page(root, language, job, results, files):
         frames = frames or f'<p class="card wait">{escape(job.message())}</p>'
         report = {"report.pdf", "report.xlsx"} <= set(files)
         content = (f'{head}<p class="buttons">{several}{links_of(root, language, job, results, report)}{again}</p>'
-                   f'<p id="making" role="status"></p>{details(f"{root}{language}/run/{job.number}/file/", job, files)}</div>'
+                   f'<p id="making" role="status"></p>{details(base, job, files)}</div>'
                    f"{frames}")
     else:
         stop = f'<button id="stop" type="button">{said("stop")}</button>' if job.state in ("waiting", "running") else ""
@@ -182,8 +183,8 @@ def details(base, job, files):
     """What gives the same results on the command line, all files, and what the program has printed."""
     name = "check bridge.yml" if job.form == "check" else "-options_file scene.yml"
     return (f'<details class="small"><summary>{said("on the command line")}</summary><p>'
-            f'{escape(t("The same results, in the folder of the downloaded scene:"))} <code>traverse {name}</code></p><p>{said("files")}: '
-            + ", ".join(f'<a href="{base}{escape(file)}">{escape(file)}</a>' for file in files) + "</p>"
+            f'{escape(t("The same results, in the folder of the downloaded scene:"))} <code>traverse {name}</code></p>'
+            f'<p>{said("files")}: ' + ", ".join(f'<a href="{base}{escape(file)}">{escape(file)}</a>' for file in files) + "</p>"
             f'<pre>{escape(chr(10).join(job.lines))}</pre></details>')
 
 

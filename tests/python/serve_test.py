@@ -87,7 +87,8 @@ class Requests(Served):
     def test_scenes_that_name_files_elsewhere(self):
         before = sorted(self.folder.iterdir())
         for value in HOSTILE:
-            for text in (f"track_profile: {value}\n", f"{CROSSING}vehicle: {{a: {value}}}\n", f"? {value}\n: 1\n"):
+            for text in (f"track_profile: {value}\n", f"{CROSSING}vehicle: {{a: {value}}}\n", f"? {value}\n: 1\n",
+                         f"{CROSSING}output_file: {value}\n"):
                 with self.subTest(text[-60:]):
                     status, answer = self.post("en/scene/run", {"text": text, "files": {}})
                     self.assertEqual(status, 422)
@@ -106,21 +107,24 @@ class Requests(Served):
                              ("sweep", {"output_file": "/tmp/x.h5"}), ("sweep", {"train_vehicles": "../x"})):
             status, answer = self.post(f"en/{form}/run", values)
             self.assertEqual(status, 422, answer)
-        given = fields.read(forms.forms()["check"].fields, {"span": "--program", "report-project": '"}\nlimits: /etc/passwd'[:1]},
-                            numbers=False)
-        self.assertIn('span: "--program m"', scenes.check_file(given, "en"))
+        values = {"span": "--program", "report-project": '"}, limits: x'}
+        written = scenes.check_file(fields.read(forms.forms()["check"].fields, values, numbers=False), "en")
+        self.assertIn('span: "--program m"\n', written)
+        self.assertIn('report-project: "\\"}, limits: x"\n', written)
         self.assertEqual(self.post("en/check/run", {"report-project": "a\nlimits: /etc/passwd"})[0], 422)
 
     def test_messages_are_beside_their_fields(self):
         for form, values, field in (("check", {"span": "28 x"}, "span"), ("check", {"mass": "1", "mass:unit": "kg/m"}, "mass"),
-                                    ("check", {"EI": "", "frequency": "4, x"}, "frequency"), ("sweep", {"beam_EI": "-1"}, "beam_EI"),
+                                    ("check", {"EI": "", "frequency": "4, x"}, "frequency"),
+                                    ("sweep", {"beam_EI": "-1"}, "beam_EI"),
                                     ("sweep", {"sweep_speed.from": "900"}, "sweep_speed.from"),
                                     ("find", {"find_between.from": "600"}, "find_between.from"),
                                     ("crane", {"train_speed_file.way": "1"}, "train_speed_file.way"),
                                     ("check", {"span": "5"}, "hslm-b"), ("check", {"frequency": "4"}, "EI"),
                                     ("rough", {"beam_mass": "x"}, "beam_mass"),
                                     ("rough", {"study_vary_track_seed": "1.5"}, "study_vary_track_seed"),
-                                    ("rough", {"train_vehicles.count": "0"}, "train_vehicles.count"), ("scene", {"text": "beam_span: 3"}, "text")):
+                                    ("rough", {"train_vehicles.count": "0"}, "train_vehicles.count"),
+                                    ("scene", {"text": "beam_span: 3"}, "text")):
             with self.subTest(values):
                 answer = self.post(f"en/{form}/draft", values)[1]
                 self.assertEqual((list(answer["errors"]), answer["general"]), ([field], ""))
@@ -157,6 +161,19 @@ class Runs(Served):
             self.ended(run, "stopped")
         self.until(lambda: not processes_in(self.folder / f"run_{started[0]}"))
         self.assertEqual(self.request("GET", f"en/run/{started[0]}")[0], 200)
+
+    def test_texts_stay_texts(self):
+        text = f"# </textarea><script>alert(1)</script>{{{{data}}}}\n{ENDLESS}scene: {{name: '<b>x'}}\n"
+        run = self.post("en/scene/run", {"text": text, "files": {}})[1]["run"]
+        self.until(lambda: self.state(run)["state"] == "running")
+        self.post(f"en/run/{run}/stop", {})
+        self.ended(run, "stopped")
+        for path in (f"en/scene?from={run}", f"en/run/{run}", "en/runs"):
+            page = self.request("GET", path)[2].decode()
+            self.assertNotIn("<script>alert", page)
+            self.assertNotIn("<b>x", page)
+        self.assertIn("&lt;/textarea&gt;&lt;script&gt;alert(1)&lt;/script&gt;{{data}}",
+                      self.request("GET", f"en/scene?from={run}")[2].decode())
 
     def test_folders_of_others_are_refused(self):
         shared, file = self.outside / "shared", self.outside / "file"
