@@ -150,33 +150,40 @@ def links_of(root, language, job, results, report):
 def run_page(root, language, job, results, files):
     """The page of a run: its progress, or its results. results: names that have a page; files: names of all its files."""
     title = f"{t(forms()[job.form].title)}, {t('run {number}', number=job.number)}"
-    again = (f'<a class="button" href="{root}{language}/{job.form}?from={job.number}">{said("change the input")}</a>')
-    head = f'<div class="bar"><h1>{escape(title)}</h1>'
+    head = f"<h1>{escape(title)}</h1>"
+    again = f'<a class="button" href="{root}{language}/{job.form}?from={job.number}">{said("change the input")}</a>'
     if job.state == "done":
-        base = f"{root}{language}/run/{job.number}/file/"
-        frames = "".join(f'<iframe src="{base}{one}.html" sandbox="allow-scripts" title="{said("result")} {escape(one)}"'
-                         f'{"" if i == 0 else " hidden"}></iframe>' for i, one in enumerate(results))
-        several = ""
-        if len(results) > 1:
-            several = (f'<label>{said("results")} <select id="which">'
-                       + "".join(f"<option>{escape(one)}</option>" for one in results) + "</select></label>")
-        frames = frames or f'<p class="card wait">{escape(job.message())}</p>'
-        report = {"report.pdf", "report.xlsx"} <= set(files)
-        content = (f'{head}<p class="buttons">{several}{links_of(root, language, job, results, report)}{again}</p>'
-                   f'<p id="making" role="status"></p>{details(base, job, files)}</div>'
-                   f"{frames}")
+        content = f'<div class="run framed">{finished(root, language, job, results, files, head, again)}</div>'
     else:
-        stop = f'<button id="stop" type="button">{said("stop")}</button>' if job.state in ("waiting", "running") else ""
-        shown = "" if job.state in ("waiting", "running", "stopping") else " hidden"
-        lines = escape("\n".join(list(job.lines)[-30:]))
-        content = (f'{head}</div><div class="card wait"><p id="state" role="status">{escape(state_in_words(job))}</p>'
-                   f'<progress id="progress" max="100" aria-label="{said("progress")}"{shown}></progress>'
-                   f'<p id="line" class="hint"></p><p class="buttons">{stop}{again}</p>'
-                   f'<pre id="lines"{" hidden" if not lines else ""}>{lines}</pre></div>')
-    frame = ' framed' if job.state == "done" else ""
-    return page(root, language, f"run/{job.number}", title, f'<div class="run{frame}">{content}</div>',
-                {"run": job.number, "state": job.state, "words": {
-                    "making": t("The report is being made ..."), "failed": t("The report could not be made: {message}")}})
+        content = f'<div class="run"><div class="bar">{head}</div>{unfinished(job, again)}</div>'
+    return page(root, language, f"run/{job.number}", title, content, {"run": job.number, "state": job.state, "words": {
+        "making": t("The report is being made ..."), "failed": t("The report could not be made: {message}")}})
+
+
+def finished(root, language, job, results, files, head, again):
+    """The bar with the buttons of a run, and the pages of its results."""
+    base = f"{root}{language}/run/{job.number}/file/"
+    frames = "".join(f'<iframe src="{base}{one}.html" sandbox="allow-scripts" title="{said("result")} {escape(one)}"'
+                     f'{"" if i == 0 else " hidden"}></iframe>' for i, one in enumerate(results))
+    several = ""
+    if len(results) > 1:
+        choices = options_of({one: one for one in results}, results[0], str)
+        several = f'<label>{said("results")} <select id="which">{choices}</select></label>'
+    report = {"report.pdf", "report.xlsx"} <= set(files)
+    return (f'<div class="bar">{head}<p class="buttons">{several}{links_of(root, language, job, results, report)}{again}</p>'
+            f'<p id="making" role="status"></p>{details(base, job, files)}</div>'
+            + (frames or f'<p class="card wait">{escape(job.message())}</p>'))
+
+
+def unfinished(job, again):
+    """The state of a run without results, its button to stop it, and what it has printed."""
+    ends = job.state in ("failed", "stopped")
+    stop = f'<button id="stop" type="button">{said("stop")}</button>' if job.state in ("waiting", "running") else ""
+    lines = escape("\n".join(list(job.lines)[-30:]))
+    return (f'<div class="card wait"><p id="state" role="status">{escape(state_in_words(job))}</p>'
+            f'<progress id="progress" max="100" aria-label="{said("progress")}"{" hidden" if ends else ""}></progress>'
+            f'<p id="line" class="hint"></p><p class="buttons">{stop}{again}</p>'
+            f'<pre id="lines"{"" if lines else " hidden"}>{lines}</pre></div>')
 
 
 def details(base, job, files):

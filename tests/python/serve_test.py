@@ -181,7 +181,7 @@ class Runs(Served):
         shared.chmod(0o777)
         file.write_text("")
         for folder, why in ((self.folder, "another traverse serve"), (shared, "other users"), (file, "exists")):
-            ended = subprocess.run([sys.executable, "-B", SERVE, "--folder", folder, "--program", BINARY], timeout=60,
+            ended = subprocess.run([sys.executable, "-B", SERVE, "--folder", folder, "--program", BINARY], timeout=300,
                                    capture_output=True, text=True)
             self.assertEqual((ended.returncode, len(ended.stderr.splitlines())), (4, 1))
             self.assertIn(why, ended.stderr)
@@ -223,7 +223,7 @@ class Confined(unittest.TestCase):
                     process = subprocess.Popen([sys.executable, "-B", keeper, inside, BINARY, *words], stdin=subprocess.PIPE,
                                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
                     with process:
-                        self.assertEqual(process.wait(30) == 0, may, words)
+                        self.assertEqual(process.wait(300) == 0, may, words)
             self.assertEqual([(inside / "written.csv").exists(), (outside / "written.csv").exists()], [True, False])
 
 

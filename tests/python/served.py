@@ -46,7 +46,7 @@ class Served(unittest.TestCase):
     @classmethod
     def end(cls):
         cls.server.terminate()
-        cls.server.wait(20)
+        cls.server.wait(300)
         cls.server.stdout.close()
         cls.server.stderr.close()
 
