@@ -7,8 +7,9 @@ set(share ${CMAKE_INSTALL_DATADIR}/traverse)  # where the program looks for scen
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME traverse)
 
 install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
-install(PROGRAMS scripts/traverse-check scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_report DESTINATION ${share}/python
+install(PROGRAMS scripts/traverse-check scripts/traverse-report scripts/traverse-serve DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_report scripts/traverse_serve
+        DESTINATION ${share}/python
         FILES_MATCHING PATTERN *.py PATTERN *.csv PATTERN *.yml PATTERN *.html PATTERN *.css PATTERN *.js)
 file(GLOB several CONFIGURE_DEPENDS scripts/picture*.py scripts/convert*.py)
 install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
@@ -19,6 +20,7 @@ install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfo
         scripts/search_answers.py scripts/sensitivity_measures.py
         DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
+install(FILES packaging/traverse.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
 install(FILES examples/three_span_train.py examples/bridge.yml DESTINATION ${share}/examples)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

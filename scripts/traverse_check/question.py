@@ -149,8 +149,9 @@ def words_of(given):
         value = arguments[name.replace("-", "_")]
         if value is not None:
             words[name] = " ".join(value) if isinstance(value, list) else value
-    if "frequency" in words and "EI" in words:  # that of the command line replaces the other one of the file
-        words.pop("EI" if arguments["EI"] is None else "frequency" if arguments["frequency"] is None else "", None)
+    for name, other in (("EI", "frequency"), ("frequency", "EI")):  # that of the command line replaces the other of the file
+        if arguments[name] is not None and arguments[other] is None:
+            words.pop(other, None)
     stem = pathlib.Path(arguments["file"] or "check").stem.strip(".") or "check"
     folder = pathlib.Path(words.get("folder", pathlib.Path("results", stem)))
     if arguments["file"] and pathlib.Path(arguments["file"]).resolve().parent == folder.resolve():

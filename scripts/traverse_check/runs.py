@@ -83,25 +83,31 @@ def finish(process, what):
         raise CheckError(f"{what} could not be written: {lines[-1]}", 4)
 
 
-def report_command():
-    """The command traverse-report, beside this command or in the sources."""
+def command(name):
+    """A command such as traverse-report, beside this command or in the sources."""
     for place in (pathlib.Path(sys.argv[0]).resolve().parent, SCRIPTS):
-        if (place / "traverse-report").is_file():
-            return place / "traverse-report"
-    raise CheckError("traverse-report is not beside this command", 4)
+        if (place / name).is_file():
+            return place / name
+    raise CheckError(f"{name} is not beside this command", 4)
 
 
-def documents(traverse, asked, files):
-    """A report of all results files, and a picture and a page of each. Returns the names of the files."""
-    folder, more = asked.folder, []
+def report_words(traverse, asked, files):
+    """The words of the command that makes the report of results files of a check."""
+    more = []
     if asked.torsional_frequency is not None:
         more = ["--torsional-frequency", f"{asked.torsional_frequency!r} Hz"]
     if asked.GJ is not None:
         more = ["--GJ", f"{asked.GJ!r} N.m2", "--polar-inertia", f"{asked.polar_inertia!r} kg.m"]
     if asked.complex:
         more.append("--complex")
-    report = start(folder, report_command(), *files, "-o", "report", "--program", traverse, "--folder", ".",
-                   "--line-speed", f"{asked.line_speed!r} m/s", *more)
+    return [command("traverse-report"), *files, "-o", "report", "--program", traverse, "--folder", ".", "--line-speed",
+            f"{asked.line_speed!r} m/s", *more]
+
+
+def documents(traverse, asked, files):
+    """A report of all results files, and a picture and a page of each. Returns the names of the files."""
+    folder = asked.folder
+    report = start(folder, *report_words(traverse, asked, files))
     made = ["report.pdf", "report.xlsx"]
     for name in files:
         for script, ending in (("picture.py", ".png"), ("page.py", ".html")):

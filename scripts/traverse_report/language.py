@@ -5,6 +5,7 @@ import csv
 import functools
 import pathlib
 import re
+import threading
 
 import numpy as np
 from matplotlib.ticker import ScalarFormatter
@@ -13,8 +14,11 @@ LANGUAGES = ("en", "de", "fr")
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-class Chosen:
+class OfThread(threading.local):
     language = "en"
+
+
+Chosen = OfThread()
 
 
 @functools.cache

@@ -51,20 +51,22 @@ int print_error(const traverse::Error& error) {
   return error.status();
 }
 
-/// `traverse check ...` becomes the script traverse-check, beside the installed program, or in the folder scripts
-/// beside the build folder. Throws FileError if it cannot be started; returns for all other words.
-void start_check(int argc, char** argv) {
-  constexpr const char* check = "traverse-check";
-  if (argc < 2 || std::string_view(argv[1]) != "check") return;
+/// `traverse check ...` and `traverse serve ...` become the scripts traverse-check and traverse-serve, beside the
+/// installed program, or in the folder scripts beside the build folder. Throws FileError if the script cannot be
+/// started; returns for all other words.
+void start_script(int argc, char** argv) {
+  const std::string_view verb = argc < 2 ? "" : argv[1];
+  if (verb != "check" && verb != "serve") return;
+  const std::string name = "traverse-" + std::string(verb);
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe"), folder = program.parent_path();
   std::vector<char*> words(argv + 1, argv + argc);
   words.push_back(nullptr);
   setenv("TRAVERSE_BINARY", program.c_str(), 1);
-  for (const std::filesystem::path& script : {folder / check, folder / "../scripts" / check}) {
+  for (const std::filesystem::path& script : {folder / name, folder / "../scripts" / name}) {
     words.front() = const_cast<char*>(script.c_str());
     execv(script.c_str(), words.data());
   }
-  throw traverse::FileError(std::string(check) +
+  throw traverse::FileError(name +
                             ", which is installed beside the program, cannot be started: " + std::strerror(errno));
 }
 
@@ -136,7 +138,7 @@ int main(int argc, char** argv) {
   traverse::app::start_lightly();
   const traverse::app::OneThreadOfBlas one_thread;
   try {
-    start_check(argc, argv);
+    start_script(argc, argv);
     traverse::options::Input input = read_input(argc, argv);
     if (input.help) {
       const std::string text = help_about(input.help_about);

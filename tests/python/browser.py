@@ -7,6 +7,8 @@ import subprocess
 import tempfile
 import unittest
 
+CODES = {"Tab": 9, "Enter": 13}  # of keys that Chromium knows by their number only
+
 
 class Browser:
     """One page of Chromium. `messages` has what it said since the last open()."""
@@ -73,9 +75,13 @@ class Browser:
 
     def open(self, path, width=1280):
         """Opens a file and waits until it is loaded and drawn."""
+        self.visit(path.resolve().as_uri(), width)
+
+    def visit(self, address, width=1280):
+        """Opens an address and waits until it is loaded and drawn."""
         self.messages = []
         self.resize(width)
-        self.call("Page.navigate", url=path.resolve().as_uri())
+        self.call("Page.navigate", url=address)
         while not any(message.get("method") == "Page.loadEventFired" for message in self.messages):
             self.messages.append(self.receive())
         self.frames()
@@ -100,9 +106,14 @@ class Browser:
             self.mouse(kind, x, y)
 
     def key(self, key):
-        text = {"text": key} if len(key) == 1 else {}
-        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, **text)
-        self.call("Input.dispatchKeyEvent", type="keyUp", key=key)
+        text = {"text": key} if len(key) == 1 else {"text": "\r"} if key == "Enter" else {}
+        code = {"windowsVirtualKeyCode": CODES[key]} if key in CODES else {}
+        self.call("Input.dispatchKeyEvent", type="keyDown", key=key, **text, **code)
+        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, **code)
+
+    def type(self, text):
+        """Types a text into the element with the focus; it replaces what is selected there."""
+        self.call("Input.insertText", text=text)
 
     def complaints(self):
         """Exceptions and messages of the console, and addresses that the page asked for besides itself."""

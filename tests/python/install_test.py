@@ -205,7 +205,8 @@ int main(void) {
             self.assertIn(name, needed)
         self.assertIn("python3-xarray", succeed("dpkg-deb", "-f", program, "Recommends"))
         held = succeed("dpkg-deb", "-c", program)
-        for name in ("usr/bin/traverse\n", "usr/bin/traverse-report\n", "usr/share/traverse/options/scenes/three_span_train.yml\n",
+        for name in ("usr/bin/traverse\n", "usr/bin/traverse-report\n", "usr/bin/traverse-serve\n",
+                     "usr/share/traverse/options/scenes/three_span_train.yml\n",
                      "usr/share/traverse/python/picture.py\n", "usr/share/doc/traverse/copyright\n",
                      "usr/share/man/man1/traverse.1\n", "/libtraverse.so\n",
                      "usr/lib/python3/dist-packages/traverse/passage.py\n"):

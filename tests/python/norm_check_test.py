@@ -98,6 +98,8 @@ class Questions(unittest.TestCase):
     def test_words_that_are_missing_or_contradict_each_other(self):
         self.assertIn("--span is missing", self.refused())
         self.assertIn("either --EI or --frequency", self.refused(*BRIDGE, "--frequency", "4 Hz"))
+        name = self.file("span: 28\nEI: 260 GN.m2\nfrequency: 4.1 Hz\nmass: 19 t/m\ntype: steel\nline-speed: 250 km/h\n")
+        self.assertIn("either --EI or --frequency", self.refused(name))
         self.assertIn("allowed: steel, composite", self.refused(*BRIDGE, "--type", "wood"))
         self.assertIn("lower and the upper bound", self.refused(*BRIDGE, "--EI", "280,240 GN.m2"))
         self.assertIn("--hslm-b", self.refused(*BRIDGE, "--span", "6 m"))

@@ -13,12 +13,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from reported import SCRIPTS, Reported  # noqa: E402
 from traverse_check import rules, scene  # noqa: E402
 from traverse_page import along, histories  # noqa: E402
+from traverse_serve import forms, pages  # noqa: E402
 from traverse_report import (  # noqa: E402
     annex_sheet, checks_sheet, comparison_sheet, fatigue_sheet, front_sheet, language, main, model_sheet, quantities,
     rail_sheet, run_sheet, source, static_sheet, title_sheet)
 
 RAIL = f"options_file: {SCRIPTS.parent}/options/scenes/uic774_e13.yml\nuic774: {{fronts: [0.0, 60.0, 60.0]}}\n"
-SOURCES = [path for folder in ("traverse_report", "traverse_page", "traverse_check")
+SOURCES = [path for folder in ("traverse_report", "traverse_page", "traverse_check", "traverse_serve")
            for path in (SCRIPTS / folder).glob("*.py")]
 WORD = re.compile(r"[A-Za-zÄÖÜäöüßéèêàç]{4,}")
 # Names and symbols that are the same in every language.
@@ -30,7 +31,7 @@ OF_PROGRAM = SCRIPTS.parent / "src"
 def literals(path):
     """The texts that a file looks up in the table: the constants in the calls of t()."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "t":
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("t", "said"):
             parts = [node.args[0]] if not isinstance(node.args[0], ast.IfExp) else [node.args[0].body,
                                                                                     node.args[0].orelse]
             yield from (part.value for part in parts if isinstance(part, ast.Constant))
@@ -47,6 +48,12 @@ def of_tables():
     yield from (words for *_, words in run_sheet.EFFECTS)
     yield from (title for _, _, title, *_ in histories.COLUMNS)
     yield from (title for title, _ in along.ENVELOPES.values())
+    for form in forms.forms().values():
+        yield from (form.title, form.words, form.verb, *(heading for heading, _ in form.groups))
+        for field in form.fields:
+            yield from filter(None, (field.label, field.hint))
+            yield from field.choices.values() if field.name != "train_vehicles" else ()
+    yield from pages.STATES.values()
     for row in checks_sheet.clauses()["requirements"]:
         yield from (row[name] for name in ("requirement", "value", "remark") if name in row)
     limits = [row for path in (SCRIPTS.parent / "options/limits").glob("*.yml")

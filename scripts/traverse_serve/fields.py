@@ -1,0 +1,118 @@
+"""The fields of the forms: names, units and presets. Unit, range and text of an option are in the program's own table
+(options.py), units in engineering_units.csv."""
+
+import functools
+import re
+from typing import NamedTuple
+
+import engineering_units
+
+from .inputs import InputError
+
+LONGEST = 200  # characters of a field
+PREFIXES = {"k": 1e3, "M": 1e6, "G": 1e9}
+
+
+class Field(NamedTuple):
+    """name: a word of traverse check, or an option; behind a dot its part. units: the first is preset. choices: {value:
+    English text}. more: among the fields that are seldom needed."""
+    name: str
+    label: str
+    preset: str = ""
+    units: tuple = ()
+    choices: dict = {}
+    hint: str = ""
+    kind: str = "number"  # or text, choice, flag
+    more: bool = False
+    many: bool = False    # several numbers
+    optional: bool = False
+
+    @property
+    def option(self):
+        return self.name.partition(".")[0]
+
+
+def chosen(name, label, choices, preset, **more):
+    return Field(name, label, preset, choices=choices, kind="choice", **more)
+
+
+def flag(name, label, **more):
+    return Field(name, label, kind="flag", **more)
+
+
+def text(name, label, **more):
+    return Field(name, label, kind="text", optional=True, **more)
+
+
+@functools.cache
+def factors():
+    """{unit: factor to SI} of engineering_units.csv, and of N with prefixes."""
+    found = {}
+    for si, unit, factor in engineering_units.table().values():
+        found = {si: 1.0, unit: 1.0 / factor} | found  # t is a mass before it is a weight
+    newtons = [si for si, *_ in engineering_units.table().values() if si.startswith("N")]
+    return found | {prefix + si: by for prefix, by in PREFIXES.items() for si in newtons} | {"m/min": 1.0 / 60.0, "%": 0.01}
+
+
+def unit_of(field, values):
+    """The unit that was chosen for a field."""
+    unit = values.get(f"{field.name}:unit", "") or (field.units[0] if field.units else "")
+    if field.units and unit not in field.units:
+        raise InputError(f"{unit}: allowed: {', '.join(field.units)}", field.name)
+    return unit
+
+
+def number(field, word):
+    try:
+        value = float(word)
+    except ValueError:
+        value = float("nan")
+    if not re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?", word) or abs(value) == float("inf"):
+        raise InputError(f"{word}: allowed: a number, with a decimal point", field.name)
+    return value
+
+
+def in_si(field, values):
+    """The numbers of a field in SI units."""
+    words = re.split(r"[,;\s]+" if field.many else r"\s+", written(field, values).strip())
+    if len(words) > 1 and not field.many:
+        raise InputError("allowed: one number", field.name)
+    if words == [""]:
+        if field.optional:
+            return []
+        raise InputError("a number is missing", field.name)
+    factor = factors()[unit_of(field, values)] if field.units else 1.0
+    # Divides by a whole number rather than multiply by its inverse: 250 km/h are 250/3.6 m/s.
+    return [float(f"{number(field, word) * factor:.12g}") for word in words]
+
+
+def written(field, values):
+    """What stands in a field, or its preset; InputError if it is too long or not one of its choices."""
+    found = values.get(field.name, field.preset)
+    if not isinstance(found, str) or len(found) > LONGEST or not found.isprintable():
+        raise InputError(f"allowed: one line of at most {LONGEST} characters", field.name)
+    if field.kind == "choice" and found not in field.choices:
+        raise InputError(f"{found}: allowed: {', '.join(field.choices)}", field.name)
+    if field.kind == "flag" and found not in ("", "true"):
+        raise InputError("allowed: true, or nothing", field.name)
+    # In a field of one number a comma can only be its decimal sign; elsewhere it separates numbers.
+    return found.replace(",", ".") if field.kind == "number" and not field.many else found
+
+
+def read(fields, values, numbers=True):
+    """{name: value} of all fields: lists of numbers in SI units or one number, texts, and True or False. Without
+    `numbers`, these are texts with their units."""
+    unknown = set(values) - {field.name for field in fields} - {f"{field.name}:unit" for field in fields}
+    if unknown:
+        raise InputError(f"{min(unknown)[:80]}: there is no such field")
+    found = {}
+    for field in fields:
+        text = written(field, values)
+        if field.kind == "number" and numbers:
+            some = in_si(field, values)
+            found[field.name] = some if field.many else some[0] if some else None
+        elif field.kind == "number":
+            found[field.name] = f"{text} {unit_of(field, values)}".strip() if text.strip() else ""
+        else:
+            found[field.name] = text == "true" if field.kind == "flag" else text
+    return found

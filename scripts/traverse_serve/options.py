@@ -1,0 +1,31 @@
+"""What the program says of its options: unit, range and default of each, from its own table by -help."""
+
+import re
+import subprocess
+from typing import NamedTuple
+
+OPTION = re.compile(r"^  -(\w+)\s+(.*)\n {37}(.*)$", re.MULTILINE)
+SECONDS = 20.0
+
+
+class Option(NamedTuple):
+    text: str     # one sentence
+    allowed: str  # "number or file [N m2], above 1e-07"
+
+    @property
+    def unit(self):
+        found = re.search(r"\[([^\],]+)\]", self.allowed)
+        return found[1] if found else ""
+
+
+def table(program):
+    """{name: Option} of all options of the program."""
+    said = subprocess.run([program, "-help"], capture_output=True, text=True, timeout=SECONDS, check=True,
+                          stdin=subprocess.DEVNULL).stdout
+    return {name: Option(text, allowed) for name, text, allowed in OPTION.findall(said)}
+
+
+def named_in(message, names):
+    """The first of the names, as words, of a message of the program; empty if there is none."""
+    found = re.search("|".join(rf"(?<![\w-]){re.escape(name)}(?![\w-])" for name in names), message)
+    return found[0] if found else ""
