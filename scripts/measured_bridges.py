@@ -3,7 +3,7 @@
 
 measured_bridges.py                prints the tables of all bridges
 measured_bridges.py NAME ...       prints those of some, by the names of their pages
-measured_bridges.py --write        also writes the tables into doc/measured/NAME.md
+measured_bridges.py --write        also writes the tables into the pages of doc/measured
 
 measured_rows.py names the measured values, the assumptions and what to compute. The program is build/traverse, or
 TRAVERSE_BINARY.
