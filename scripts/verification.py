@@ -43,7 +43,7 @@ from `doc/verification_figures.csv`, which contains the values recorded by the l
 
 The references are Fryba's moving force (closed-form series), the beam of Yang and Yau 1997, the example of VBI-2D, the
 IVP test set, textbook formulas and independent modal or Runge-Kutta computations. No reference is an earlier output of
-this program."""
+this program. [Measured bridges](measured.md) compares scenes with measurements, which are no exact references."""
 
 
 class Broken(Exception):
