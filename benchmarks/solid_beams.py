@@ -6,16 +6,12 @@ import h5py
 import numpy as np
 import runs
 import solid_beam
-from solid_cases import FORCE, HIGHEST, RATIO, TORQUE, Cross, Girder, Slab, of_bending_and_twist, of_statics
+from solid_cases import FORCE, HIGHEST, RATIO, STEP, TORQUE, Cross, Girder, Slab, mirrored, of_bending_and_twist, of_statics
 from solid_section import Section
 
 
-def beam_of(kind, parts=8):
-    return solid_beam.of_section(Section(kind.y, mirrored_height(kind.z), kind.solid, parts), kind.material)
-
-
-def mirrored_height(z):
-    return np.unique(np.concatenate([-np.asarray(z), z]))
+def beam_of(kind, material=None, parts=8):
+    return solid_beam.of_section(Section(kind.y, mirrored(kind.z), kind.solid, parts), material or kind.material)
 
 
 class Traverse:
@@ -52,18 +48,18 @@ class Traverse:
                 | self.static("a line load", places, (np.arange(200) + 0.5) * length / 200))
 
     def passage(self, train, hslm_a, t):
-        """Deflections at the middle of the axis, both tracks and the right edge at instants t, and the acceleration of the
-        train's own track by the modes below 30 Hz."""
+        """Deflections at the middle of the left track, the axis and the right edge at instants t, and the acceleration of
+        the train's own track by the modes below 30 Hz."""
         e = Cross.track if train.track == "LEFT" else -Cross.track
         behind = train.enters * abs(train.speed)
         below = sum(f < HIGHEST for f in self.frequencies().values())
         with self.results(model_modes=below, model_damping_ratios=RATIO, track_eccentricity=e, load_hslm_a=hslm_a,
                           load_speed=train.speed, load_positions=-behind if train.speed > 0 else Cross.span + behind,
-                          output_probes=Cross.span / 2, output_interval=2e-3, ts_max_time=t[-1]) as found:
+                          output_probes=Cross.span / 2, output_interval=STEP, ts_max_time=t[-1]) as found:
             time, deflection, twist, acceleration = (
                 np.asarray(found[name]).reshape(len(found["time"]), -1)[:, 0]
                 for name in ("time", "probes/deflection", "probes/twist", "probes/acceleration"))
-        places = {"LEFT": Cross.track, "AXIS": 0.0, "RIGHT": -Cross.track, "EDGE": -Cross.edge}
+        places = {"LEFT": Cross.track, "AXIS": 0.0, "EDGE": -Cross.edge}
         return ({name: np.interp(t, time, deflection + (y - e) * twist) for name, y in places.items()},
                 {train.track: np.interp(t, time, acceleration)})
 
@@ -91,7 +87,7 @@ def vlasov(kind, beam, torque, length, places):
 
 
 def girder():
-    kind, beam, places = Girder, beam_of(Girder, 4), (Girder.span / 4, Girder.span / 2)
+    kind, beam, places = Girder, beam_of(Girder), (Girder.span / 4, Girder.span / 2)
     twists = vlasov(kind, beam, TORQUE, 1.0, places)
     k = np.arange(1, 4) * np.pi / kind.span
     warping = beam.ECw / kind.material[0] * kind.material[2]

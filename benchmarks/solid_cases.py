@@ -9,7 +9,8 @@ import solid_ccx
 import solid_train
 from solid_mesh import ALL, Body, divided
 
-CONCRETE, STEEL = (34e9, 0.2, 2500.0), (210e9, 0.3, 7850.0)
+CONCRETE, STEEL = (34e9, 0.2, 2500.0), (210e9, 0.3, 7850.0)  # E, Poisson's ratio, density
+WITHOUT_POISSON = (34e9, 0.0, 2500.0)
 FORCE, TORQUE = 1e6, 1e4  # N, N m
 RATIO, HIGHEST = 0.01, 30.0  # damping of each mode; Hz, of the modes in accelerations
 STEP = 5e-4  # s, of the recursion for the modes
@@ -70,9 +71,9 @@ def body(kind, x, parts):
     return Body(divided(x, parts), divided(kind.y, parts), divided(kind.z, parts), kind.solid)
 
 
-def on_forks(kind, x, forks, parts):
+def on_forks(kind, x, forks, parts, material=None):
     """A model with rigid diaphragms that cannot move in their plane, and warp freely."""
-    model = solid_ccx.Model(body(kind, x, parts), kind.material)
+    model = solid_ccx.Model(body(kind, x, parts), material or kind.material)
     for at in forks:
         model.hold(model.body.where(x=at), 2, 3)
     return model
@@ -102,11 +103,11 @@ def of_statics(x, axis, twist, load, places):
     return values
 
 
-def cross(spans, parts, folder):
+def cross(spans, parts, folder, material=None):
     """(values, frequencies, shapes, x) of one or two spans on forks."""
     kind, half = Cross, Cross.span / 2
     ends = np.arange(spans + 1) * kind.span
-    model = on_forks(kind, kind.x(spans), ends, parts)
+    model = on_forks(kind, kind.x(spans), ends, parts, material)
     named_lines(model, LEFT=kind.track, AXIS=0.0, RIGHT=-kind.track, EDGE=-kind.edge)
     x = model.body.nodes[model.sets["AXIS"], 0]
     loads = {"a force": model.force(((half - 2, half + 2), *kind.strip), 3, -FORCE),

@@ -11,7 +11,7 @@ program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-re
   libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev libboost-dev libjs-chart.js python3-h5py python3-matplotlib
   python3-openpyxl python3-scipy python3-xarray python3-yaml)
 test_packages=(ccache chromium libgtest-dev python3-h5netcdf python3-netcdf4)
-benchmark_packages=(libbenchmark-dev)
+benchmark_packages=(calculix-ccx libbenchmark-dev)
 check_packages=(clang-format clang-tidy)
 
 # One line that says what stopped, with what the log says of the first error: CMake says it on the lines that follow.
