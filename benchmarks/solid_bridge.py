@@ -2,12 +2,12 @@
 """Bridges that twist as three-dimensional bodies, by CalculiX, and as beams.
 /usr/bin/python3 benchmarks/solid_bridge.py [BUILD_FOLDER] [OUT_FOLDER] [--smallest]
 
-Frequencies, static values and passages of HSLM-A5 over a bridge with two tracks on one and two spans, a slab on skew
-bearings, and a girder whose torsion is that of warping: on two meshes of quadratic hexahedra (ccx of Debian's
+Frequencies and static values of a bridge with two tracks on one and two spans, of a slab on skew bearings and of a girder
+whose torsion is that of warping, and passages of HSLM-A5: on two meshes of quadratic hexahedra (ccx of Debian's
 calculix-ccx), and by beams: Traverse, for the slab a beam on bearings beside its axis, for the girder Vlasov's series.
-Writes solid_bridge.csv (values by CalculiX on both meshes), solid_bridge_beams.csv (values by beams, and their difference,
-which are printed, too) and solid_bridge_trains.csv (deflections in mm and accelerations in m/s2 over the last quarter of each
-passage, by CalculiX's modes) to OUT_FOLDER. Takes three and a half minutes of one core.
+Prints both, and writes solid_bridge.csv (values by CalculiX on both meshes), solid_bridge_beams.csv (values by beams, and
+their difference) and solid_bridge_trains.csv (deflections in mm and accelerations in m/s2 over the last quarter of each
+passage, by CalculiX's modes) to OUT_FOLDER. Takes three and a half minutes of one core. doc/solid_bridge.md has more.
 """
 
 import os
@@ -19,6 +19,7 @@ import runs
 import solid_beams
 import solid_cases
 import solid_ccx
+import solid_traverse
 from solid_train import Train, hslm
 
 HSLM_A = 5
@@ -50,27 +51,28 @@ class Passages:
     """histories: {name: (t, {place: deflections}, {place: accelerations})} of one mesh; values: their peaks."""
 
     def __init__(self, frequencies, shapes, x):
+        self.modes = frequencies, shapes, x
         self.histories = {name: solid_cases.passage(frequencies, shapes, x, trains, until(trains))
                           for name, trains in PASSAGES.items()}
         self.values = {name: peaks(*histories[1:]) for name, histories in self.histories.items()}
 
-    def of_beam(self, beam):
-        """Peaks by Traverse, and the largest differences of histories in parts of the largest value."""
+    def by_traverse(self, bridge, words):
+        """Peaks; prints the largest differences of histories in parts of the largest value."""
         values = {}
         for name, trains in PASSAGES.items():
             t, deflections, accelerations = self.histories[name]
-            parts = [beam.passage(train, HSLM_A, t) for train in trains]
-            by_beam = {place: sum(part[0][place] for part in parts) for place in PLACES}
-            moved = parts[0][1] if len(parts) == 1 else {}
-            values[name] = peaks(by_beam, moved)
-            for what, ours, theirs in (("deflections", by_beam, deflections), ("acceleration", moved, accelerations)):
+            parts = [bridge.passage(train, HSLM_A, t) for train in trains]
+            moved = {place: sum(part[0][place] for part in parts) for place in PLACES}
+            shaken = parts[0][1] if len(parts) == 1 else {}
+            values[name] = peaks(moved, shaken)
+            for what, ours, theirs in (("deflections", moved, deflections), ("accelerations", shaken, accelerations)):
                 off = [np.abs(ours[place] - theirs[place]).max() / np.abs(theirs[place]).max() for place in ours]
                 if off:
-                    print(f"{name}: largest difference of {what} from Traverse at any time {max(off):.1e} of the peak")
+                    print(f"{name}: {what} by Traverse with {words} differ by {max(off):.1e} of the peak")
         return values
 
     def table(self):
-        """Rows of a passage, place or track, time, deflections, accelerations."""
+        """Rows of passage, time, deflections, accelerations."""
         for name, (t, deflections, accelerations) in self.histories.items():
             for i in np.linspace(0.75 * (len(t) - 1), len(t) - 1, STORED).astype(int):
                 yield [name, f"{t[i]:.4f}", *(f"{1e3 * deflections[place][i]:.4f}" for place in PLACES),
@@ -91,10 +93,11 @@ def beams(build, folder, passages):
     for kind in (solid_cases.Cross, solid_cases.Slab, solid_cases.Girder):
         constants = solid_beams.beam_of(kind)._asdict().items()
         print(f"{kind.__name__}: " + ", ".join(f"{key} {value:.6g}" for key, value in constants) + " (N, m, kg)")
-    one, two = (solid_beams.Traverse(build, folder, solid_beams.beam_of(solid_cases.Cross), spans) for spans in (1, 2))
+    one, two = (solid_traverse.ByABeam(build, folder, solid_beams.beam_of(solid_cases.Cross), spans) for spans in (1, 2))
     plain = solid_beams.beam_of(solid_cases.Cross, solid_cases.WITHOUT_POISSON)
-    return {"one span": one.values(), NO_POISSON: solid_beams.Traverse(build, folder, plain, 1).values(),
-            **passages.of_beam(one), "two spans": two.values(), "skew slab": solid_beams.skew(),
+    passages.by_traverse(solid_traverse.ByTheBody(build, folder, *passages.modes), "the body's modes")
+    return {"one span": one.values(), NO_POISSON: solid_traverse.ByABeam(build, folder, plain, 1).values(),
+            **passages.by_traverse(one, "a beam"), "two spans": two.values(), "skew slab": solid_beams.skew(),
             "girder": solid_beams.girder()}
 
 

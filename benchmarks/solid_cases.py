@@ -1,7 +1,7 @@
 """The bodies of solid_bridge.py, and their values by CalculiX: frequencies, static values, responses to trains.
 
 Each has an upper half in z only, as of solid_ccx.Model. parts: into how many elements each interval of the coarse mesh is
-divided, along x, y and z. Twists are positive where the left side goes up, forces act downwards.
+divided, along x, y and z. Deflections are positive upwards, twists where the left side goes up; the forces act downwards.
 """
 
 import numpy as np
@@ -38,8 +38,8 @@ class Cross:
 
 
 class Slab:
-    """34 m by 5.0 m by 1.5 m of concrete on four bearings of 1 m by 1 m, each 1.8 m beside the axis, on two lines at 30 degrees
-    to the section, 30 m apart along the axis."""
+    """34 m by 5.0 m by 1.5 m of concrete on four bearings of 1 m by 1 m, each 1.8 m beside the axis, on two lines at 30
+    degrees to the section, 30 m apart along the axis."""
     material, span, bearing, half = CONCRETE, 30.0, 1.8, 0.5
     shift = 1.8 * np.tan(np.pi / 6)  # of a bearing along the axis
     y, z = mirrored([0, 0.65, 1.3, 2.3, 2.5]), [0, 0.75]
@@ -124,7 +124,7 @@ def cross(spans, parts, folder, material=None):
 
 
 def passage(frequencies, shapes, x, trains, until):
-    """(t, deflections, accelerations) at the middle of the axis, both tracks and the right edge, by name."""
+    """(t, deflections, accelerations) at midspan, by the name of the line of nodes."""
     t = np.arange(0, until, STEP)
     forces = solid_train.modal_forces(trains, shapes, x, t)
     place, acceleration = solid_train.responses(frequencies, RATIO, forces, STEP)
@@ -134,6 +134,7 @@ def passage(frequencies, shapes, x, trains, until):
 
 
 def skew(parts, folder):
+    """Values of the slab; a bearing holds the mean of its prism through the slab."""
     kind = Slab
     model = solid_ccx.Model(body(kind, kind.x(), parts), kind.material)
     for i, (at, y) in enumerate(kind.bearings):
@@ -153,6 +154,7 @@ def skew(parts, folder):
 
 
 def girder(parts, folder):
+    """Values of the girder's torsion."""
     kind, half = Girder, Girder.span / 2
     model = on_forks(kind, [0, 1, 2, 3, 4, 5, 5.5, 6.5, 7, 8, 9, 10, 11, 12], (0, kind.span), parts)
     named_lines(model, AXIS=0.01)
@@ -162,7 +164,8 @@ def girder(parts, folder):
     [(moved, _)] = solid_ccx.statics(
         model, [model.force(((half - 0.5, half + 0.5), *kind.flange), 2, -2 * TORQUE / 0.8)], folder)
     twist = -moved["TOP"][:, 1] / 0.4125
-    values = {(f"a torque: twist at {place:g} m", "mrad"): 1e3 * twist[np.abs(x - place).argmin()] for place in (half / 2, half)}
+    values = {(f"a torque: twist at {place:g} m", "mrad"): 1e3 * twist[np.abs(x - place).argmin()]
+              for place in (half / 2, half)}
     frequencies, shapes = solid_ccx.modes(model, 6, folder)
     values |= of_bending_and_twist(frequencies, shapes["AXIS"][:, :, 2], shapes["TOP"][:, :, 1] / 0.4125 * 0.15)
     return {key: value for key, value in values.items() if "bending" not in key[0]}
