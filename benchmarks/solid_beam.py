@@ -1,7 +1,8 @@
-"""Timoshenko's beam with Saint-Venant's torsion on bearings beside its axis, by finite elements, for solid_bridge.py.
+"""Timoshenko's beam with torsion on bearings beside its axis, by finite elements, for solid_bridge.py.
 
-At each node: deflection v (up), rotation r (of dv/dx without shear), twist a (left side up). A bearing at the distance y
-to the left holds v + y a. The elements are exact in statics; masses are consistent with their shapes.
+At each node: deflection v (up), rotation r (of dv/dx without shear), twist a (left side up) and its rate b = da/dx, which
+warps the section. A bearing at the distance y to the left holds v + y a. With E C_w the torsion is Vlasov's by Hermite's
+shapes, without it Saint-Venant's by linear ones, which have no b.
 """
 
 from typing import NamedTuple
@@ -15,74 +16,103 @@ class Beam(NamedTuple):
     EI: float
     GA: float      # with the shear area
     GJ: float
-    ECw: float     # of warping; this file does without
+    ECw: float     # of warping; 0: Saint-Venant's torsion
     mass: float
     rotary: float  # about the horizontal axis
     polar: float   # about x
+    warping: float  # inertia of warping, rho C_w
 
 
 def of_section(section, material):
     elastic, poisson, density = material
     shear = elastic / (2 + 2 * poisson)
     return Beam(elastic * section.I, shear * section.shear_area, shear * section.J, elastic * section.Cw,
-                density * section.area, density * section.I, density * section.polar)
+                density * section.area, density * section.I, density * section.polar, density * section.Cw)
+
+
+def without_warping(beam):
+    return beam._replace(ECw=0.0, warping=0.0)
 
 
 def element(beam, h):
-    """(stiffness, mass) of v, r, a at the left end and at the right one."""
-    stiffness, mass = np.zeros((6, 6)), np.zeros((6, 6))
-    bending, torsion = [0, 1, 3, 4], [2, 5]
+    """(stiffness, mass) of v, r, a, b at the left end and at the right one."""
+    stiffness, mass = np.zeros((8, 8)), np.zeros((8, 8))
     phi = 12 * beam.EI / (beam.GA * h * h)
-    stiffness[np.ix_(bending, bending)] = beam.EI / (h**3 * (1 + phi)) * np.array([
+    torsion = np.ix_([2, 3, 6, 7], [2, 3, 6, 7])
+    bending = np.ix_([0, 1, 4, 5], [0, 1, 4, 5])
+    stiffness[bending] = beam.EI / (h**3 * (1 + phi)) * np.array([
         [12, 6 * h, -12, 6 * h], [6 * h, (4 + phi) * h * h, -6 * h, (2 - phi) * h * h],
         [-12, -6 * h, 12, -6 * h], [6 * h, (2 - phi) * h * h, -6 * h, (4 + phi) * h * h]])
-    stiffness[np.ix_(torsion, torsion)] = beam.GJ / h * np.array([[1, -1], [-1, 1]])
-    mass[np.ix_(torsion, torsion)] = beam.polar * h / 6 * np.array([[2, 1], [1, 2]])
     for s, w in zip(*np.polynomial.legendre.leggauss(4)):
-        x = (1 + s) / 2
-        deflection = np.array([1 - 3 * x**2 + 2 * x**3 + phi * (1 - x), h * (x - 2 * x**2 + x**3 + phi * (x - x**2) / 2),
-                               3 * x**2 - 2 * x**3 + phi * x, h * (x**3 - x**2 + phi * (x**2 - x) / 2)]) / (1 + phi)
-        rotation = np.array([6 * (x**2 - x) / h, 1 - 4 * x + 3 * x**2 + phi * (1 - x),
-                             6 * (x - x**2) / h, 3 * x**2 - 2 * x + phi * x]) / (1 + phi)
-        mass[np.ix_(bending, bending)] += w * h / 2 * (beam.mass * np.outer(deflection, deflection)
-                                                       + beam.rotary * np.outer(rotation, rotation))
+        x, w = (1 + s) / 2, w * h / 2
+        deflection, rotation = timoshenko(x, h, phi)
+        mass[bending] += w * (beam.mass * np.outer(deflection, deflection) + beam.rotary * np.outer(rotation, rotation))
+        if beam.ECw:
+            twist, rate = timoshenko(x, h, 0.0)
+            curvature = np.array([12 * x - 6, h * (6 * x - 4), 6 - 12 * x, h * (6 * x - 2)]) / h**2
+            stiffness[torsion] += w * beam.ECw * np.outer(curvature, curvature)
+        else:
+            twist, rate = np.array([1 - x, 0, x, 0]), np.array([-1, 0, 1, 0]) / h
+        stiffness[torsion] += w * beam.GJ * np.outer(rate, rate)
+        mass[torsion] += w * (beam.polar * np.outer(twist, twist) + beam.warping * np.outer(rate, rate))
     return stiffness, mass
+
+
+def timoshenko(x, h, phi):
+    """Deflection and rotation at the part x of an element, of the displacements of its ends; Hermite's for phi = 0."""
+    deflection = np.array([1 - 3 * x**2 + 2 * x**3 + phi * (1 - x), h * (x - 2 * x**2 + x**3 + phi * (x - x**2) / 2),
+                           3 * x**2 - 2 * x**3 + phi * x, h * (x**3 - x**2 + phi * (x**2 - x) / 2)]) / (1 + phi)
+    rotation = np.array([6 * (x**2 - x) / h, 1 - 4 * x + 3 * x**2 + phi * (1 - x),
+                         6 * (x - x**2) / h, 3 * x**2 - 2 * x + phi * x]) / (1 + phi)
+    return deflection, rotation
 
 
 class OnBearings:
     """A beam from x[0] to x[-1] with these nodes; bearings: (x, y) at nodes."""
 
     def __init__(self, beam, x, bearings):
-        self.x, size = np.asarray(x, float), 3 * len(x)
+        self.x, size = np.asarray(x, float), 4 * len(x)
         self.stiffness, self.mass = np.zeros((size, size)), np.zeros((size, size))
         for i, h in enumerate(np.diff(self.x)):
-            here = np.ix_(range(3 * i, 3 * i + 6), range(3 * i, 3 * i + 6))
+            here = np.ix_(range(4 * i, 4 * i + 8), range(4 * i, 4 * i + 8))
             for whole, part in zip((self.stiffness, self.mass), element(beam, h)):
                 whole[here] += part
         self.held = np.zeros((len(bearings), size))
         for row, (at, y) in zip(self.held, bearings):
-            row[3 * self.node(at)], row[3 * self.node(at) + 2] = 1.0, y
+            row[4 * self.node(at)], row[4 * self.node(at) + 2] = 1.0, y
+        self.known = np.arange(size) if beam.ECw else np.flatnonzero(np.arange(size) % 4 != 3)  # unknowns of the theory
 
     def node(self, at):
         found = int(np.abs(self.x - at).argmin())
         assert abs(self.x[found] - at) < 1e-9, at
         return found
 
-    def frequencies(self, count):
-        free = solvers.null_space(self.held)
-        values = solvers.eigh(free.T @ self.stiffness @ free, free.T @ self.mass @ free, eigvals_only=True,
-                              subset_by_index=[0, count - 1])
-        return np.sqrt(values) / (2 * np.pi)
+    def modes(self, count):
+        """(frequencies, deflections [mode, node], twists) of the lowest ones."""
+        stiffness, mass = (whole[np.ix_(self.known, self.known)] for whole in (self.stiffness, self.mass))
+        free = solvers.null_space(self.held[:, self.known])
+        values, vectors = solvers.eigh(free.T @ stiffness @ free, free.T @ mass @ free, subset_by_index=[0, count - 1])
+        moved = np.zeros((count, len(self.stiffness)))
+        moved[:, self.known] = (free @ vectors).T
+        return np.sqrt(values) / (2 * np.pi), moved[:, ::4], moved[:, 2::4]
+
+    def spread(self, low, high, y, force):
+        """Forces at the nodes from low to high, which have equal distances, with the whole of a uniform one upwards."""
+        at = self.x[(self.x > low - 1e-9) & (self.x < high + 1e-9)]
+        shares = np.ones(len(at))
+        shares[[0, -1]] = 0.5
+        return [(x, y, force * share) for x, share in zip(at, shares / shares.sum())]
 
     def static(self, forces):
         """forces: (x, y, force upwards) at nodes. (deflections, twists, reactions upwards)"""
         load = np.zeros(len(self.stiffness))
         for at, y, force in forces:
-            load[3 * self.node(at)] += force
-            load[3 * self.node(at) + 2] += force * y
-        count = len(self.held)
-        scale = self.stiffness.max()
-        system = np.block([[self.stiffness, scale * self.held.T], [scale * self.held, np.zeros((count, count))]])
-        solution = np.linalg.solve(system, np.append(load, np.zeros(count)))
-        moved = solution[:-count].reshape(-1, 3)
-        return moved[:, 0], moved[:, 2], -scale * solution[-count:]
+            load[4 * self.node(at)] += force
+            load[4 * self.node(at) + 2] += force * y
+        scale, held = self.stiffness.max(), self.held[:, self.known]
+        system = np.block([[self.stiffness[np.ix_(self.known, self.known)], scale * held.T],
+                           [scale * held, np.zeros((len(held), len(held)))]])
+        solution = np.linalg.solve(system, np.append(load[self.known], np.zeros(len(held))))
+        moved = np.zeros(len(load))
+        moved[self.known] = solution[:-len(held)]
+        return moved[::4], moved[2::4], -scale * solution[-len(held):]

@@ -4,7 +4,7 @@
 
 Frequencies and static values of a bridge with two tracks on one and two spans, of a slab on skew bearings and of a girder
 whose torsion is that of warping, and passages of HSLM-A5: on two meshes of quadratic hexahedra (ccx of Debian's
-calculix-ccx), and by beams: Traverse, for the slab a beam on bearings beside its axis, for the girder Vlasov's series.
+calculix-ccx), and by beams: Traverse, and those of solid_beam.py, without warping and with it.
 Prints both, and writes solid_bridge.csv (values by CalculiX on both meshes), solid_bridge_beams.csv (values by beams, and
 their difference) and solid_bridge_trains.csv (deflections in mm and accelerations in m/s2 over the last quarter of each
 passage, by CalculiX's modes) to OUT_FOLDER. Takes three and a half minutes of one core. doc/solid_bridge.md has more.
@@ -20,6 +20,7 @@ import solid_beams
 import solid_cases
 import solid_ccx
 import solid_traverse
+from solid_beam import without_warping
 from solid_train import Train, hslm
 
 HSLM_A = 5
@@ -89,24 +90,30 @@ def solids(parts, folder):
 
 
 def beams(build, folder, passages):
-    """The same values by beams."""
-    for kind in (solid_cases.Cross, solid_cases.Slab, solid_cases.Girder):
-        constants = solid_beams.beam_of(kind)._asdict().items()
-        print(f"{kind.__name__}: " + ", ".join(f"{key} {value:.6g}" for key, value in constants) + " (N, m, kg)")
-    one, two = (solid_traverse.ByABeam(build, folder, solid_beams.beam_of(solid_cases.Cross), spans) for spans in (1, 2))
-    plain = solid_beams.beam_of(solid_cases.Cross, solid_cases.WITHOUT_POISSON)
+    """{case: values} without warping, by Traverse but for the slab and the girder, and with warping."""
+    of = {kind: solid_beams.beam_of(kind) for kind in (solid_cases.Cross, solid_cases.Slab, solid_cases.Girder)}
+    cross, slab, girder = of.values()
+    for kind, beam in of.items():
+        print(f"{kind.__name__}: " + ", ".join(f"{key} {value:.6g}" for key, value in beam._asdict().items()) + " (N, m, kg)")
+    no_poisson = solid_beams.beam_of(solid_cases.Cross, solid_cases.WITHOUT_POISSON)
+    one, two, plain = (solid_traverse.ByABeam(build, folder, beam, spans)
+                       for beam, spans in ((cross, 1), (cross, 2), (no_poisson, 1)))
     passages.by_traverse(solid_traverse.ByTheBody(build, folder, *passages.modes), "the body's modes")
-    return {"one span": one.values(), NO_POISSON: solid_traverse.ByABeam(build, folder, plain, 1).values(),
-            **passages.by_traverse(one, "a beam"), "two spans": two.values(), "skew slab": solid_beams.skew(),
-            "girder": solid_beams.girder()}
+    without = {"one span": one.values(), NO_POISSON: plain.values(), **passages.by_traverse(one, "a beam"),
+               "two spans": two.values(), "skew slab": solid_beams.skew(without_warping(slab)),
+               "girder": solid_beams.girder(without_warping(girder))}
+    return without, {"one span": solid_beams.cross(cross, 1), NO_POISSON: solid_beams.cross(no_poisson, 1),
+                     "two spans": solid_beams.cross(cross, 2), "skew slab": solid_beams.skew(slab),
+                     "girder": solid_beams.girder(girder)}
 
 
-def against_beams(fine, beam):
-    """Rows of case, quantity, unit, body, beam, difference."""
-    for case, values in beam.items():
+def against_beams(fine, without, warping):
+    """Rows of case, quantity, unit, body; beam without warping and its difference; with warping."""
+    for case, values in without.items():
         for key, value in values.items():
-            body = fine[case][key]
-            yield [case, *key, f"{body:.6g}", f"{value:.6g}", f"{value / body - 1:.1e}"]
+            body, other = fine[case][key], warping.get(case, {}).get(key)
+            row = [case, *key, f"{body:.6g}", f"{value:.6g}", f"{value / body - 1:.1e}"]
+            yield row + (["", ""] if other is None else [f"{other:.6g}", f"{other / body - 1:.1e}"])
 
 
 def main():
@@ -119,18 +126,20 @@ def main():
             values, passages = solids(parts, folder)
             meshes.append(values)
             print(f"CalculiX: {time.monotonic() - begin:.0f} s on the mesh with {parts} elements in each interval")
-        beam = beams(given.build, folder, passages)
-    fine = meshes[-1]
-    rows = list(against_beams(fine, beam))
-    for case, quantity, unit, *numbers in rows:
-        print("{}: {}, {}: {}, beam {} ({})".format(case, quantity, unit, *numbers))
-    write = [("solid_bridge", ["fine mesh", "coarse mesh"], (
-        [case, *key, f"{value:.6g}", f"{meshes[0][case][key]:.6g}"] for case in fine for key, value in fine[case].items())),
-        ("solid_bridge_beams", ["body", "beam", "difference"], rows)]
-    for name, columns, lines in write:
-        runs.write_table(os.path.join(given.out, name + ".csv"), ["case", "quantity", "unit", *columns], lines)
-    runs.write_table(os.path.join(given.out, "solid_bridge_trains.csv"), ["passage", "t", *(
+        coarse, fine = meshes[0], meshes[-1]
+        by_beams = list(against_beams(fine, *beams(given.build, folder, passages)))
+    for row in by_beams:
+        print("{}: {}, {}: {}, beam {} ({}), with warping {} ({})".format(*row))
+    by_bodies = [[case, *key, f"{value:.6g}", f"{coarse[case][key]:.6g}"] for case in fine for key, value in fine[case].items()]
+    write(given.out, "solid_bridge", ["case", "quantity", "unit", "fine mesh", "coarse mesh"], by_bodies)
+    write(given.out, "solid_bridge_beams", ["case", "quantity", "unit", "body", "beam", "difference", "with warping",
+                                            "its difference"], by_beams)
+    write(given.out, "solid_bridge_trains", ["passage", "t", *(
         f"{what} of {place}" for what in ("deflection", "acceleration") for place in PLACES.values())], passages.table())
+
+
+def write(folder, name, columns, rows):
+    runs.write_table(os.path.join(folder, name + ".csv"), columns, rows)
 
 
 if __name__ == "__main__":

@@ -103,6 +103,12 @@ def of_statics(x, axis, twist, load, places):
     return values
 
 
+def places_of(spans):
+    """Where static values of one or two spans are taken."""
+    half = Cross.span / 2
+    return (half / 2, half) if spans == 1 else (half / 2, half, half + Cross.span)
+
+
 def cross(spans, parts, folder, material=None):
     """(values, frequencies, shapes, x) of one or two spans on forks."""
     kind, half = Cross, Cross.span / 2
@@ -115,8 +121,7 @@ def cross(spans, parts, folder, material=None):
     values = {}
     for load, (moved, _) in zip(loads, solid_ccx.statics(model, loads.values(), folder)):
         twist = (moved["LEFT"] - moved["RIGHT"])[:, 2] / (2 * kind.track)
-        places = (half / 2, half) if spans == 1 else (half / 2, half, half + kind.span)
-        values |= of_statics(x, moved["AXIS"][:, 2], twist, load, places)
+        values |= of_statics(x, moved["AXIS"][:, 2], twist, load, places_of(spans))
     frequencies, shapes = solid_ccx.modes(model, 24, folder)
     shapes = {name: shape[:, :, 2] for name, shape in shapes.items()}
     twist = (shapes["LEFT"] - shapes["RIGHT"]) / (2 * kind.track) * kind.edge

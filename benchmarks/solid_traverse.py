@@ -5,7 +5,7 @@ import os
 import h5py
 import numpy as np
 import runs
-from solid_cases import FORCE, HIGHEST, RATIO, STEP, Cross, of_bending_and_twist, of_statics
+from solid_cases import FORCE, HIGHEST, RATIO, STEP, Cross, of_bending_and_twist, of_statics, places_of
 
 
 class ByABeam:
@@ -37,7 +37,7 @@ class ByABeam:
 
     def values(self):
         half, length = Cross.span / 2, self.spans * Cross.span
-        places = (half / 2, half) if self.spans == 1 else (half / 2, half, half + Cross.span)
+        places = places_of(self.spans)
         return (self.frequencies() | self.static("a force", places, half - 1.9 + 0.2 * np.arange(20))
                 | self.static("a line load", places, (np.arange(200) + 0.5) * length / 200))
 

@@ -21,7 +21,7 @@ import solid_beams  # noqa: E402
 import solid_bridge  # noqa: E402
 import solid_section  # noqa: E402
 import solid_traverse  # noqa: E402
-from solid_cases import RATIO, STEP, WITHOUT_POISSON, Cross, Girder  # noqa: E402
+from solid_cases import RATIO, STEP, WITHOUT_POISSON, Cross, Girder, Slab  # noqa: E402
 
 DECK = 1e-4  # of the first frequency: the deck bends beside its girder, with the square of the frequency
 
@@ -113,14 +113,17 @@ class AgainstBodies(unittest.TestCase):
                         largest = np.abs(scale * history).max()
                         self.assertLess(np.abs(scale * history[at] - body).max(), behind[what] * largest)
 
-    def test_skew_slab_and_girder(self):
-        """By beams other than Traverse's: the reactions, and torsion with warping."""
-        slab = {quantity: value for (quantity, _), value in solid_beams.skew().items()}
-        reactions = [quantity for quantity in slab if "reaction" in quantity]
+    def test_beams_with_warping(self):
+        """Those of benchmarks/solid_beam.py: torsion of two spans, reactions of skew bearings, a girder that warps."""
+        torsion = {key: value for key, value in solid_beams.cross(self.beam, 2).items() if "torsion" in key[0]}
+        self.compare("two spans", torsion, lambda quantity: 5e-3)
+        slab = solid_beams.skew(solid_beams.beam_of(Slab, parts=4))
+        self.compare("skew slab", {key: value for key, value in slab.items() if "frequency" in key[0]}, lambda quantity: 1e-2)
+        reactions = {quantity: value for (quantity, _), value in slab.items() if "reaction" in quantity}
         self.assertEqual(len(reactions), 4)
-        for quantity in reactions:
-            self.assertAlmostEqual(slab[quantity], self.bodies["skew slab", quantity], delta=10.0)  # kN, of 1 MN
-        self.compare("girder", solid_beams.girder(), lambda quantity: 1e-2)
+        for quantity, value in reactions.items():
+            self.assertAlmostEqual(value, self.bodies["skew slab", quantity], delta=3.0)  # kN, of 1 MN
+        self.compare("girder", solid_beams.girder(solid_beams.beam_of(Girder)), lambda quantity: 1e-2)
 
 
 class Sections(unittest.TestCase):
@@ -140,6 +143,20 @@ class Sections(unittest.TestCase):
         E, nu, _ = Girder.material
         self.assertAlmostEqual(found.GJ / (E / (2 + 2 * nu) * (2 * 0.3 * 0.025**3 + 0.8 * 0.02**3) / 3), 1, delta=3e-2)
         self.assertAlmostEqual(found.ECw / (E * 0.025 * 0.3**3 * 0.8**2 / 24), 1, delta=1e-2)
+
+    def test_vlasov(self):
+        """A beam with warping against closed forms: frequencies, and the twist under a torque at midspan."""
+        beam, length = solid_beams.beam_of(Girder), Girder.span
+        model = solid_beams.on_forks(beam, Girder, 1, 0.125)
+        frequencies = solid_beams.of_bending_and_twist(*model.modes(8))
+        for n in (1, 2, 3):
+            k = n * np.pi / length
+            exact = k / (2 * np.pi) * np.sqrt((beam.GJ + beam.ECw * k**2) / (beam.polar + beam.warping * k**2))
+            self.assertAlmostEqual(frequencies[f"frequency of torsion {n}", "Hz"] / exact, 1, delta=1e-6)
+        _, twists, _ = model.static([(length / 2, y, y / 2) for y in (-1.0, 1.0)])
+        part = np.sqrt(beam.GJ / beam.ECw) * length / 2
+        exact = length / (4 * beam.GJ) * (1 - np.tanh(part) / part)
+        self.assertAlmostEqual(twists[model.node(length / 2)] / exact, 1, delta=1e-5)
 
 
 if __name__ == "__main__":
