@@ -20,7 +20,7 @@ class Beam(NamedTuple):
     mass: float
     rotary: float  # about the horizontal axis
     polar: float   # about x
-    warping: float  # inertia of warping, rho C_w
+    warping: float  # rho C_w
 
 
 def of_section(section, material):
@@ -80,7 +80,7 @@ class OnBearings:
         self.held = np.zeros((len(bearings), size))
         for row, (at, y) in zip(self.held, bearings):
             row[4 * self.node(at)], row[4 * self.node(at) + 2] = 1.0, y
-        self.known = np.arange(size) if beam.ECw else np.flatnonzero(np.arange(size) % 4 != 3)  # unknowns of the theory
+        self.unknowns = np.arange(size) if beam.ECw else np.flatnonzero(np.arange(size) % 4 != 3)
 
     def node(self, at):
         found = int(np.abs(self.x - at).argmin())
@@ -89,11 +89,11 @@ class OnBearings:
 
     def modes(self, count):
         """(frequencies, deflections [mode, node], twists) of the lowest ones."""
-        stiffness, mass = (whole[np.ix_(self.known, self.known)] for whole in (self.stiffness, self.mass))
-        free = solvers.null_space(self.held[:, self.known])
+        stiffness, mass = (whole[np.ix_(self.unknowns, self.unknowns)] for whole in (self.stiffness, self.mass))
+        free = solvers.null_space(self.held[:, self.unknowns])
         values, vectors = solvers.eigh(free.T @ stiffness @ free, free.T @ mass @ free, subset_by_index=[0, count - 1])
         moved = np.zeros((count, len(self.stiffness)))
-        moved[:, self.known] = (free @ vectors).T
+        moved[:, self.unknowns] = (free @ vectors).T
         return np.sqrt(values) / (2 * np.pi), moved[:, ::4], moved[:, 2::4]
 
     def spread(self, low, high, y, force):
@@ -109,10 +109,10 @@ class OnBearings:
         for at, y, force in forces:
             load[4 * self.node(at)] += force
             load[4 * self.node(at) + 2] += force * y
-        scale, held = self.stiffness.max(), self.held[:, self.known]
-        system = np.block([[self.stiffness[np.ix_(self.known, self.known)], scale * held.T],
+        scale, held = self.stiffness.max(), self.held[:, self.unknowns]
+        system = np.block([[self.stiffness[np.ix_(self.unknowns, self.unknowns)], scale * held.T],
                            [scale * held, np.zeros((len(held), len(held)))]])
-        solution = np.linalg.solve(system, np.append(load[self.known], np.zeros(len(held))))
+        solution = np.linalg.solve(system, np.append(load[self.unknowns], np.zeros(len(held))))
         moved = np.zeros(len(load))
-        moved[self.known] = solution[:-len(held)]
+        moved[self.unknowns] = solution[:-len(held)]
         return moved[::4], moved[2::4], -scale * solution[-len(held):]

@@ -94,7 +94,8 @@ def beams(build, folder, passages):
     of = {kind: solid_beams.beam_of(kind) for kind in (solid_cases.Cross, solid_cases.Slab, solid_cases.Girder)}
     cross, slab, girder = of.values()
     for kind, beam in of.items():
-        print(f"{kind.__name__}: " + ", ".join(f"{key} {value:.6g}" for key, value in beam._asdict().items()) + " (N, m, kg)")
+        constants = ", ".join(f"{key} {value:.6g}" for key, value in beam._asdict().items())
+        print(f"{kind.__name__}: {constants} (N, m, kg)")
     no_poisson = solid_beams.beam_of(solid_cases.Cross, solid_cases.WITHOUT_POISSON)
     one, two, plain = (solid_traverse.ByABeam(build, folder, beam, spans)
                        for beam, spans in ((cross, 1), (cross, 2), (no_poisson, 1)))
@@ -130,7 +131,8 @@ def main():
         by_beams = list(against_beams(fine, *beams(given.build, folder, passages)))
     for row in by_beams:
         print("{}: {}, {}: {}, beam {} ({}), with warping {} ({})".format(*row))
-    by_bodies = [[case, *key, f"{value:.6g}", f"{coarse[case][key]:.6g}"] for case in fine for key, value in fine[case].items()]
+    by_bodies = [[case, *key, f"{value:.6g}", f"{coarse[case][key]:.6g}"]
+                 for case in fine for key, value in fine[case].items()]
     write(given.out, "solid_bridge", ["case", "quantity", "unit", "fine mesh", "coarse mesh"], by_bodies)
     write(given.out, "solid_bridge_beams", ["case", "quantity", "unit", "body", "beam", "difference", "with warping",
                                             "its difference"], by_beams)
