@@ -136,7 +136,7 @@ class Scripts(InAFolder):
                                                         "with warping", "its difference"])
         first = [row for row in by_beams if row["quantity"].startswith("frequency") and row["quantity"].endswith(" 1")]
         self.assertEqual(len(first), 8)
-        self.assert_errors(first, "difference", 5e-3)  # of the coarse mesh, too
+        self.assert_errors(first, "its difference", 5e-3)  # of the coarse mesh, too
         columns = [f"{what} of {place}" for what in ("deflection", "acceleration")
                    for place in ("the left track", "the axis", "the right edge")]
         self.assertEqual(len(self.table("solid_bridge_trains.csv", ["passage", "t", *columns])), 90)
