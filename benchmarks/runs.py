@@ -121,7 +121,7 @@ class Run:
         with h5py.File(file) as results:
             notes = results["model/notes"].asstr()[:, 1] if "model/notes" in results else []
             self.unknowns = unknowns("\n".join([done.stdout, *notes]))
-            self.seconds = float(results.attrs["wall_seconds"])
+            self.seconds = float(results.attrs.get("wall_seconds", np.nan))  # modes have no time loop
             self.steps = int(results.attrs.get("steps", 0))
 
 

@@ -6,6 +6,7 @@ CTest runs each case on its own: programs_test.py Programs.test_NAME (benchmarks
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import unittest
@@ -14,7 +15,7 @@ SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file_
 sys.path.insert(0, str(SOURCE / "tests" / "python"))
 sys.path.insert(0, str(SOURCE / "benchmarks"))
 import runs  # noqa: E402
-from benchmark_scripts import BUILD, InAFolder  # noqa: E402
+from benchmark_scripts import BUILD, InAFolder, start  # noqa: E402
 
 
 class Programs(InAFolder):
@@ -123,6 +124,24 @@ class Scripts(InAFolder):
             if row["ranks"] == "1":
                 self.assertEqual(float(row["faster by"]), 1.0)
         self.assert_picture("scaling.png")
+
+    @unittest.skipUnless(shutil.which("ccx"), "ccx is not installed (Debian's calculix-ccx)")
+    def test_solid_bridge(self):
+        self.run_smallest("solid_bridge")
+        rows = self.table("solid_bridge.csv", ["case", "quantity", "unit", "fine mesh", "coarse mesh"])
+        self.assertEqual({row["case"] for row in rows}, {
+            "one span", "one span without Poisson's ratio", "53.2 m/s", "88.1 m/s", "two trains", "two spans", "skew slab",
+            "girder"})
+        by_beams = self.table("solid_bridge_beams.csv", ["case", "quantity", "unit", "body", "beam", "difference",
+                                                        "with warping", "its difference"])
+        first = [row for row in by_beams if row["quantity"].startswith("frequency") and row["quantity"].endswith(" 1")]
+        self.assertEqual(len(first), 8)
+        self.assert_errors(first, "its difference", 5e-3)  # of the coarse mesh, too
+        columns = [f"{what} of {place}" for what in ("deflection", "acceleration")
+                   for place in ("the left track", "the axis", "the right edge")]
+        self.assertEqual(len(self.table("solid_bridge_trains.csv", ["passage", "t", *columns])), 90)
+        done = start("solid_bridge", BUILD, self.folder, "--smallest", more={"PATH": str(self.folder)})  # where no ccx is
+        self.assertEqual(done.stderr, "solid_bridge.py: ccx is missing; install it with: apt-get install calculix-ccx\n")
 
 
 if __name__ == "__main__":
