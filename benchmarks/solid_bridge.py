@@ -4,7 +4,7 @@
 
 Frequencies and static values of a bridge with two tracks on one and two spans, of a slab on skew bearings and of a girder
 whose torsion is that of warping, and passages of HSLM-A5: on two meshes of quadratic hexahedra (ccx of Debian's
-calculix-ccx), and by beams: Traverse, and those of solid_beam.py, without warping and with it.
+calculix-ccx), and by beams of Traverse, without warping and with it.
 Prints both, and writes solid_bridge.csv (values by CalculiX on both meshes), solid_bridge_beams.csv (values by beams, and
 their difference) and solid_bridge_trains.csv (deflections in mm and accelerations in m/s2 over the last quarter of each
 passage, by CalculiX's modes) to OUT_FOLDER. Takes three and a half minutes of one core. doc/solid_bridge.md has more.
@@ -20,7 +20,6 @@ import solid_beams
 import solid_cases
 import solid_ccx
 import solid_traverse
-from solid_beam import without_warping
 from solid_train import Train, hslm
 
 HSLM_A = 5
@@ -62,9 +61,7 @@ class Passages:
         values = {}
         for name, trains in PASSAGES.items():
             t, deflections, accelerations = self.histories[name]
-            parts = [bridge.passage(train, HSLM_A, t) for train in trains]
-            moved = {place: sum(part[0][place] for part in parts) for place in PLACES}
-            shaken = parts[0][1] if len(parts) == 1 else {}
+            moved, shaken = bridge.passage(trains, HSLM_A, t)
             values[name] = peaks(moved, shaken)
             for what, ours, theirs in (("deflections", moved, deflections), ("accelerations", shaken, accelerations)):
                 off = [np.abs(ours[place] - theirs[place]).max() / np.abs(theirs[place]).max() for place in ours]
@@ -90,22 +87,23 @@ def solids(parts, folder):
 
 
 def beams(build, folder, passages):
-    """{case: values} without warping, by Traverse but for the slab and the girder, and with warping."""
-    of = {kind: solid_beams.beam_of(kind) for kind in (solid_cases.Cross, solid_cases.Slab, solid_cases.Girder)}
-    cross, slab, girder = of.values()
-    for kind, beam in of.items():
+    """{case: values} by Traverse without warping, and with it."""
+    kinds = (solid_cases.Cross, solid_cases.Slab, solid_cases.Girder)
+    of = [solid_beams.beam_of(kind) for kind in kinds] + [
+        solid_beams.beam_of(solid_cases.Cross, solid_cases.WITHOUT_POISSON)]
+    for kind, beam in zip(kinds, of):
         constants = ", ".join(f"{key} {value:.6g}" for key, value in beam._asdict().items())
         print(f"{kind.__name__}: {constants} (N, m, kg)")
-    no_poisson = solid_beams.beam_of(solid_cases.Cross, solid_cases.WITHOUT_POISSON)
-    one, two, plain = (solid_traverse.ByABeam(build, folder, beam, spans)
-                       for beam, spans in ((cross, 1), (cross, 2), (no_poisson, 1)))
     passages.by_traverse(solid_traverse.ByTheBody(build, folder, *passages.modes), "the body's modes")
-    without = {"one span": one.values(), NO_POISSON: plain.values(), **passages.by_traverse(one, "a beam"),
-               "two spans": two.values(), "skew slab": solid_beams.skew(without_warping(slab)),
-               "girder": solid_beams.girder(without_warping(girder))}
-    return without, {"one span": solid_beams.cross(cross, 1), NO_POISSON: solid_beams.cross(no_poisson, 1),
-                     "two spans": solid_beams.cross(cross, 2), "skew slab": solid_beams.skew(slab),
-                     "girder": solid_beams.girder(girder)}
+    both = []
+    for words, change in (("a beam", solid_beams.without_warping), ("a beam with warping", lambda beam: beam)):
+        cross, slab, girder, plain = map(change, of)
+        one, two, no_poisson = (solid_traverse.ByABeam(build, folder, beam, spans)
+                                for beam, spans in ((cross, 1), (cross, 2), (plain, 1)))
+        both.append({"one span": one.values(), NO_POISSON: no_poisson.values(), **passages.by_traverse(one, words),
+                     "two spans": two.values(), "skew slab": solid_traverse.skew(build, folder, slab),
+                     "girder": solid_traverse.girder(build, folder, girder)})
+    return both
 
 
 def against_beams(fine, without, warping):

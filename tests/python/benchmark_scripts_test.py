@@ -19,7 +19,7 @@ WITH_PROGRAMS = {"step_parts": "step_parts_benchmark", "ranks": "step_parts_benc
                  "scaling": "step_parts_benchmark"}
 WITH_CALCULIX = {"solid_bridge"}  # tested there, too
 OF_OTHERS = {"peers_here"}  # runs no program of ours
-PARTS = {"runs", "scene_texts", "work_precision_scenes", "beam_solver_picture", "mutated_files", "solid_beam", "solid_beams",
+PARTS = {"runs", "scene_texts", "work_precision_scenes", "beam_solver_picture", "mutated_files", "solid_beams",
          "solid_cases", "solid_ccx", "solid_mesh", "solid_section", "solid_train", "solid_traverse"}  # imported by the others, or draws a table that is given
 
 
