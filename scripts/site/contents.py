@@ -4,11 +4,11 @@ import pathlib
 import re
 
 GUIDE = "doc/guide"
-DECISIONS = "doc/decisions/README"
+DECISIONS, MEASURED = "doc/decisions/README", "doc/measured"  # each has a folder of pages
 OVERVIEW = ("Overview", ["doc/index", "README", GUIDE, "doc/gallery"])
 OTHERS = [
     ("Reference", ["doc/results_file", "doc/words", "doc/accuracy"]),
-    ("Theory and evidence", ["doc/theory", "doc/verification", "doc/comparison", "doc/performance", "doc/scaling"]),
+    ("Theory and evidence", ["doc/theory", "doc/verification", "doc/solid_bridge", "doc/comparison", "doc/performance", "doc/scaling"]),
     ("Development", ["doc/architecture", "doc/new_joint", DECISIONS, "CONTRIBUTING", "SECURITY", "CHANGELOG"]),
 ]
 
@@ -43,11 +43,14 @@ def add_toctrees(app, docname, source):
         source[0] += toctree(pages, ":hidden:")
     elif docname == DECISIONS:
         source[0] += toctree(["doc/decisions/0*"], ":glob:\n:titlesonly:")
+    elif docname == MEASURED:
+        source[0] += toctree(["doc/measured/*"], ":glob:\n:hidden:")
 
 
 def add_chapters(app, pagename, templatename, context, doctree):
     """What the layout shows at the left of each page."""
-    own = DECISIONS if pagename.startswith("doc/decisions/") else pagename
+    own = (DECISIONS if pagename.startswith("doc/decisions/") else MEASURED if pagename.startswith(f"{MEASURED}/") else
+           pagename)
     context["chapters"] = [
         {"heading": heading, "open": own in dict(pages),
          "pages": [{"title": title, "uri": context["pathto"](page), "current": page == own} for page, title in pages]}

@@ -8,7 +8,8 @@ import re
 import sys
 import unittest
 
-from examples_test import differences
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from examples_test import differences  # noqa: E402
 
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2])).resolve()
 sys.path.insert(0, str(SOURCE / "scripts"))
