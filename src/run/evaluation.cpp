@@ -130,10 +130,8 @@ void Evaluation::sample(const integrate::Instant& instant) {
   record_peaks();
   if (now_.dampers) now_.dampers->evaluate(time_, now_.motion.beam.v, now_.motion.beam.damped_w);
   record_largest_deflection();
-  if (limit_check_) {
-    if (scene_.limits_quantity("bearing_uplift")) evaluate_supports();
-    limit_check_->sample(instant.time, beam.v, now_.probes, now_.supports);
-  }
+  if (beam_ != nullptr && limit_check_ && scene_.limits_quantity("bearing_uplift")) evaluate_supports();
+  if (limit_check_) limit_check_->sample(instant.time, beam.v, now_.probes, now_.supports);
   axle_passages_.add(instant.time, system_.fleet());
   profiles_.add(system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == train::Drive::free) paths_.add(instant.time, system_.fleet());
@@ -149,11 +147,12 @@ void Evaluation::subtract_support_motion() {
 }
 
 void Evaluation::evaluate_supports() {
-  if (beam_ == nullptr) return;
   const structure::NodalMotion& beam = now_.motion.beam;
   beam_->reactions(beam.v, beam.damped_w, beam.a, beam.P.data(), now_.supports);
-  if (const structure::SupportMotion* moved = system_.structure()->support_motion())
-    moved->add_reactions(now_.supports);
+  const structure::SupportMotion* moved = system_.structure()->support_motion();
+  if (moved == nullptr) return;
+  moved->add_reactions(now_.supports);
+  now_.support_motion = {moved->upward(), moved->along()};
 }
 
 void Evaluation::store() {
@@ -161,8 +160,6 @@ void Evaluation::store() {
     const structure::NodalMotion& beam = now_.motion.beam;
     if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.loads, now_.rail);
     evaluate_supports();
-    if (const structure::SupportMotion* moved = system_.structure()->support_motion())
-      now_.support_motion = {moved->upward(), moved->along()};
     now_.ground->evaluate(beam.v, beam.damped_w, beam.a);
     if (now_.sleepers) now_.sleepers->evaluate(beam.v, beam.w);
     if (now_.devices && !now_.devices->x().empty()) now_.devices->evaluate(beam.v);
