@@ -167,8 +167,7 @@ void Evaluation::store() {
   record_energy();
 }
 
-// Modal damping acts like inertia: its acceleration contributes to all forces, but not to the accelerations of the
-// probes.
+// Modal damping acts like inertia: its acceleration contributes to all forces, not to accelerations of probes.
 void Evaluation::drag(const double* drag) {
   structure::NodalMotion& beam = now_.motion.beam;
   const auto size = static_cast<std::size_t>(beam_->local_unknowns());
