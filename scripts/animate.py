@@ -20,7 +20,7 @@ import output_files  # noqa: E402
 from checked_results import in_one_line, opened  # noqa: E402
 from matplotlib.animation import FFMpegWriter, PillowWriter  # noqa: E402
 from matplotlib.patches import Circle, Polygon  # noqa: E402
-from output_files import PROGRAM, OutputError  # noqa: E402
+from output_files import WRITER, OutputError  # noqa: E402
 from picture_axes import COLOURS, GREY, PALE  # noqa: E402
 from picture_data import Results  # noqa: E402
 from picture_model import BODY, DARK, body_boxes, draw_forces, draw_foundation, draw_supports, vertical_reach  # noqa: E402
@@ -148,13 +148,13 @@ def writer_of(path, rate):
         return None
     if not shutil.which("ffmpeg"):
         raise ValueError(f"{path}: an .mp4 needs ffmpeg, which is not installed; a .gif does not")
-    return FFMpegWriter(fps=rate, metadata={"comment": PROGRAM})
+    return FFMpegWriter(fps=rate, metadata={"comment": WRITER})
 
 
 def add_name(path):
     """Adds a comment with the name of the program before the end of a GIF file."""
     content = path.read_bytes()
-    path.write_bytes(content[:-1] + b"\x21\xfe" + bytes([len(PROGRAM)]) + PROGRAM.encode() + b"\x00" + content[-1:])
+    path.write_bytes(content[:-1] + b"\x21\xfe" + bytes([len(WRITER)]) + WRITER.encode() + b"\x00" + content[-1:])
 
 
 def animate(motion, path, rows, exaggeration):

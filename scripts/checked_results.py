@@ -7,12 +7,14 @@ that, this process opens it.
 
 import os
 import pathlib
+import re
 import resource
 import signal
 import stat
 
 import h5py
 
+VERSION = "1.0.0"                      # of all scripts and of the Python package
 SECONDS, SECONDS_A_BYTE = 5.0, 1e-7   # processor time
 MEMORY, MEMORY_A_BYTE = 1 << 30, 64    # in addition to that of this process; data may be compressed
 UNREADABLE = "is no results file that can be read"
@@ -122,13 +124,25 @@ def check(path, read=read_whole):
         raise ResultsError(UNREADABLE)
 
 
+def major(version):
+    """The first number of a version; 0 for any other text."""
+    found = re.match(r"\d+", str(version))
+    return int(found[0]) if found else 0
+
+
 def opened(path):
-    """Opens a results file, also while a run writes it; ResultsError if it cannot be read."""
+    """Opens a results file, also while a run writes it; ResultsError if it cannot be read, or if a newer major version of
+    Traverse has written it."""
     check(path)
     try:
-        return h5py.File(path, "r", locking=False)
+        file = h5py.File(path, "r", locking=False)
     except OSError:
         raise ResultsError(UNREADABLE) from None
+    version = file.attrs.get("version", "")
+    if file.attrs.get("program") == "traverse" and major(version) > major(VERSION):
+        file.close()
+        raise ResultsError(f"was written by version {version} of Traverse, whose files version {VERSION} cannot read")
+    return file
 
 
 def in_one_line(error):

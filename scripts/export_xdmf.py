@@ -5,6 +5,7 @@ import pathlib
 import re
 import xml.etree.ElementTree as tree
 
+import checked_results
 import h5py
 import numpy as np
 import output_files
@@ -98,7 +99,7 @@ def data_file(path):
 def domain_of(root):
     """The domain of a new XDMF file, which names the program."""
     domain = tree.SubElement(root, "Domain")
-    tree.SubElement(domain, "Information", Name="program", Value=output_files.PROGRAM)
+    tree.SubElement(domain, "Information", Name="program", Value=output_files.WRITER)
     return domain
 
 
@@ -108,6 +109,7 @@ def files(root, path):
     with output_files.written(data_file(path), "exported") as temporary:
         with h5py.File(temporary, "w") as out:
             out.attrs["program"], out.attrs["name"] = output_files.RESULTS["exported"], data_file(path).name
+            out.attrs["version"] = checked_results.VERSION
             yield out
     tree.indent(root)
     with output_files.written(path, "xdmf") as temporary:

@@ -98,7 +98,7 @@ def draw(results, picture):
         height = round(page.height * PICTURE_WIDTH / page.width)
         small = page.convert("RGB").resize((PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
     about = PngInfo()
-    about.add_text("Software", output_files.PROGRAM)
+    about.add_text("Software", output_files.WRITER)
     with output_files.written(picture, "png") as temporary:
         small.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(temporary, optimize=True,
                                                                                           pnginfo=about)

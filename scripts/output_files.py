@@ -21,18 +21,20 @@ import zipfile
 import checked_results
 
 PROGRAM = "Traverse"
+WRITER = f"{PROGRAM} {checked_results.VERSION}"
+ANY = rb"Traverse( [\d.]+)?"  # the writer of a file by any version
 TEXTS = ("txt", "yml")
-TEXT = f"# Written by {PROGRAM}, digest"  # the beginning of a text
-GENERATOR = f'<meta name="generator" content="{PROGRAM}">'
-METADATA = {"png": {"Software": PROGRAM}, "pdf": {"Creator": PROGRAM}, "svg": {"Creator": PROGRAM}}
+TEXT = f"# Written by {WRITER}, digest"  # the beginning of a text
+GENERATOR = f'<meta name="generator" content="{WRITER}">'
+METADATA = {"png": {"Software": WRITER}, "pdf": {"Creator": WRITER}, "svg": {"Creator": WRITER}}
 # The first bytes of a kind of file, and what Traverse writes into it.
 CONTENTS = {
-    "png": (rb"\x89PNG\r\n", rb"Software\0Traverse"),
-    "pdf": (rb"%PDF-", rb"/Creator \((Traverse|traverse-report)\)"),
-    "svg": (rb"<\?xml", rb"<dc:title>Traverse</dc:title>"),
-    "html": (rb"<!DOCTYPE html>", re.escape(GENERATOR.encode())),
-    "xdmf": (rb"<\?xml", rb'<Information Name="program" Value="Traverse"'),
-    "gif": (rb"GIF8", rb"\x21\xfe\x08Traverse\x00\x3b\Z"),
+    "png": (rb"\x89PNG\r\n", rb"Software\0" + ANY),
+    "pdf": (rb"%PDF-", rb"/Creator \((traverse-report|" + ANY + rb")\)"),
+    "svg": (rb"<\?xml", rb"<dc:title>" + ANY + rb"</dc:title>"),
+    "html": (rb"<!DOCTYPE html>", rb'<meta name="generator" content="' + ANY + rb'">'),
+    "xdmf": (rb"<\?xml", rb'<Information Name="program" Value="' + ANY + rb'"'),
+    "gif": (rb"GIF8", rb"\x21\xfe.Traverse( [\d.]+)?\x00\x3b\Z"),
     "mp4": (rb"....ftyp", rb"Traverse"),
     "md": (rb"# Gallery\n", rb"`/usr/bin/python3 scripts/gallery\.py` writes this page"),
 }
@@ -54,9 +56,13 @@ def kind_of(path, allowed):
     return kind
 
 
+def digest_of(text):
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
 def first_line(text):
     """The first line of a text that has the other lines."""
-    return f"{TEXT} {hashlib.sha256(text.encode()).hexdigest()[:16]}\n"
+    return f"{TEXT} {digest_of(text)}\n"
 
 
 def same_head(line, head):
@@ -74,10 +80,11 @@ def is_of_traverse(path, kind, head):
                 return head is None or same_head(file.readline(1 << 20).rstrip("\r\n"), head)
         if kind in TEXTS:
             with open(path, encoding="utf-8", newline="") as file:
-                return file.readline(100) == first_line(file.read())
+                first, digest = file.readline(100), digest_of(file.read())
+                return bool(re.fullmatch(rf"# Written by {ANY.decode()}, digest {digest}\n", first))
         if kind == "xlsx":
             with zipfile.ZipFile(path) as book, book.open("docProps/core.xml") as about:
-                return f">{PROGRAM}</dc:creator>".encode() in about.read(1 << 16)
+                return bool(re.search(b">" + ANY + b"</dc:creator>", about.read(1 << 16)))
         if kind in RESULTS:
             with checked_results.opened(path) as file:
                 return file.attrs.get("program") == RESULTS[kind]

@@ -9,7 +9,7 @@
 effects of uncertain options, `fit` estimates options from measurements, `screen` checks a stock of bridges under a
 fleet, and `open` reads a results file. Each returns an xarray.Dataset.
 `simulate` computes a `Problem` or many of them in this process, without a file, and `Passage` a scene step by step. A failed computation raises `Error` with the message of the program; input
-that is probably not intended causes the warning `UnusualInput`.
+that is probably not intended causes the warning `UnusualInput`. `__version__` is the version of this package.
 doc/python.md contains examples.
 """
 
@@ -19,6 +19,7 @@ try:
 except ImportError as missing:
     raise ImportError(f"traverse needs h5py and xarray ({missing}): apt install python3-h5py python3-xarray") from None
 
+from .checked_results import VERSION as __version__
 from .dataset import open_results as open  # noqa: A004
 from .passage import Passage
 from .places import Error, UnusualInput

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 from matplotlib.backends.backend_pdf import PdfPages
-from output_files import written
+from output_files import WRITER, written
 
 from . import norm_sheet, structure
 from .language import capital, t
@@ -161,7 +161,7 @@ def save(report, path, title):
     head = shortened(" · ".join(filter(None, (title.project, title.structure))), 90)
     side = f"{t('revision')} {title.revision} · {title.date}" if title.revision else title.date
     report.fill_references()
-    about = {"Title": head, "Author": title.author or None, "Creator": "traverse-report"}
+    about = {"Title": head, "Author": title.author or None, "Creator": WRITER}
     with written(path, "pdf") as temporary, PdfPages(temporary, metadata=about) as pdf:
         for number, page in enumerate(report.pages, 1):
             if number > 1:

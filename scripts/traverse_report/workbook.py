@@ -78,7 +78,7 @@ class Workbook:
         return sheet
 
     def save(self, path):
-        self.book.properties.creator = output_files.PROGRAM
+        self.book.properties.creator = output_files.WRITER
         with output_files.written(path, "xlsx") as temporary:
             self.book.save(temporary)
 

@@ -8,6 +8,7 @@ import stat
 import sys
 import zipfile
 
+import output_files
 from traverse_check import question, runs
 from traverse_report.language import LANGUAGES, choose, t
 
@@ -234,6 +235,7 @@ def archive(job):
             path = job.folder / name
             if path.is_file() and not path.is_symlink():
                 file.write(path, path.name)
+        file.comment = f"Written by {output_files.WRITER}".encode()
     return content.getvalue()
 
 
