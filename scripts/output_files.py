@@ -38,6 +38,7 @@ CONTENTS = {
     "mp4": (rb"....ftyp", rb"Traverse"),
     "md": (rb"# Gallery\n", rb"`/usr/bin/python3 scripts/gallery\.py` writes this page"),
 }
+FAULT = f"Fault report, written by {WRITER}"  # the comment of a ZIP file
 # Kinds of HDF5 files, and the program that they name.
 RESULTS = {"results": "traverse", "exported": "traverse export"}
 TAKEN = ("is there already, without the mark that Traverse leaves in such a file: it is another program's, was changed since, "
@@ -85,6 +86,9 @@ def is_of_traverse(path, kind, head):
         if kind == "xlsx":
             with zipfile.ZipFile(path) as book, book.open("docProps/core.xml") as about:
                 return bool(re.search(b">" + ANY + b"</dc:creator>", about.read(1 << 16)))
+        if kind == "zip":
+            with zipfile.ZipFile(path) as archive:
+                return bool(re.fullmatch(b"Fault report, written by " + ANY, archive.comment))
         if kind in RESULTS:
             with checked_results.opened(path) as file:
                 return file.attrs.get("program") == RESULTS[kind]

@@ -50,6 +50,8 @@ TRAVERSE_API int traverse_open(int argc, const char* const* argv, traverse_passa
 /* Frees the scene. NULL and a closed passage are allowed. The handle of a closed passage (16 bytes) exists until the
  * process ends; every other call rejects it, and NULL, with status 2. */
 TRAVERSE_API void traverse_close(traverse_passage* passage);
+/* The version of the library: "1.0.0". */
+TRAVERSE_API const char* traverse_version(void);
 /* One line on the last call that failed; empty before the first failure. Valid until the next failure. */
 TRAVERSE_API const char* traverse_error(void);
 

@@ -1,5 +1,5 @@
 # A recipe for Spack 1.0 and later. In a repository of recipes (`spack repo create`) it stands as packages/traverse/package.py;
-# in an environment `spack develop --path CHECKOUT traverse@=0.1.0`, `spack add traverse` and `spack install` build it.
+# in an environment `spack develop --path CHECKOUT traverse@=1.0.0`, `spack add traverse` and `spack install` build it.
 from spack.package import *
 from spack_repo.builtin.build_systems.cmake import CMakePackage
 
@@ -10,7 +10,7 @@ class Traverse(CMakePackage):
 
     license("BSD-2-Clause")
 
-    version("0.1.0")
+    version("1.0.0")
 
     depends_on("c", type="build")
     depends_on("cxx", type="build")

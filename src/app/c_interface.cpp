@@ -14,6 +14,7 @@
 
 #include "c_call.hpp"
 #include "results/dataset_words.hpp"
+#include "traverse/base/version.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/traverse.h"
 
@@ -116,6 +117,7 @@ void traverse_close(traverse_passage* passage) {
   if (passage != nullptr) passage->steps.reset();
 }
 
+const char* traverse_version(void) { return traverse::version(); }
 const char* traverse_error(void) { return traverse::app::last_error().c_str(); }
 
 double traverse_time(const traverse_passage* passage) {

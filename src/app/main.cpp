@@ -3,6 +3,8 @@
 #include <slepceps.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -27,6 +29,7 @@
 #include "traverse/options/input.hpp"
 #include "traverse/options/table.hpp"
 #include "traverse/scene/scene.hpp"
+#include "versions.hpp"
 
 namespace {
 
@@ -51,12 +54,14 @@ int print_error(const traverse::Error& error) {
   return error.status();
 }
 
-/// `traverse check ...` and `traverse serve ...` become the scripts traverse-check and traverse-serve, beside the
-/// installed program, or in the folder scripts beside the build folder. Throws FileError if the script cannot be
-/// started; returns for all other words.
+/// Verbs that scripts carry out: `traverse check ...` becomes the script traverse-check.
+constexpr std::array<std::string_view, 3> verbs = {"check", "fault", "serve"};
+
+/// Becomes the script of a verb, which is beside the installed program, or in the folder scripts beside the build
+/// folder. Throws FileError if the script cannot be started; returns for all other words.
 void start_script(int argc, char** argv) {
   const std::string_view verb = argc < 2 ? "" : argv[1];
-  if (verb != "check" && verb != "serve") return;
+  if (std::find(verbs.begin(), verbs.end(), verb) == verbs.end()) return;
   const std::string name = "traverse-" + std::string(verb);
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe"), folder = program.parent_path();
   std::vector<char*> words(argv + 1, argv + argc);
@@ -144,7 +149,7 @@ int main(int argc, char** argv) {
       const std::string text = help_about(input.help_about);
       return after_output(std::fputs(text.c_str(), stdout) < 0 ? 1 : 0);
     }
-    if (input.version) return after_output(std::puts("traverse " TRAVERSE_VERSION) < 0 ? 1 : 0);
+    if (input.version) return after_output(std::fputs(traverse::app::versions().c_str(), stdout) < 0 ? 1 : 0);
     traverse::options::Arguments words(input.petsc_words);
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
     traverse::app::started();

@@ -26,6 +26,7 @@
 #include "results/place.hpp"
 #include "run/model_record.hpp"
 #include "scene/limits.hpp"
+#include "traverse/base/version.hpp"
 
 namespace traverse::error_control {
 namespace {
@@ -112,7 +113,7 @@ ChoiceCache::ChoiceCache(MPI_Comm comm, const scene::Scene& scene) {
   const std::filesystem::path folder = std::filesystem::path(scene.output.file).parent_path() / folder_name;
   std::error_code ignored;
   if (!std::filesystem::is_symlink(folder, ignored)) path_ = (folder / key).string();
-  key_ = fmt::format("{} {:.17g} {} ", TRAVERSE_VERSION, scene.accuracy, key);
+  key_ = fmt::format("{} {:.17g} {} ", version(), scene.accuracy, key);
   if (writes_ && !path_.empty()) content_ = read_file();
   content_ = base::broadcast(comm, std::move(content_));
 }

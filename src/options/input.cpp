@@ -11,6 +11,7 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <sstream>
 
@@ -195,8 +196,11 @@ Input read_input(int argc, char** argv, const std::vector<Entry>& before, bool p
       if (scene_name.empty()) scene_name = name_of_scene(entry.value);
     }
   }
-  use_own_names(input.entries);
-  if (petscrc) input.notes = add_weakest(read_petscrc(files), input.entries);
+  input.notes = use_own_names(input.entries);
+  if (petscrc) {
+    std::vector<std::string> others = add_weakest(read_petscrc(files), input.entries);
+    std::move(others.begin(), others.end(), std::back_inserter(input.notes));
+  }
   input.entries = complete(std::move(input.entries), scene_name.empty() ? "scene" : scene_name);
   input.petsc_words = {argc > 0 ? argv[0] : "traverse", "-skip_petscrc", "true", "-options_left", "false"};
   for (const Entry& entry : input.entries) {
@@ -210,7 +214,7 @@ Input read_input(int argc, char** argv, const std::vector<Entry>& before, bool p
 }
 
 Entries complete(Entries entries, const std::string& scene_name) {
-  use_own_names(entries);
+  (void)use_own_names(entries);
   entries.set_default({"scene_name", scene_name, "options_file", 0});
   check_for_petsc(entries);
   return entries;
@@ -256,7 +260,7 @@ WithoutMonitors::~WithoutMonitors() {
                                  option->value.empty() ? nullptr : option->value.c_str());
 }
 
-const std::vector<std::string>& notes_on_petscrc() { return last_notes; }
+const std::vector<std::string>& notes_on_input() { return last_notes; }
 
 const Entries& in_force() { return last_put; }
 

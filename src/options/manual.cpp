@@ -6,6 +6,7 @@
 #include <set>
 
 #include "help_groups.hpp"
+#include "traverse/base/version.hpp"
 
 namespace traverse::options {
 namespace {
@@ -132,8 +133,7 @@ void replace(std::string& text, std::string_view what, const std::string& with) 
 
 std::string manual_page(const std::string& integrators) {
   std::string page(before_options);
-  const std::string version = "{version}";
-  page.replace(page.find(version), version.size(), TRAVERSE_VERSION);
+  replace(page, "{version}", version());
   for (const HelpGroup& group : help_groups()) {
     page += fmt::format(".SS {}\n", literal(group.heading));
     for (const auto& [name, row] : group.options)

@@ -1,6 +1,6 @@
 // Collects options from the files and environment variables of PETSc, and adds the options of Traverse among them with
-// the lowest precedence and a message on each. Converts option names between the older and the newer ones of PETSc by
-// the table of renamed options.
+// the lowest precedence and a message on each. Converts option names between the older and the newer ones of PETSc, and
+// former names of Traverse to the present ones, by the tables of both.
 #include "options/petscrc.hpp"
 
 #include <fmt/format.h>
@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "base/petsc.hpp"
+#include "options/old_names.hpp"
 #include "options/read_file.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/table.hpp"
@@ -86,17 +87,23 @@ std::vector<std::string> add_weakest(std::vector<Entry> given, Entries& in_force
   return notes;
 }
 
-void use_own_names(Entries& entries) {
-  const auto rename = [&](const char* from, const char* to) {
+std::vector<std::string> use_own_names(Entries& entries) {
+  std::vector<std::string> notes;
+  const auto rename = [&](std::string_view from, std::string_view to) {
     const Entry *one = entries.find(to), *other = entries.find(from);
-    if (other == nullptr) return;
+    if (other == nullptr) return false;
     if (one != nullptr)
       throw InputError(
           fmt::format("{}: this is another name of {}; give only one of the two", other->given(), one->given()));
-    entries.rename(from, to);
+    entries.rename(std::string(from), std::string(to));
+    return true;
   };
   for (const base::RenamedOption& option : base::renamed_options) rename(option.newer, option.name);
-  rename("check", "describe");  // its name before `traverse check`, the verdict of EN 1991-2
+  for (const OldName& old : old_names)
+    if (rename(old.name, old.present))
+      notes.push_back(fmt::format("{} is the former name of {}, which is read until version {} of Traverse", old.name,
+                                  old.present, old.until));
+  return notes;
 }
 
 std::string name_in_petsc(const std::string& name) {
@@ -106,6 +113,8 @@ std::string name_in_petsc(const std::string& name) {
 }
 
 std::string own_name(const std::string& name) {
+  for (const OldName& old : old_names)
+    if (name == old.name) return std::string(old.present);
   for (const base::RenamedOption& option : base::renamed_options)
     if (name == option.newer) return option.name;
   return name;

@@ -19,12 +19,13 @@ std::vector<Entry> read_petscrc(bool files);
 /// Returns a line for each: that it is in force, which entry overrides it, or that it is ignored.
 std::vector<std::string> add_weakest(std::vector<Entry> given, Entries& in_force);
 
-/// Renames entries with a newer name of PETSc to the name in Traverse. InputError if both names are given.
-void use_own_names(Entries& entries);
+/// Renames entries with a newer name of PETSc, or a former name of Traverse, to the present name in Traverse. Returns a
+/// line for each former name. InputError if both names are given.
+std::vector<std::string> use_own_names(Entries& entries);
 
 /// The name of an option in the linked version of PETSc.
 std::string name_in_petsc(const std::string& name);
-/// The name of an option in Traverse, from either name.
+/// The present name of an option in Traverse, from any of its names.
 std::string own_name(const std::string& name);
 
 }  // namespace traverse::options

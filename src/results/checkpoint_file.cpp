@@ -17,11 +17,12 @@
 #include "base/digest.hpp"
 #include "base/regular_file.hpp"
 #include "results/place.hpp"
+#include "traverse/base/version.hpp"
 
 namespace traverse::results {
 namespace {
 
-constexpr std::string_view signature = "Traverse checkpoint 2\n";
+constexpr std::string_view any_signature = "Traverse checkpoint ", signature = "Traverse checkpoint 2\n";
 constexpr std::size_t max_message = std::size_t{1} << 30;  // bytes of one message
 
 void send(MPI_Comm comm, const std::string& text, int to) {
@@ -114,6 +115,10 @@ std::string contents(const std::string& path) {
   if (!why.empty()) throw FileError("restart = " + path + ": " + why);
   const std::size_t head = signature.size() + sizeof(std::uint64_t);
   std::uint64_t digest = 0;
+  if (text.starts_with(any_signature) && !text.starts_with(signature))
+    throw FileError("restart = " + path +
+                    ": is a checkpoint of another version of Traverse; only the version that wrote " +
+                    "a checkpoint reads it");
   if (text.size() < head || !text.starts_with(signature)) throw FileError("restart = " + path + ": is no checkpoint");
   std::memcpy(&digest, text.data() + signature.size(), sizeof(digest));
   text.erase(0, head);
@@ -143,7 +148,7 @@ bool is_possible(const Checkpoint& checkpoint) {
 void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& state) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  checkpoint.version = TRAVERSE_VERSION;
+  checkpoint.version = version();
   checkpoint.of_ranks = gather(comm, state);
   if (rank != 0) return;
   base::Bytes bytes;
@@ -172,9 +177,9 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path) {
   Checkpoint checkpoint;
   base::Bytes bytes{std::span<const char>(text)};
   bytes(checkpoint.version);
-  if (checkpoint.version != TRAVERSE_VERSION)
-    throw FileError("restart = " + path + ": was written by version " + checkpoint.version +
-                    " of the program, this is " + TRAVERSE_VERSION);
+  if (checkpoint.version != version())
+    throw FileError("restart = " + path + ": was written by version " + checkpoint.version + " of Traverse, this is " +
+                    version() + "; only the version that wrote a checkpoint reads it");
   bytes = base::Bytes{std::span<const char>(text)};
   bytes(checkpoint, checkpoint.of_ranks);
   if (!is_possible(checkpoint)) throw FileError("restart = " + path + ": the checkpoint is damaged");

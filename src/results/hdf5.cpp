@@ -13,6 +13,7 @@
 #include <unordered_set>
 
 #include "traverse/base/error.hpp"
+#include "traverse/base/version.hpp"
 
 namespace traverse::results::hdf5 {
 
@@ -82,6 +83,10 @@ Id open_whole(const std::string& path) {
   const herr_t external = H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, is_in_this_file, nullptr);
   if (external < 0) throw FileError(path + ": HDF5 cannot read all of it: the file is damaged");
   if (external > 0) throw FileError(path + ": parts of it stand in other files, which are not looked for");
+  const std::string written_by = text_of(file, "/", "program") == "traverse" ? text_of(file, "/", "version") : "";
+  if (is_newer_major(written_by))
+    throw FileError(path + ": was written by version " + written_by + " of Traverse, whose files version " + version() +
+                    " cannot read");
   return file;
 }
 

@@ -43,7 +43,8 @@ class Id {
 Id open_to_read(const std::string& path);
 /// An attribute's text; empty without it. Called within isolated_read.
 std::string text_of(const Id& file, const char* object, const char* attribute);
-/// Like open_to_read, but all objects must be readable and be in this file; otherwise FileError.
+/// Like open_to_read, but all objects must be readable and be in this file, and no newer major version of Traverse may
+/// have written it; otherwise FileError.
 Id open_whole(const std::string& path);
 
 /// A file that one process writes so that after a kill the state of the last flush() is readable: the oldest superblock

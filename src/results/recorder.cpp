@@ -15,6 +15,7 @@
 #include "recorder_file.hpp"
 #include "results/origin.hpp"
 #include "traverse/base/error.hpp"
+#include "traverse/base/version.hpp"
 
 namespace traverse::results {
 namespace {
@@ -140,7 +141,7 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, 
       block_rows(rows_of_block(sizeof(double) * (1 + width))) {
   attempt([&] {
     file.attribute("/", "program", "traverse");
-    file.attribute("/", "version", TRAVERSE_VERSION);
+    file.attribute("/", "version", version());
     file.attribute("/", "petsc_version",
                    std::to_string(PETSC_VERSION_MAJOR) + "." + std::to_string(PETSC_VERSION_MINOR) + "." +
                        std::to_string(PETSC_VERSION_SUBMINOR));

@@ -26,6 +26,7 @@
 #include "results/place.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
+#include "traverse/base/version.hpp"
 
 namespace traverse::run {
 namespace {
@@ -85,7 +86,7 @@ std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   return {{"program", "traverse"},
-          {"version", TRAVERSE_VERSION},
+          {"version", version()},
           {"petsc_version", fmt::format("{}.{}.{}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR)},
           {"ranks", std::to_string(ranks)},
           {"scene", scene.name}};

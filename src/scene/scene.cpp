@@ -265,7 +265,7 @@ Scene read_scene(Options o) {
 
 Scene read_scene() {
   Scene scene = read_scene(Options(options::in_force()));
-  const std::vector<std::string>& notes = options::notes_on_petscrc();
+  const std::vector<std::string>& notes = options::notes_on_input();
   scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
   return scene;
 }

@@ -17,6 +17,7 @@
 #include "support/scene_run.hpp"
 #include "support/temporary_folder.hpp"
 #include "traverse/base/error.hpp"
+#include "traverse/base/version.hpp"
 
 namespace traverse::results {
 namespace {
@@ -122,7 +123,7 @@ TEST_F(RecorderTest, WritesAttributesOptionsAndSummary) {
 
   const Reader reader(file_);
   EXPECT_EQ(reader.text("/", "program"), "traverse");
-  EXPECT_EQ(reader.text("/", "version"), TRAVERSE_VERSION);
+  EXPECT_EQ(reader.text("/", "version"), version());
   EXPECT_NE(reader.text("/", "petsc_version"), "(no attribute)");
   EXPECT_EQ(reader.text("/", "scene"), "three_span");
   EXPECT_EQ(reader.number("/", "ranks"), 1);

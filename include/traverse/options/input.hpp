@@ -24,7 +24,7 @@ struct Input {
   bool help = false;       // -help, -h
   std::string help_about;  // the value of -help; empty for the complete list
   bool version = false;    // -version
-  std::vector<std::string> notes;        // the effect of each option of .petscrc and PETSC_OPTIONS
+  std::vector<std::string> notes;        // on former names, and the effect of each option of .petscrc and PETSC_OPTIONS
   std::vector<std::string> petsc_words;  // the program's name, then the options for PETSc
 };
 
@@ -82,8 +82,8 @@ class WithoutMonitors {
 
 /// The entries of the last call of put_into_petsc.
 const Entries& in_force();
-/// A line on each option of .petscrc and PETSC_OPTIONS, from the last call of put_into_petsc.
-const std::vector<std::string>& notes_on_petscrc();
+/// Input::notes of the last call of put_into_petsc.
+const std::vector<std::string>& notes_on_input();
 
 /// Throws an InputError for a message of PETSc about a value of its solvers' options, with the name of the option.
 [[noreturn]] void refuse_by_petsc(const std::string& message);
