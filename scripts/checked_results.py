@@ -14,11 +14,22 @@ import stat
 
 import h5py
 
-VERSION = "1.0.0"                      # of all scripts and of the Python package
 SECONDS, SECONDS_A_BYTE = 5.0, 1e-7   # processor time
 MEMORY, MEMORY_A_BYTE = 1 << 30, 64    # in addition to that of this process; data may be compressed
 UNREADABLE = "is no results file that can be read"
 WHOLE, DAMAGED, ELSEWHERE = 0, 10, 11  # exit status of the process
+
+
+def own_version():
+    """The version that cmake --install has put beside this file, otherwise that of the checkout."""
+    here = pathlib.Path(__file__).resolve().parent
+    if (here / "version.txt").is_file():
+        return (here / "version.txt").read_text(encoding="utf-8").strip()
+    lists = (here.parent / "CMakeLists.txt").read_text(encoding="utf-8")
+    return re.search(r"^project\(traverse VERSION ([\d.]+)", lists, re.MULTILINE)[1]
+
+
+VERSION = own_version()
 
 
 class ResultsError(ValueError):

@@ -7,9 +7,10 @@ set(share ${CMAKE_INSTALL_DATADIR}/traverse)  # where the program looks for scen
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME traverse)
 
 install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
-install(PROGRAMS scripts/traverse-check scripts/traverse-report scripts/traverse-serve DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY scripts/traverse_check scripts/traverse_page scripts/traverse_report scripts/traverse_serve
-        DESTINATION ${share}/python
+install(PROGRAMS scripts/traverse-check scripts/traverse-fault scripts/traverse-report scripts/traverse-serve
+        DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY scripts/traverse_check scripts/traverse_fault scripts/traverse_page scripts/traverse_report
+        scripts/traverse_serve DESTINATION ${share}/python
         FILES_MATCHING PATTERN *.py PATTERN *.csv PATTERN *.yml PATTERN *.html PATTERN *.css PATTERN *.js)
 file(GLOB several CONFIGURE_DEPENDS scripts/picture*.py scripts/convert*.py)
 install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfort.py scripts/compare.py scripts/compare_data.py
@@ -23,7 +24,7 @@ install(DIRECTORY options DESTINATION ${share})
 install(FILES packaging/traverse.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
 install(FILES examples/three_span_train.py examples/bridge.yml DESTINATION ${share}/examples)
-install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
@@ -47,7 +48,10 @@ if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr/local\" AND NOT \"${python_version}\" ST
 endif()")
 install(DIRECTORY python/traverse DESTINATION lib/\${traverse_python}/dist-packages
         FILES_MATCHING PATTERN *.py PATTERN checked_results.py EXCLUDE)
-install(FILES scripts/checked_results.py DESTINATION lib/\${traverse_python}/dist-packages/traverse)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/version.txt CONTENT "${PROJECT_VERSION}\n")
+install(FILES ${PROJECT_BINARY_DIR}/version.txt DESTINATION ${share}/python)
+install(FILES scripts/checked_results.py ${PROJECT_BINARY_DIR}/version.txt
+        DESTINATION lib/\${traverse_python}/dist-packages/traverse)
 
 # The manual page and the shell's completion are what the program itself says of its options.
 function(traverse_install_words format folder name)
