@@ -45,7 +45,7 @@ def points_of(x, y, z=0.0):
 def surface(values, shape, x, y, height):
     """A surface of rows and columns with the height of each point, or a line over its only row or column."""
     if min(shape) < 2:
-        return Grid("Polyline", points_of(x if shape[1] > 1 else y, height), values)
+        return Grid("Polyline", points_of(x if shape[1] > 1 else y, np.broadcast_to(height, x.shape)), values)
     return Grid("Quadrilateral", points_of(x, y, height), values, shape)
 
 
@@ -71,7 +71,7 @@ def of_sweep(file):
     """For each train a surface of its peaks over place and speed, above one another."""
     group, x = file["sweep"], file["probes/x"][:]
     speed, trains = group["speed"][:], group["hslm_a"][:] if "hslm_a" in group else np.ones(1)
-    whole = (len(trains), len(speed), len(x))
+    whole, reach = (len(trains), len(speed), len(x)), np.ptp(x) or 1.0
     known = {name: data for name, data in group.items()
              if name.startswith(("peak_", "amplification")) and data.shape == whole}
     grids = {}
@@ -80,7 +80,7 @@ def of_sweep(file):
         own |= {f"{name} ({data.attrs['unit']})": data[i].ravel() for name, data in known.items()}
         level = float(i) / max(len(trains) - 1, 1)
         grids[f"A{train:.0f}" if "hslm_a" in group else "train"] = surface(
-            own, whole[1:], own["place (m)"], np.ptp(x) * scaled(own["speed (m/s)"]), np.ptp(x) * level)
+            own, whole[1:], own["place (m)"], reach * scaled(own["speed (m/s)"]), reach * level)
     return grids
 
 
