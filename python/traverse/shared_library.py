@@ -29,7 +29,7 @@ def library():
     made = c.POINTER(handle)
     for name, result, *arguments in (
             ("open", c.c_int, c.c_int, c.POINTER(text), made), ("open_problem", c.c_int, handle, made),
-            ("close", None, handle), ("error", text), ("time", c.c_double, handle), ("end", c.c_double, handle),
+            ("close", None, handle), ("version", text), ("error", text), ("time", c.c_double, handle), ("end", c.c_double, handle),
             ("interval", c.c_double, handle), ("advance", c.c_int, handle, c.c_double),
             ("quantities", c.c_size_t, handle), ("describe", c.c_int, handle, c.c_size_t, c.POINTER(Quantity)),
             ("read", c.c_int, handle, text, NUMBERS, c.c_size_t),

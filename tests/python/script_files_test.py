@@ -9,6 +9,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import zipfile
 from unittest import mock
 
 import h5py
@@ -25,6 +26,7 @@ import checked_results  # noqa: E402
 import input_files  # noqa: E402
 import output_files  # noqa: E402
 
+VERSION = f"Traverse {checked_results.VERSION}".encode()
 MINE = b"mine, mine\n1,2\n"
 # Each command with its outputs.
 COMMANDS = {
@@ -75,6 +77,7 @@ class Written(Scripts):
                 self.assertEqual(self.script(*words)[::2], (0, ""))
                 kept = {}
                 for name in outputs:  # a copy of the user remains as it is
+                    self.names_its_version(self.folder / name)
                     os.link(self.folder / name, self.folder / f"other_{name}")
                     kept[name] = (self.folder / name).read_bytes()
                     os.chmod(self.folder / name, 0o640)
@@ -86,6 +89,30 @@ class Written(Scripts):
                     self.assertEqual(path.stat().st_mode & 0o777, 0o640)
                     path.unlink()
         self.assertEqual(list(self.folder.glob(".traverse_*.*")), [])
+
+    def names_its_version(self, path):
+        """Every file but a table in CSV, whose first line is its head."""
+        if path.suffix == ".h5":
+            with h5py.File(path) as file:
+                self.assertEqual(file.attrs["version"], checked_results.VERSION)
+        elif path.suffix == ".xlsx":
+            with zipfile.ZipFile(path) as book:
+                self.assertIn(VERSION, book.read("docProps/core.xml"))
+        elif path.suffix != ".csv":
+            self.assertIn(VERSION, path.read_bytes(), path.name)
+
+    def test_files_of_other_versions_are_replaced(self):
+        words = ("page.py", "r.h5", "p.html")
+        self.assertEqual(self.script(*words)[::2], (0, ""))
+        path = self.folder / "p.html"
+        content = path.read_bytes()
+        for other in (b"Traverse", b"Traverse 1.23.4"):  # 0.1.0 did not write its version
+            path.write_bytes(content.replace(VERSION, other))
+            self.assertEqual(self.script(*words)[::2], (0, ""))
+            self.assertEqual(path.read_bytes(), content)
+        path.write_bytes(content.replace(VERSION, b"Traverse by me"))
+        self.refused("p.html is there already", *words)
+        path.unlink()
 
     def test_another_file_stays_as_it_is(self):
         for words, outputs in COMMANDS.items():
