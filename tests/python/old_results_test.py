@@ -1,5 +1,5 @@
-"""Results files of earlier versions, in tests/data/results_VERSION: this version reads and repeats them, and still writes what they
-have. Results of a newer major version are refused in one line. doc/stability.md promises both.
+"""Files of earlier versions, in tests/data/results_VERSION: this version reads and repeats their results, still writes what they have, and
+refuses their checkpoints. Results of a newer major version are refused in one line. doc/stability.md promises this.
 
 The files were written by the program of that version and never since: a new folder is added for a version, none is changed."""
 
@@ -110,6 +110,20 @@ class OldResults(unittest.TestCase):
         done = self.run_in(self.folder, BINARY, "-bridge_modes_file", modes, "-load_forces", "1e5", "-load_speed", "40",
                            "-describe")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_their_checkpoints_are_refused(self):
+        """Only the version that has written a checkpoint reads it: this file, and one of another layout."""
+        packed = SOURCE / "tests/data/results_0.1.0/stopped.checkpoint.xz"
+        content = lzma.decompress(packed.read_bytes())
+        for name, text, part in (
+                ("a.checkpoint", content, f"was written by version 0.1.0 of Traverse, this is {traverse.__version__}"),
+                ("b.checkpoint", b"Traverse checkpoint 9" + content[21:], "is a checkpoint of another version")):
+            (self.folder / name).write_bytes(text)
+            done = self.run_in(self.folder, BINARY, "-beam_spans", "20", "-beam_EI", "1e10", "-beam_mass", "1e4",
+                               "-load_forces", "2e5", "-load_speed", "40", "-output_file", "stopped.h5", "-restart", name)
+            self.assertEqual(done.returncode, 4, done.stdout + done.stderr)
+            self.assertIn(part, done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
     def test_a_newer_major_version_is_refused(self):
         path = self.files[0]
