@@ -7,7 +7,7 @@
 
 namespace traverse::coupling {
 namespace {
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double never = std::numeric_limits<double>::infinity();
 }  // namespace
 
 std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) {
@@ -140,7 +140,7 @@ std::vector<double> System::known_events(double end, bool all_kinks) const {
 }
 
 double System::leaving_time() const {
-  if (!structure_ || (fleet_.wheels.empty() && input_.load.forces.empty())) return infinite;
+  if (!structure_ || (fleet_.wheels.empty() && input_.load.forces.empty())) return never;
   const double length = beam()->mesh().end();
   double last = 0.0;
   bool any_moves = false, any_stationary = false;
@@ -157,7 +157,7 @@ double System::leaving_time() const {
     add_leaving_time(fleet_.coordinates(fleet_.wheels[static_cast<std::size_t>(i)]).x(), law_of_wheel(i), 0.0);
   for (std::size_t i = 0; i < input_.load.positions.size(); ++i)
     add_leaving_time(input_.load.positions[i], train::law_of(input_.load, i), 0.5 * train::length_of(input_.load, i));
-  return any_stationary && !any_moves ? infinite : last;
+  return any_stationary && !any_moves ? never : last;
 }
 
 }  // namespace traverse::coupling
