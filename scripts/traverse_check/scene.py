@@ -178,17 +178,26 @@ def limit_rows(question, limits_file, factor):
         row |= {name: str(value) for name, value in others.get(quantity, {}).items() if name != "sources"}
         if ("joint" not in quantity or joints) and (dynamic or quantity.startswith("lm71")):
             kept.append(row)
+    if question.eccentricity is not None and all(row["quantity"] != "lm71_track_twist" for row in kept):
+        kept.append(twist_row(question.line_speed))
     if not kept:
         raise CheckError(f"{limits_file}: none of its limits applies to this check")
     return with_rules_for_trains(kept, factor) if dynamic else kept
 
 
+def twist_row(line_speed):
+    """The limit of the twist of a track at a line speed in m/s, as a row of the file of limits."""
+    own = rule("twist")
+    value = next(row["value"] for row in own["limits"] if 3.6 * line_speed <= row["to"] * (1.0 + 1e-9))
+    return {"clause": own["clause"], "quantity": "lm71_track_twist", "value": str(value), "text": own["text"]}
+
+
 def with_rules_for_trains(found, factor):
-    """Limits with those of the trains: of deflection and rotation as under LM71, and of 6.4.6.5, each unless there is
-    one; and with the factor of 6.4.6.4 for the effects of trains, unless a row has its own."""
+    """Limits with those of the trains: of deflection and rotation as under LM71, and of 6.4.6.5, which holds for the
+    twist too, each unless there is one; and with the factor of 6.4.6.4 for the effects of trains, unless a row has its own."""
     own, more = rule("limit_states"), {} if factor == 1.0 else {"factor": f"{factor:.6g}"}
     added = [row | {"quantity": row["quantity"].removeprefix("lm71_"), "text": "under the trains"} for row in found
-             if row["quantity"].startswith("lm71_")]
+             if row["quantity"].startswith("lm71_") and row["quantity"] != "lm71_track_twist"]
     added.append({"clause": own["clause"], "quantity": "train_over_lm71", "value": str(own["value"]),
                   "text": own["text"]})
     given = {row["quantity"] for row in found}

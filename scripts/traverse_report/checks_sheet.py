@@ -72,6 +72,8 @@ def results_of(source, row, verdicts):
                 for v in found]
     if row.get("needs") == "joints" and not has_joints(source):
         return [(t("not applicable: no joint between two decks"), GREY, "", "", "")]
+    if row.get("needs") == "torsion" and "beam_GJ" not in source.options:
+        return [(t("not verified: the beam does not twist"), AMBER, "", "", "")]
     if row.get("needs") == "dynamic" and not source.is_dynamic and is_unnecessary(source):
         return [(t("not applicable: no dynamic analysis is necessary"), GREY, "", "", "need")]
     decision = DECISIONS[row["decided"]](source) if "decided" in row else None

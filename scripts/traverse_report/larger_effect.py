@@ -10,7 +10,7 @@ from .language import decimal, known, num, t
 from .quantities import shown_value, speed_in_words
 
 EFFECTS = {"lm71_deflection_over_span": "deflection", "lm71_end_rotation": "end_rotation",
-           "lm71_joint_rotation": "joint_rotation"}
+           "lm71_joint_rotation": "joint_rotation", "lm71_track_twist": "track_twist"}
 
 
 class OfTrains(NamedTuple):

@@ -12,7 +12,7 @@ from .quantities import with_factor
 from .source import ReportError
 
 # Static effects by EN 1991-2: they are independent of the runs and checked once.
-STATIC = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "train_over_lm71"}
+STATIC = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "lm71_track_twist", "train_over_lm71"}
 # Quantities of limits with another name in a table of runs.
 STORED = {"unfiltered_deck_acceleration": "peak_acceleration", "contact_loss": "longest_loss"}
 LIST = "list of limits, each with quantity, value and clause"

@@ -40,7 +40,7 @@ constexpr Relation relations[] = {
   {Related::scene, "beam_cracks_width", needs, "beam_cracks_EI_factor", ""},
   {Related::scene, "beam_cracks_EI_factor", needs, "beam_cracks_width", ""},
   {Related::scene, "beam_GJ", needs, "beam_polar_inertia", ""},
-  {Related::scene, "track_eccentricity track_curve_radius track_cant load_sideways_height tracks", excludes, "scene_analysis=rail scene_analysis=screen", "is for bridges that twist; rails by UIC 774-3 and screens have no torsion"},
+  {Related::scene, "track_eccentricity track_curve_radius track_cant load_sideways_height tracks", excludes, "scene_analysis=rail scene_analysis=screen", "is for bridges that twist; rails by UIC 774-3 have no torsion, and screens read it from their stock"},
   {Related::scene, "beam_ECw beam_polar_inertia beam_shear_centre beam_mass_centre support_torsion support_bearing_spacing norm_second_track track_eccentricity track_curve_radius track_cant load_sideways_height tracks foundation_vertical_eccentricity", needs, "beam_GJ", "belongs to a beam that twists, which needs beam_GJ"},
   {Related::scene, "beam_point_masses_x", needs, "beam_point_masses_mass", ""},
   {Related::scene, "beam_point_masses_mass", needs, "beam_point_masses_x", ""},

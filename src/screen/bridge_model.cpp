@@ -35,23 +35,13 @@ BridgeModel::BridgeModel(const Bridge& bridge, int modes, int parts, const std::
     : bridge_(bridge) {
   supports_ = {0.0};
   for (const double span : bridge.spans) supports_.push_back(supports_.back() + span);
-  const double zeta = bridge.damping;
-  for (BeamMode& mode : beam_modes(bridge.spans, modes)) {
-    ModeOfBridge own;
-    own.beta = mode.beta;
-    own.omega = mode.beta * mode.beta * std::sqrt(bridge.EI / bridge.mass);
-    own.omega_d = own.omega * std::sqrt(1.0 - zeta * zeta);
-    own.lambda2 = std::pow(Complex(-zeta * own.omega, own.omega_d), 2);
-    own.shape = std::move(mode.spans);
-    for (SpanShape& shape : own.shape) {
-      for (double* coefficient : {&shape.a, &shape.b, &shape.c, &shape.d}) *coefficient /= std::sqrt(bridge.mass);
-      own.size = std::max(own.size, std::hypot(shape.a, shape.b) + std::abs(shape.c) + std::abs(shape.d));
-    }
-    modes_.push_back(std::move(own));
-  }
+  for (BeamMode& mode : beam_modes(bridge.spans, modes))
+    add_mode({mode.beta, mode.beta * mode.beta * std::sqrt(bridge.EI / bridge.mass), std::move(mode.spans)},
+             std::sqrt(bridge.mass));
+  if (bridge.eccentricity != 0.0) add_torsion();
   sampling_time_ = 2.0 * std::numbers::pi / modes_.back().omega / samples;
   const double half_waves =
-      modes_.back().beta * *std::max_element(bridge.spans.begin(), bridge.spans.end()) / std::numbers::pi;
+      largest_beta_ * *std::max_element(bridge.spans.begin(), bridge.spans.end()) / std::numbers::pi;
   set_stations(std::max(parts, static_cast<int>(std::ceil(parts_of_half_wave * half_waves))));
   group_speeds_ = speeds;
   speed_count_ = speeds.size();
@@ -61,6 +51,35 @@ BridgeModel::BridgeModel(const Bridge& bridge, int modes, int parts, const std::
     for (std::size_t n = 0; n < modes_.size(); ++n)
       set_numbers(modes_[n], group_speeds_[i],
                   numbers_.data() + i / lanes * numbers_in_group() + n * numbers_of_mode() * lanes, i % lanes);
+}
+
+/// Adds a mode; divisor: of its shape, which makes it mass-normalised.
+void BridgeModel::add_mode(ModeOfBridge mode, double divisor) {
+  const double zeta = bridge_.damping;
+  mode.omega_d = mode.omega * std::sqrt(1.0 - zeta * zeta);
+  mode.lambda2 = std::pow(Complex(-zeta * mode.omega, mode.omega_d), 2);
+  for (SpanShape& shape : mode.shape) {
+    for (double* coefficient : {&shape.a, &shape.b, &shape.c, &shape.d}) *coefficient /= divisor;
+    mode.size = std::max(mode.size, std::hypot(shape.a, shape.b) + std::abs(shape.c) + std::abs(shape.d));
+  }
+  largest_beta_ = std::max(largest_beta_, mode.beta);
+  modes_.push_back(std::move(mode));
+}
+
+/// Forks hold the twist at each support, so that each span has half sines of its own. A force on the track gives a
+/// torque, and the track moves by the twist: the shapes are those of the track.
+void BridgeModel::add_torsion() {
+  const double highest = modes_.back().omega * (1.0 + same);
+  for (std::size_t span = 0; span < bridge_.spans.size(); ++span)
+    for (int n = 1;; ++n) {
+      const double beta = n * std::numbers::pi / bridge_.spans[span],
+                   omega = beta * std::sqrt(bridge_.GJ / bridge_.polar_inertia);
+      if (omega > highest) break;
+      std::vector<SpanShape> shape(bridge_.spans.size());
+      shape[span].a = std::sqrt(2.0 / bridge_.spans[span]);
+      add_mode({beta, omega, std::move(shape)}, std::sqrt(bridge_.polar_inertia) / std::abs(bridge_.eccentricity));
+    }
+  std::ranges::stable_sort(modes_, {}, &ModeOfBridge::omega);
 }
 
 double BridgeModel::tail(std::size_t group) const {

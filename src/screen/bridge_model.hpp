@@ -20,20 +20,23 @@ namespace traverse::screen {
 inline constexpr std::size_t lanes = engine::widest;  // speeds that are computed together
 
 struct ModeOfBridge {
-  double beta = 0.0, omega = 0.0, omega_d = 0.0;  // 1/m, rad/s
-  std::complex<double> lambda2;                   // (-zeta omega + i omega_d)^2, 1/s2
-  std::vector<SpanShape> shape;                   // mass-normalised, 1/sqrt(kg)
-  double size = 0.0;                              // 1/sqrt(kg): |phi|, |phi'|/beta and |phi''|/beta^2 do not exceed it
+  double beta = 0.0, omega = 0.0;  // 1/m, rad/s
+  std::vector<SpanShape> shape;    // mass-normalised, 1/sqrt(kg)
+  double omega_d = 0.0;            // rad/s
+  std::complex<double> lambda2;    // (-zeta omega + i omega_d)^2, 1/s2
+  double size = 0.0;               // 1/sqrt(kg): |phi|, |phi'|/beta and |phi''|/beta^2 do not exceed it
 };
 
 class BridgeModel {
  public:
-  /// parts: the least number of equal parts of each span, with the stations between them; six in each half wave of the
-  /// highest mode. speeds: m/s, ascending.
+  /// modes: the number of those of bending; a bridge that twists also has its modes of torsion up to the highest
+  /// frequency of these. parts: the least number of equal parts of each span, with the stations between them; six in
+  /// each half wave of the highest mode. speeds: m/s, ascending.
   BridgeModel(const Bridge& bridge, int modes, int parts, const std::vector<double>& speeds, double samples);
 
   const Bridge& bridge() const { return bridge_; }
-  const std::vector<ModeOfBridge>& modes() const { return modes_; }
+  const std::vector<ModeOfBridge>& modes() const { return modes_; }  // by frequency
+  double largest_beta() const { return largest_beta_; }              // 1/m
   const std::vector<double>& supports() const { return supports_; }  // m
   bool continuous() const { return bridge_.spans.size() > 1; }
   std::size_t stations() const { return of_deflection_.size(); }
@@ -65,6 +68,8 @@ class BridgeModel {
   double tail(std::size_t group) const;
 
  private:
+  void add_mode(ModeOfBridge mode, double divisor);
+  void add_torsion();
   void set_stations(int parts);
   void add_part(std::size_t span, int part, int parts);
   void set_numbers(const ModeOfBridge& mode, double v, double* first, std::size_t lane) const;
@@ -75,7 +80,7 @@ class BridgeModel {
   std::vector<ModeOfBridge> modes_;
   std::vector<double> supports_, shapes_, magnitudes_, of_magnitudes_, largest_, of_deflection_, group_speeds_;
   std::size_t speed_count_ = 0;
-  double largest_of_deflection_ = 0.0, part_ = 0.0, sampling_time_ = 0.0;
+  double largest_beta_ = 0.0, largest_of_deflection_ = 0.0, part_ = 0.0, sampling_time_ = 0.0;
   engine::Aligned numbers_{0};
 };
 

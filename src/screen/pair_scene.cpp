@@ -21,9 +21,15 @@ const Thing& find(const std::vector<Thing>& things, const std::string& name, con
   return *found;
 }
 
-std::string bridge_text(const Bridge& bridge, int modes) {
-  return fmt::format("beam:\n  spans: [{}]\n  EI: {}\n  mass: {}\nmodel:\n  modes: {}\n  damping_ratios: {}\n",
-                     fmt::join(bridge.spans, ", "), bridge.EI, bridge.mass, modes, bridge.damping);
+std::string bridge_text(const options::Screen& screen, const Bridge& bridge) {
+  const BridgeModel model(bridge, screen.modes, screen.parts, screen.speeds, screen.samples);
+  const std::string torsion = bridge.eccentricity == 0.0
+                                  ? ""
+                                  : fmt::format("  GJ: {}\n  polar_inertia: {}\ntrack:\n  eccentricity: {}\n",
+                                                bridge.GJ, bridge.polar_inertia, bridge.eccentricity);
+  return fmt::format("beam:\n  spans: [{}]\n  EI: {}\n  mass: {}\n{}model:\n  modes: {}\n  damping_ratios: {}\n",
+                     fmt::join(bridge.spans, ", "), bridge.EI, bridge.mass, torsion, model.modes().size(),
+                     bridge.damping);
 }
 
 /// The sweep of the formation's forces, with many probes, because a screen finds peaks at any place.
@@ -51,7 +57,7 @@ std::string vehicles_text(const options::Screen& screen, const Bridge& bridge, c
   const BridgeModel model(bridge, screen.modes, screen.parts, screen.speeds, screen.samples);
   const double permitted = Pairs(model).judge(formation).permitted;
   return fmt::format(
-      "train:\n  speed: {}\n  positions: -120.0\ntrack:\n  profile: german_low\n  wavelengths: [2.0, 80.0]\n",
+      "train:\n  speed: {}\n  positions: -120.0\ntrack_profile: german_low\ntrack_wavelengths: [2.0, 80.0]\n",
       permitted > 0.0 ? permitted : screen.speeds.front());
 }
 
@@ -68,9 +74,9 @@ std::string pair_scene(const Problem& problem) {
       vehicles ? "vehicles on a rough track at the permitted speed" : "moving forces at all speeds",
       printable(screen.fleet), printable(screen.stock),
       vehicles ? "accelerations that the moving forces of a screen do not have." : "the peaks of the screen.");
-  return vehicles ? head + fmt::format("options_file: {}\n", printable(screen.pair[2])) +
-                        bridge_text(bridge, screen.modes) + vehicles_text(screen, bridge, formation)
-                  : head + bridge_text(bridge, screen.modes) + forces_text(screen, bridge, formation);
+  return vehicles ? head + fmt::format("options_file: {}\n", printable(screen.pair[2])) + bridge_text(screen, bridge) +
+                        vehicles_text(screen, bridge, formation)
+                  : head + bridge_text(screen, bridge) + forces_text(screen, bridge, formation);
 }
 
 }  // namespace traverse::screen

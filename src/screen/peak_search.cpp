@@ -140,7 +140,7 @@ double PeakSearch::peak(std::size_t group, int lane, long event, const double* z
   largest_ = least;
   double fastest = 0.0;  // 1/m
   for (const Complex& exponent : exponent_) fastest = std::max(fastest, std::abs(exponent.imag()));
-  longest_ = {longest_turn / model_.modes().back().beta, longest_turn / fastest};
+  longest_ = {longest_turn / model_.largest_beta(), longest_turn / fastest};
   for (std::size_t span = 0; span < model_.bridge().spans.size(); ++span) {
     const double of_acceleration = model_.bridge().of_acceleration,
                  of_deflection = model_.of_deflection()[span * model_.stations_of_span()];

@@ -52,6 +52,7 @@ std::string problem_digest(const std::vector<Bridge>& stock, const std::vector<F
     digest.add(b.name);
     digest.add(b.spans);
     digest.add(std::vector<double>{b.EI, b.mass, b.damping, b.speed, b.of_acceleration, b.of_deflection});
+    if (b.eccentricity != 0.0) digest.add(std::vector<double>{b.eccentricity, b.GJ, b.polar_inertia});
   }
   for (const Formation& f : fleet) {
     digest.add(f.name);

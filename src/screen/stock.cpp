@@ -27,6 +27,10 @@ constexpr options::KnownColumn bridge_columns[] = {{"name"},
                                                    {"mass", "kg/m"},
                                                    {"EI", "N m2"},
                                                    {"f1", "Hz"},
+                                                   {"eccentricity", "m"},
+                                                   {"GJ", "N m2"},
+                                                   {"torsional_frequency", "Hz"},
+                                                   {"polar_inertia", "kg m"},
                                                    {"damping"},
                                                    {"type"},
                                                    {"speed", "m/s"},
@@ -36,6 +40,8 @@ constexpr std::size_t most_spans = 20, most_bridges = 100'000;
 constexpr double shortest_span = 1.0, longest_span = 1000.0;          // m
 constexpr double largest_ratio = 10.0;                                // of two spans
 constexpr double lowest_frequency = 0.05, highest_frequency = 200.0;  // Hz
+constexpr double least_torsion = 0.2;                                 // first frequency of torsion over that of bending
+constexpr double largest_eccentricity = 50.0;                         // m
 constexpr double least_damping = 1e-4, greatest_damping = 0.2;
 
 std::vector<double> spans_of(const NamedTable& table, std::size_t row) {
@@ -62,6 +68,25 @@ double stiffness_of(const NamedTable& table, std::size_t row, const Bridge& brid
     table.refuse(row, fmt::format("a first frequency of {:.4g} Hz; allowed: {:g} to {:g} Hz", frequency,
                                   lowest_frequency, highest_frequency));
   return EI;
+}
+
+/// Reads the torsion of a bridge whose bending has been read.
+void read_torsion(const NamedTable& table, std::size_t row, Bridge& bridge) {
+  if (!table.has("eccentricity")) return;
+  bridge.eccentricity = table.number(row, "eccentricity");
+  if (std::abs(bridge.eccentricity) > largest_eccentricity)
+    table.refuse(row,
+                 fmt::format("eccentricity: {:g}; allowed: up to {:g} m", bridge.eccentricity, largest_eccentricity));
+  if (bridge.eccentricity == 0.0) return;
+  bridge.polar_inertia = table.positive(row, "polar_inertia");
+  const double longest = *std::max_element(bridge.spans.begin(), bridge.spans.end());
+  const double of_frequency = bridge.polar_inertia * std::pow(2.0 * longest, 2);
+  bridge.GJ = table.has("GJ") ? table.positive(row, "GJ")
+                              : of_frequency * std::pow(table.positive(row, "torsional_frequency"), 2);
+  const double frequency = std::sqrt(bridge.GJ / of_frequency), least = least_torsion * first_frequency(bridge);
+  if (!(frequency >= least && frequency <= highest_frequency))
+    table.refuse(row, fmt::format("a first frequency of torsion of {:.4g} Hz; allowed: {:.4g} to {:g} Hz", frequency,
+                                  least, highest_frequency));
 }
 
 double damping_of(const NamedTable& table, std::size_t row, double longest) {
@@ -99,6 +124,13 @@ void check_columns(const NamedTable& table, const std::vector<options::VerdictLi
   for (const auto& [one, other] : {std::pair{"EI", "f1"}, std::pair{"damping", "type"}})
     if (table.has(one) == table.has(other))
       table.refuse_columns(fmt::format("allowed: one of the columns {} and {}", one, other));
+  for (const char* name : {"GJ", "torsional_frequency", "polar_inertia"})
+    if (table.has(name) && !table.has("eccentricity"))
+      table.refuse_columns(fmt::format("the column {} needs the column eccentricity", name));
+  if (table.has("eccentricity") && !table.has("polar_inertia"))
+    table.refuse_columns("the column polar_inertia is missing, which eccentricity needs");
+  if (table.has("eccentricity") && table.has("GJ") == table.has("torsional_frequency"))
+    table.refuse_columns("allowed with eccentricity: one of the columns GJ and torsional_frequency");
   for (const char* quantity : {"deck_acceleration", "deflection_over_span"})
     if (table.has(quantity) && std::none_of(limits.begin(), limits.end(), [&](const options::VerdictLimit& limit) {
           return limit.quantity == quantity;
@@ -130,6 +162,7 @@ std::vector<Bridge> read_stock(const std::string& path, const std::vector<option
     bridge.spans = spans_of(table, row);
     bridge.mass = table.positive(row, "mass");
     bridge.EI = stiffness_of(table, row, bridge);
+    read_torsion(table, row, bridge);
     bridge.damping = damping_of(table, row, *std::max_element(bridge.spans.begin(), bridge.spans.end()));
     bridge.speed = table.has("speed") ? table.speed(row, "speed") : std::numeric_limits<double>::infinity();
     bridge.of_acceleration = factor_of(table, row, "deck_acceleration", limits);

@@ -185,6 +185,14 @@ class Scenes(unittest.TestCase):
         self.assertEqual({row["quantity"] for row in yaml.safe_load(joints)},
                          {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation"})
 
+    def test_the_limit_of_the_twist_is_that_of_the_speed(self):
+        file = SOURCE / "options/limits/en1991_2.yml"
+        for speed, value in (("120 km/h", 4.5e-3), ("121 km/h", 3.0e-3), ("200 km/h", 3.0e-3), ("201 km/h", 1.5e-3)):
+            found = scene.limits_text(ask("--line-speed", speed, "--GJ", "90 GN.m2", "--polar-inertia", "160 t.m",
+                                          "--eccentricity", "2 m"), file, 1.2)
+            self.assertEqual([float(row["value"]) for row in yaml.safe_load(found) if "twist" in row["quantity"]], [value])
+        self.assertNotIn("twist", scene.limits_text(ask(), file, 1.2))
+
     def test_limits_of_the_user(self):
         with tempfile.TemporaryDirectory() as folder:
             own, asked = pathlib.Path(folder, "own.yml"), ask("--track", "direct", "--limits", "own.yml")
@@ -317,6 +325,7 @@ class Commands(unittest.TestCase):
         self.assertGreater(effects["one"][0], 1.02 * effects["axis"][0])
         self.assertAlmostEqual(effects["one"][1] / effects["axis"][1], 1.0, 6)
         np.testing.assert_allclose(effects["two"], 2.0 * np.array(effects["axis"]), rtol=1e-3)
+        self.assertIn("twist of a track over 3 m under LM71", said)
 
     def test_a_limit_that_cannot_be_evaluated(self):
         (self.folder / "own.yml").write_text('- {clause: "EN 1990 A2.4.4.3", quantity: car_acceleration, value: 1.0}\n',
