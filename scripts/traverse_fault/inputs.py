@@ -7,12 +7,14 @@ import os
 import pathlib
 import re
 import stat
+import tempfile
 from typing import NamedTuple
 
 import input_files
 
 MOST_BYTES, MOST_FILES = 5_000_000, 200  # of a text; of texts that are looked for
-LEVELS = 2                               # folders above that of a scene whose files are those of the scene
+LEVELS = 2                               # folders above that of a scene to which names in the report may lead
+OUTSIDE = "is no ordinary file in the folders of the scene"
 LIBRARY = pathlib.Path(__file__).resolve().parents[2]  # the folder of options/
 # What may name a file: a word, or a value of YAML with blanks.
 WORD = re.compile(r"[^\s\"'`,;:\[\]{}()=]+\.[A-Za-z]\w*")
@@ -31,36 +33,45 @@ def is_within(path, folder):
     return pathlib.PurePath(path).is_relative_to(folder)
 
 
-def of_results(file, folder):
-    """The input that a results file holds; names of its files are relative to `folder`."""
+def of_results(file, folder, scenes):
+    """The input that a results file holds, without the files of this machine that do not belong to the scene; names of its files
+    are relative to `folder`."""
     if "input/options" not in file:
         return Input({}, [], [], folder)
     pairs = {name: file[f"input/{name}"].asstr()[()] for name in ("options", "sources", "files") if f"input/{name}" in file}
     texts = {os.path.normpath(os.path.join(folder, name)): text for name, text in pairs.get("files", ())}
     options = [(name, value, f"{source}:{line}" if line != "0" else source)
                for (name, value), (source, line) in zip(pairs["options"], pairs.get("sources", ()))]
-    return Input(texts, options, [], folder)
+    given = [*map(os.path.abspath, scenes)]
+    places = places_of([folder, *map(os.path.dirname, given or list(texts)[:1])])
+    outside = [path for path in texts if path not in given and os.path.lexists(path) and not may_be_packed(path, places)]
+    return Input({path: text for path, text in texts.items() if path not in outside}, options,
+                 [(path, OUTSIDE) for path in outside], folder)
 
 
-def places_of(folder):
-    """The folders whose files belong to a scene in `folder`: not the whole home, nor a folder of the root."""
-    found = [pathlib.Path(folder)]
-    home = pathlib.Path(os.path.expanduser("~")).resolve()
-    for parent in pathlib.Path(folder).parents[:LEVELS]:
-        if len(parent.parts) > 2 and not is_within(home, parent):
-            found.append(parent)
-    return [found[-1], pathlib.Path.cwd(), LIBRARY / "options"]
+def places_of(folders):
+    """The folders whose files belong to scenes in `folders`: these, the ones above them, the working directory and the library."""
+    here = [pathlib.Path(os.path.realpath(folder)) for folder in folders]
+    above = [folder.parent for folder in here if not holds_more(folder.parent)]
+    return [*here, *above, pathlib.Path.cwd(), LIBRARY / "options"]
+
+
+def holds_more(folder):
+    """Whether a folder is or contains the home or that of temporary files, so that its folders may belong to other things."""
+    return any(is_within(os.path.realpath(one), folder) for one in (os.path.expanduser("~"), tempfile.gettempdir()))
 
 
 def may_be_packed(path, places):
-    """Whether a file that a scene names is an ordinary one in the folders of the scene, and no hidden one."""
+    """Whether a file that a scene names is an ordinary one in the folders of the scene, no hidden one, nor behind a link that
+    leads out of them."""
     real = pathlib.Path(os.path.realpath(path))
-    beneath = [real.relative_to(place) for place in places if is_within(real, place)]
+    beneath = [real.relative_to(place).parts for place in places if is_within(real, place)
+               and (real.parent == place or not holds_more(place))]
     try:
         ordinary = stat.S_ISREG(os.stat(real).st_mode)
     except (OSError, ValueError):
         return False
-    return ordinary and any(not any(part.startswith(".") for part in one.parts) for one in beneath)
+    return ordinary and any(not any(part.startswith(".") for part in parts) for parts in beneath)
 
 
 def named_in(text, folder):
@@ -75,17 +86,15 @@ def named_in(text, folder):
 
 def looked_for(scenes):
     """The input of scenes that the program could not read: their texts, and those that they name."""
-    found, left_out, places = {}, [], []
+    found, left_out = {}, []
     waiting = [pathlib.Path(os.path.abspath(scene)) for scene in scenes]
-    for scene in waiting:
-        places += places_of(scene.parent)
-    given = set(waiting)
+    given, places = set(waiting), places_of([scene.parent for scene in waiting])
     while waiting:
         path = waiting.pop(0)
         if str(path) in found or any(str(path) == name for name, _ in left_out):
             continue
         if path not in given and not may_be_packed(path, places):
-            left_out.append((str(path), "is no ordinary file in the folders of the scene"))
+            left_out.append((str(path), OUTSIDE))
         elif len(found) >= MOST_FILES:
             left_out.append((str(path), f"is more than the {MOST_FILES}th file"))
         else:

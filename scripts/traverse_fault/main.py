@@ -99,7 +99,7 @@ def attempt(name, report, read, *words):
 def input_of(files, scenes, report):
     """The input of the run: of the first results file that holds its texts, otherwise of the files of the scene."""
     for file, folder in files:
-        found = attempt(f"the scene in {file.filename}", report, inputs.of_results, file, folder)
+        found = attempt(f"the scene in {file.filename}", report, inputs.of_results, file, folder, scenes)
         if found is not None and found.options:
             return found
     return inputs.looked_for(scenes)

@@ -45,10 +45,10 @@ class Fault(unittest.TestCase):
     def run_program(self, folder, *words):
         subprocess.run([BINARY, *words], cwd=folder, check=True, capture_output=True)
 
-    def fault(self, *words, status=0):
+    def fault(self, *words, status=0, folder=None):
         """What the command prints, or its one line of error."""
         own = {"HOME": str(self.home), "USER": USER, "LOGNAME": USER}
-        ended = subprocess.run([SOURCE / "scripts/traverse-fault", "--program", BINARY, *words], cwd=self.project,
+        ended = subprocess.run([SOURCE / "scripts/traverse-fault", "--program", BINARY, *words], cwd=folder or self.project,
                                env=os.environ | own, capture_output=True, text=True)
         self.assertEqual(ended.returncode, status, ended.stdout + ended.stderr)
         if status:
@@ -78,7 +78,8 @@ class Fault(unittest.TestCase):
         for name in parts:
             self.assertIn(name, said.split("fault.zip is written")[0])
         self.assertIn("too large, says USER", parts["README.txt"].decode())
-        self.assertIn(f"traverse {traverse.__version__}"[:9], parts["versions.txt"].decode())
+        self.assertEqual(parts["versions.txt"].decode().splitlines()[0], f"traverse {traverse.__version__}")
+        self.assertRegex(parts["versions.txt"].decode(), r"\nPETSc \d+\.\d+\.\d+\n(.*\n)*.*MPI.*\n(.*\n)*system .*Linux")
         self.assertIn("reached its end", parts["messages.txt"].decode())
         self.assertIn("load_speed = 40", parts["options.txt"].decode())
         with tempfile.TemporaryDirectory() as folder:
@@ -145,6 +146,24 @@ class Fault(unittest.TestCase):
         for name, why in (("huge", "too large"), ("pipe", "no ordinary file"), ("link", "no ordinary file")):
             self.assertRegex(said, rf"left out: .*{name}\.csv: is {why}")
         self.assertEqual(list(self.project.glob("**/x")), [])
+
+    def test_a_scene_that_reads_elsewhere(self):
+        """The program reads a table behind a link, and one of another folder of the home; neither is packed, also from results."""
+        (self.home / "others").mkdir()
+        (self.home / "others/private.csv").write_text("0, 1.5e10\n20, 1.5e10\n", encoding="utf-8")
+        (self.project / "tables/link").symlink_to(self.home / "others")
+        for name in ("../tables/link/private.csv", "../../../others/private.csv"):
+            self.scene.write_text(SCENE.replace("FOLDER", str(self.project)).replace("../tables/stiffness.csv", name), encoding="utf-8")
+            self.run_program(self.project, "-options_file", "scenes/a.yml", "-output_file", "a.h5")
+            for words in (("scenes/a.yml",), ("a.h5", "--describe")):
+                said = self.fault(*words)
+                parts = self.parts()
+                self.assertRegex(said, r"left out: .*private\.csv: is no ordinary file in the folders of the scene")
+                self.assertIn("input/tables/mass.csv", parts)
+                self.assertFalse([part for part, content in parts.items() if b"1.5e10" in content])
+        self.fault("customers/secret bridge/scenes/a.yml", "--out", "home.zip", folder=self.home)
+        with zipfile.ZipFile(self.home / "home.zip") as archive:
+            self.assertEqual([part for part in archive.namelist() if b"1.5e10" in archive.read(part)], [])
 
     def test_files_of_others_stay(self):
         path = self.project / "fault.zip"
