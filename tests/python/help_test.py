@@ -52,8 +52,6 @@ class Verbs(unittest.TestCase):
         words = [BINARY, "describe", scene, "-output_file", "none"]
         described = subprocess.run(words, capture_output=True, text=True, cwd=SOURCE, check=True).stdout
         self.assertIn("r3_sprung_mass: no time steps are computed", described)
-        old = [BINARY, "-options_file", scene, "-check", "-output_file", "none"]
-        self.assertEqual(subprocess.run(old, capture_output=True, text=True, cwd=SOURCE, check=True).stdout, described)
         self.assertEqual(refused("run", scene, "-ts_max_steps", "2"), (0, ""))
 
     def test_what_a_scene_does_not_ask_for(self):
