@@ -69,5 +69,6 @@ def confine(folder, readable):
 def own_places(program):
     """What is of Traverse and of Python: to be read, outside of the system."""
     scripts = pathlib.Path(__file__).resolve().parents[1]
-    places = (pathlib.Path(program).parent, scripts, scripts.parent / "options", sys.prefix, sys.base_prefix)
+    places = (pathlib.Path(program).parent, scripts, scripts.parent / "options", scripts.parent / "CMakeLists.txt",  # the version
+              sys.prefix, sys.base_prefix)
     return [str(place) for place in places]
