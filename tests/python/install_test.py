@@ -113,9 +113,13 @@ class Install(unittest.TestCase):
 
     def test_the_program_and_its_scenes(self):
         program = self.prefix / "bin/traverse"
-        self.assertIn("traverse", succeed(program, "-version"))
         elsewhere = self.folder / "elsewhere"
         elsewhere.mkdir()
+        for place in ("lib/python3/dist-packages/traverse", "share/traverse/python"):
+            said = succeed("/usr/bin/python3", "-B", "-c", "import checked_results; print('traverse', checked_results.VERSION)",
+                           PYTHONPATH=str(self.prefix / place))
+            self.assertEqual(said.splitlines()[0], succeed(program, "-version").splitlines()[0])
+        self.assertIn("fault.zip is written", succeed(program, "fault", self.scene, "--describe", cwd=elsewhere))
         said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-describe", cwd=elsewhere)
         self.assertIn("three_span_half_car: no time steps are computed", said)
         (elsewhere / "options/scenes").mkdir(parents=True)
@@ -205,10 +209,10 @@ int main(void) {
             self.assertIn(name, needed)
         self.assertIn("python3-xarray", succeed("dpkg-deb", "-f", program, "Recommends"))
         held = succeed("dpkg-deb", "-c", program)
-        for name in ("usr/bin/traverse\n", "usr/bin/traverse-report\n", "usr/bin/traverse-serve\n",
+        for name in ("usr/bin/traverse\n", "usr/bin/traverse-fault\n", "usr/bin/traverse-report\n", "usr/bin/traverse-serve\n",
                      "usr/share/traverse/options/scenes/three_span_train.yml\n",
                      "usr/share/traverse/python/picture.py\n", "usr/share/doc/traverse/copyright\n",
-                     "usr/share/man/man1/traverse.1\n", "/libtraverse.so\n",
+                     "usr/share/man/man1/traverse.1\n", "/libtraverse.so -> libtraverse.so.",
                      "usr/lib/python3/dist-packages/traverse/passage.py\n"):
             self.assertIn(name, held)
         self.assertNotIn("usr/include", held)
