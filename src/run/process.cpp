@@ -126,7 +126,8 @@ Error as_error(const std::exception& failure) {
         "track_elements_per_bay, track_approach), probes (output_probes), vehicles, forces, modes (modes_count, "
         "model_modes) or runs of a sweep",
         5};
-  return {std::string("internal error, please report it with the file that traverse fault makes: ") + failure.what(), 70};
+  return {std::string("internal error, please report it with the file that traverse fault makes: ") + failure.what(),
+          70};
 }
 
 void store_ignored_signals() {
