@@ -123,7 +123,11 @@ void Batch::start_structure() {
   unknowns_ = static_cast<std::size_t>(beam_.unknowns);
   const auto columns = static_cast<std::size_t>(beam_.columns);
   const auto block = static_cast<std::size_t>(beam_.block), bb = block * block;
-  const std::size_t nodal = (columns + 2) * block;  // the last two columns are rigid ground
+  std::size_t nodal = (columns + 2) * block;  // the last two columns are rigid ground
+  if (beam_.lever != nullptr) {
+    nodal += static_cast<std::size_t>(beam_.elements * beam_.values);
+    beam_.touched = arrays_.add_integers(static_cast<std::size_t>(beam_.elements));
+  }
   if (beam_.shape != nullptr) {
     under_wheels_.assign(columns, 0);
     beam_.under_wheels = under_wheels_.data();
@@ -151,7 +155,7 @@ void Batch::start_structure() {
     }
   }
   const int lanes = static_cast<int>(arrays_.lanes);
-  for (int k = 0; k < 2 * train_.per_node; ++k) train_.offset[k] = structure_.offset_[k] * lanes;
+  for (int k = 0; k < beam_.values; ++k) train_.offset[k] = (beam_.lever != nullptr ? k : beam_.place[k]) * lanes;
   train_.ground = static_cast<int>(columns * block) * lanes;
   train_.shears = structure_.has_shear_;
   train_.nodal = beam_.v_stage = arrays_.add(nodal);

@@ -35,10 +35,9 @@ class BatchStructure {
   static std::string obstacle(const beam::Beam& beam, const structure::ModalBridge* modal);
 
   /// The fleet's wheels at their positions on the structure; rest: nodal displacements at rest, without the wheels;
-  /// probes in m; gravity for the self-weight, m/s2 (0: none); rotations: nodal rotations that are observed. Beam and
-  /// modes must outlive this object.
+  /// probes: of the beam; rotations: nodal rotations that are observed. Beam and modes must outlive this object.
   BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
-                 const std::vector<double>& rest, const std::vector<double>& probes, double gravity,
+                 const std::vector<double>& rest, const recovery::Recovery& probes,
                  const std::vector<NodalRotation>& rotations = {});
   /// Whether the other structure has the same mesh, supports and probes, so that both can be in lanes of one batch.
   bool same_layout(const BatchStructure& other) const;
@@ -66,7 +65,7 @@ class BatchStructure {
   std::vector<double> mass_, damping_, stiffness_, dead_load_, shape_;
   std::vector<char> held_;
   std::vector<int> first_column_;
-  int offset_[most_nodal] = {};  // offset of each unknown of an element from its first column
+  double lever_ = 0.0;  // m, of the track
   Surfaces surfaces_;
   std::vector<ProbeForms> probes_;
   std::vector<LinearForm> rotations_;

@@ -108,6 +108,11 @@ inline constexpr int most_passes = 60;
 inline constexpr double height_reach =
     2e-5;  // m: contacts that move less than this reuse the parabola of the track's height
 
+/// The row of an element's first nodal value under wheels.
+inline int first_row(const BeamTask& beam, int element) {
+  return beam.lever == nullptr ? beam.first_column[element] * beam.block : beam.track_row + element * beam.values;
+}
+
 /// Sets the patches of a wheel in one lane.
 inline void place_wheel(const BatchTask& task, int at, int lane) {
   TrainTask& train = *task.train;
@@ -119,7 +124,7 @@ inline void place_wheel(const BatchTask& task, int at, int lane) {
   for (int n = 0; n < 2; ++n) {
     const int element = table.patches[k].patch[n].element;
     SurfacePatch& p = train.patch[n];
-    p.slot[at] = element < 0 ? train.ground : beam.first_column[element] * beam.block * lanes + lane;
+    p.slot[at] = element < 0 ? train.ground : first_row(beam, element) * lanes + lane;
     for (int i = 0; i < 10; ++i)
       p.compliance[i][at] = element < 0 ? 0.0 : beam.compliance[(10L * element + i) * lanes + lane];
   }

@@ -34,16 +34,19 @@ template <class Entry>
 void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection, Row& moment) {
   const TrainTask& train = *t.train;
   const Row length = Rows::fill(p.to - p.from);
+  const bool beside = t.beam->lever != nullptr;
   for (int i = 0; i < train.wheels; ++i) {
     const Row x = rows(train.station)[i], force = rows(train.force_up)[i];
     const RowMask inside_element = (x >= p.from) & (x <= p.to) & (force != 0.0);
     if (!Rows::any(inside_element)) continue;
     const Row lever =
         rows(train.normal)[i] * (rows(train.normal_along)[i] + rows(train.normal_up)[i] * rows(train.turn)[i]);
-    const Row load[2] = {inside_element ? -force : Row{}, inside_element ? train.surface_height * lever : Row{}};
+    const Row load[3] = {inside_element ? -force : Row{}, inside_element ? train.surface_height * lever : Row{},
+                         beside ? row(t.beam->lever) * (inside_element ? -force : Row{}) : Row{}};
     const Row xi = (x - p.from) / length;
     const RowMask left = x < p.x;
-    for (int kind = 0; kind < (train.surface_height != 0.0 ? 2 : 1); ++kind) {
+    for (int kind = 0; kind < 3; ++kind) {
+      if (kind == 1 ? train.surface_height == 0.0 : kind == 2 && !beside) continue;
       const auto by = [&](int response) {
         Row on_left{}, on_right{};
         const Entry* of_left = entries<Entry>(p.inside) + (2 * kind + response) * ProbeForms::powers;

@@ -37,15 +37,21 @@ std::vector<double> product(const solve::BlockTridiagonal& A, const std::vector<
   return y;
 }
 
-/// The unknowns of an element counted from its first column; -1 unless they are in two neighbouring columns.
-std::array<int, most_nodal> places(const beam::Line& line, int block, int element) {
-  std::array<int, most_nodal> place{};
-  const auto unknowns = line.unknowns(element);
+/// The unknowns of an element and its twists counted from its first column; -1 unless they are in two neighbouring
+/// columns.
+std::array<int, most_nodal + 4> places(const beam::Line& line, int block, int element) {
+  std::array<int, most_nodal + 4> place{};
   const int first = (line.first_column + line.mesh.element(element).left) * block;
-  for (int k = 0; k < 2 * line.per_node; ++k) {
-    const int at = unknowns[static_cast<std::size_t>(k)] - first;
-    place[static_cast<std::size_t>(k)] = at / block == k / line.per_node ? at : -1;
-  }
+  const auto set = [&](std::size_t k, int unknown, int node) {
+    const int at = unknown - first;
+    place[k] = at / block == node ? at : -1;
+  };
+  const auto unknowns = line.unknowns(element);
+  for (int k = 0; k < 2 * line.per_node; ++k)
+    set(static_cast<std::size_t>(k), unknowns[static_cast<std::size_t>(k)], k / line.per_node);
+  if (!line.model.torsion) return place;
+  const auto twists = line.twists(element);
+  for (int k = 0; k < 4; ++k) set(static_cast<std::size_t>(most_nodal + k), twists[static_cast<std::size_t>(k)], k / 2);
   return place;
 }
 
@@ -55,7 +61,7 @@ std::string BatchStructure::obstacle(const beam::Beam& beam, const structure::Mo
   const beam::Line& line = beam.running();
   if (modal != nullptr && !modal->given()) return "the bridge is taken by modes, with what others deflect by at rest";
   if (beam.model().nonlinear()) return "foundations that are not linear carry the beam";
-  if (line.has_tracks_beside()) return "the track is beside the shear centre of the beam";
+  if (line.tracks() > 1) return "cant or curves turn the beam";
   if (beam.block() > most_unknowns_of_a_column) return "too many unknowns meet in a node";
   const auto first = places(line, beam.block(), 0);
   for (int e = 0; e < line.mesh.elements(); ++e) {
@@ -67,7 +73,7 @@ std::string BatchStructure::obstacle(const beam::Beam& beam, const structure::Mo
 }
 
 BatchStructure::BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
-                               const std::vector<double>& rest, const std::vector<double>& probes, double gravity,
+                               const std::vector<double>& rest, const recovery::Recovery& probes,
                                const std::vector<NodalRotation>& rotations)
     : beam_(beam),
       modal_(modal),
@@ -84,8 +90,7 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const structure::ModalBri
   else
     read_matrices(rest);
   find_columns();
-  const recovery::Recovery recovery(beam, probes, gravity);
-  for (std::size_t i = 0; i < probes.size(); ++i) add_probe(recovery, i);
+  for (std::size_t i = 0; i < probes.stations().size(); ++i) add_probe(probes, i);
   for (const NodalRotation& rotation : rotations) add_rotation(rotation, rest);
 }
 
@@ -106,12 +111,14 @@ bool BatchStructure::same_layout(const BatchStructure& other) const {
       task_.proportional != other.task_.proportional || (by_stiffness_ > 0.0) != (other.by_stiffness_ > 0.0) ||
       (modal_ == nullptr) != (other.modal_ == nullptr) ||
       (beam_.rail() == nullptr) != (other.beam_.rail() == nullptr) ||
-      line_.model.surface_height != other.line_.model.surface_height || has_shear_ != other.has_shear_)
+      line_.model.surface_height != other.line_.model.surface_height || has_shear_ != other.has_shear_ ||
+      (lever_ != 0.0) != (other.lever_ != 0.0))
     return false;
   for (int e = 0; e < task_.elements; ++e)
     if (!same_element(e)) return false;
   return held_ == other.held_ && first_column_ == other.first_column_ &&
-         std::equal(std::begin(offset_), std::end(offset_), std::begin(other.offset_)) && kinks_ == other.kinks_ &&
+         std::equal(std::begin(task_.place), std::end(task_.place), std::begin(other.task_.place)) &&
+         kinks_ == other.kinks_ &&
          std::equal(probes_.begin(), probes_.end(), other.probes_.begin(), other.probes_.end(), same_probe) &&
          std::equal(rotations_.begin(), rotations_.end(), other.rotations_.begin(), other.rotations_.end(),
                     same_rotation);
@@ -141,9 +148,13 @@ void BatchStructure::read_modes(const std::vector<double>& rest) {
 
 void BatchStructure::find_columns() {
   const auto place = places(line_, task_.block, 0);
-  std::copy(place.begin(), place.end(), offset_);
-  task_.transverse[0] = offset_[line_.per_node - 2];
-  task_.transverse[1] = offset_[line_.per_node - 1];
+  std::copy_n(place.begin(), most_nodal, task_.place);
+  std::copy_n(place.begin() + most_nodal, 4, task_.twist);
+  task_.values = 2 * line_.per_node;
+  task_.track_row = (task_.columns + 2) * task_.block;
+  lever_ = line_.eccentricity(0);
+  task_.transverse[0] = task_.place[line_.per_node - 2];
+  task_.transverse[1] = task_.place[line_.per_node - 1];
   for (int e = 0; e < line_.mesh.elements(); ++e) {
     first_column_.push_back(line_.first_column + line_.mesh.element(e).left);
     has_shear_ = has_shear_ || line_.mesh.element(e).shear != 0.0;
@@ -218,30 +229,31 @@ void BatchStructure::find_inner_responses(const recovery::Recovery& recovery, st
   p.x = recovery.stations()[station];
   std::tie(p.from, p.to) = recovery.element_of(station);
   const double xi = (p.x - p.from) / (p.to - p.from);
-  constexpr int n = ProbeForms::powers;
+  constexpr int n = ProbeForms::powers, kinds = 3;
   for (int side = 0; side < 2; ++side) {
     const double from = side == 0 ? 0.0 : xi, to = side == 0 ? xi : 1.0;
     if (to - from < 1e-6) continue;
     Eigen::Matrix<double, n, n> powers;
-    Eigen::Matrix<double, n, 4> values;
+    Eigen::Matrix<double, n, 2 * kinds> values;
     for (int i = 0; i < n; ++i) {
       const double at = from + (to - from) * (i + 0.5) / n;
       for (int k = 0; k < n; ++k) powers(i, k) = std::pow(at, k);
-      for (int kind = 0; kind < 2; ++kind) {
+      for (int kind = 0; kind < kinds; ++kind) {
         recovery::ElementLoad load;
         load.element = element;
         load.xi = at;
-        (kind == 0 ? load.fy : load.moment) = 1.0;
+        (kind == 0 ? load.fy : kind == 1 ? load.moment : load.torque) = kind < 2 || line_.model.torsion ? 1.0 : 0.0;
         const recovery::Response r = recovery.inside_response(station, load);
         values(i, 2 * kind) = r.deflection;
         values(i, 2 * kind + 1) = r.moment;
       }
     }
-    const Eigen::Matrix<double, n, 4> found = powers.fullPivLu().solve(values);
-    for (int kind = 0; kind < 2; ++kind)
+    const Eigen::Matrix<double, n, 2 * kinds> found = powers.fullPivLu().solve(values);
+    for (int kind = 0; kind < kinds; ++kind)
       for (int response = 0; response < 2; ++response)
         for (int k = 0; k < n; ++k)
-          inside[static_cast<std::size_t>(((2 * side + kind) * 2 + response) * n + k)] = found(k, 2 * kind + response);
+          inside[static_cast<std::size_t>(((kinds * side + kind) * 2 + response) * n + k)] =
+              found(k, 2 * kind + response);
   }
 }
 

@@ -74,6 +74,14 @@ struct BeamTask {
   double* compliance = nullptr;
   int elements = 0, transverse[2] = {0, 1};  // indices of v and theta in a column
   const int* first_column = nullptr;         // first column of each element
+
+  // A track beside the shear centre, otherwise null: its distance in a row, m. Wheels then use the motion of the track
+  // at the nodes of each element, `values` rows from track_row on in v_stage, and load the same rows of work.
+  const double* lever = nullptr;
+  int track_row = 0, values = 0;
+  int place[most_nodal] = {},
+      twist[4] = {};  // unknowns of an element from its first column on: beam; twist, with rates
+  int *touched = nullptr, touched_count = 0;  // the elements under wheels
 };
 
 /// Heights of the track: cubics between equidistant stations.
@@ -97,8 +105,8 @@ struct ProbeForms {
                                          // the supports, moment
   double from = 1.0, to = 0.0, x = 0.0;  // m: ends of the element, if wheels run on it; station
   /// The contributions of a force or a moment at xi of the element, left and right of the station, to deflection and
-  /// moment: coefficients of the powers of xi, [side][force, moment][deflection, moment][power].
-  static constexpr int powers = 6, inner = 8 * powers;
+  /// moment: coefficients of the powers of xi, [side][force, moment, torque][deflection, moment][power].
+  static constexpr int powers = 6, inner = 12 * powers;
   const double* inside = nullptr;
 };
 

@@ -246,15 +246,25 @@ struct BeamFactor {
       const int c = t.first_column[e];
       const Row *left = inverse + static_cast<long>(c) * bb, *right = left + bb,
                 *with = pairs + static_cast<long>(c) * bb;
-      const bool of_right = c < t.middle;     // whether the block `with` has the rows of the right column
-      const auto entry = [&](int i, int j) {  // i <= j among v1, theta1, v2, theta2
-        if (j < 2) return left[o[i] * b + o[j]];
-        if (i >= 2) return right[o[i - 2] * b + o[j - 2]];
-        return of_right ? with[o[j - 2] * b + o[i]] : with[o[i] * b + o[j - 2]];
+      const bool of_right = c < t.middle;  // whether the block `with` has the rows of the right column
+      // i <= j: unknowns p and q at the nodes of i and j among v1, theta1, v2, theta2
+      const auto entry = [&](int i, int j, int p, int q) {
+        if (j < 2) return left[p * b + q];
+        if (i >= 2) return right[p * b + q];
+        return of_right ? with[q * b + p] : with[p * b + q];
       };
       Row* to = rows(t.compliance) + 10L * e;
       for (int i = 0, n = 0; i < 4; ++i)
-        for (int j = i; j < 4; ++j, ++n) to[n] = (i == j ? 1.0 : 2.0) * displacement * entry(i, j);
+        for (int j = i; j < 4; ++j, ++n) {
+          const int p = o[i % 2], q = o[j % 2];
+          Row sum = entry(i, j, p, q);
+          if (t.lever != nullptr) {
+            const Row lever = row(t.lever);
+            const int p_twist = t.twist[i] % b, q_twist = t.twist[j] % b;
+            sum += lever * (entry(i, j, p, q_twist) + entry(i, j, p_twist, q) + lever * entry(i, j, p_twist, q_twist));
+          }
+          to[n] = (i == j ? 1.0 : 2.0) * displacement * sum;
+        }
     }
   }
 };
@@ -277,10 +287,11 @@ struct BeamRows : BeamFactor<Size> {
     for (const SurfacePatch& p : train.patch)
       for (int at = 0; at < train.wheels * lanes; ++at) {
         if (p.slot[at] == train.ground) continue;
-        const int column = p.slot[at] / lanes / b;
+        const int column = column_of(p.slot[at]);
         first = column < first ? column : first;
         last = column + 1 > last ? column + 1 : last;
       }
+    if (t.lever != nullptr) list_touched(train);
     if (last < 0) first = last = t.middle;
     t.first = first < t.middle ? first : t.middle;
     t.last = last > t.middle ? last : t.middle;
@@ -298,10 +309,17 @@ struct BeamRows : BeamFactor<Size> {
   }
   void clear_loads() const {
     for (int i = t.first * b; i < (t.last + 1) * b; ++i) rows(t.work)[i] = rows(t.residual)[i];
+    for_touched([&](int /*first*/, Row* /*motion*/, Row* load) {
+      for (int k = 0; k < t.values; ++k) load[k] = Row{};
+    });
   }
   /// Solves the window under the present forces, in open lanes.
   void solve(Row displacement, RowMask open) const {
     Row *x = rows(t.work), *solution = rows(t.solution), *v = rows(t.v_stage);
+    for_touched([&](int first, Row* /*motion*/, Row* load) {
+      for (int k = 0; k < t.values; ++k) x[first + t.place[k]] += load[k];
+      for (int k = 0; k < 4; ++k) x[first + t.twist[k]] += row(t.lever) * load[transverse_value(k)];
+    });
     Factor::inwards(t.first, t.last, t.middle, t.middle,
                     [&](int further, int nearer) { Factor::forward(further, nearer, x); });
     Factor::forward(t.middle, Factor::none, x);
@@ -312,6 +330,10 @@ struct BeamRows : BeamFactor<Size> {
       solution[i] = open ? x[i] : solution[i];
       v[i] = rows(t.v_predicted)[i] + displacement * solution[i];
     }
+    for_touched([&](int first, Row* motion, Row* /*load*/) {
+      for (int k = 0; k < t.values; ++k) motion[k] = v[first + t.place[k]];
+      for (int k = 0; k < 4; ++k) motion[transverse_value(k)] += row(t.lever) * v[first + t.twist[k]];
+    });
   }
   /// Solves the columns outside the window, then computes the accelerations of all.
   void end_passes(const TrainTask& train, int stage) const {
@@ -355,6 +377,33 @@ struct BeamRows : BeamFactor<Size> {
   }
 
  private:
+  /// The column of the first node of an element with this slot.
+  int column_of(int slot) const {
+    return t.lever == nullptr ? slot / lanes / b : t.first_column[(slot / lanes - t.track_row) / t.values];
+  }
+  /// The value of an element's track among v1, theta1, v2, theta2.
+  int transverse_value(int k) const { return (k / 2 + 1) * t.values / 2 - 2 + k % 2; }
+  void list_touched(const TrainTask& train) const {
+    t.touched_count = 0;
+    for (const SurfacePatch& p : train.patch)
+      for (int at = 0; at < train.wheels * lanes; ++at) {
+        if (p.slot[at] == train.ground) continue;
+        const int element = (p.slot[at] / lanes - t.track_row) / t.values;
+        int i = 0;
+        while (i < t.touched_count && t.touched[i] != element) ++i;
+        if (i == t.touched_count) t.touched[t.touched_count++] = element;
+      }
+  }
+  /// Calls use(first unknown, motion of the track, load on it) for the elements under wheels of a track beside the
+  /// axis.
+  template <class Use>
+  void for_touched(Use use) const {
+    if (t.lever == nullptr) return;
+    for (int i = 0; i < t.touched_count; ++i) {
+      const int element = t.touched[i], own = t.track_row + element * t.values;
+      use(t.first_column[element] * b, rows(t.v_stage) + own, rows(t.work) + own);
+    }
+  }
   Row shift(Row rate) const { return row(t.by_mass) / (1.0 + rate * row(t.by_mass)); }
 
   /// The residual P - K v - C w of the unknowns from `first` to before `past`; without C w if damping is proportional.

@@ -41,6 +41,7 @@ StructureLanes::StructureLanes(std::span<const BatchStructure* const> of_lanes)
   task_.dead = of(&BatchStructure::dead_load_);
   task_.by_mass = row_of([](const BatchStructure& one) { return one.by_mass_; });
   task_.by_stiffness = row_of([](const BatchStructure& one) { return one.by_stiffness_; });
+  if (first.lever_ != 0.0) task_.lever = row_of([](const BatchStructure& one) { return one.lever_; });
   for (std::size_t i = 0; i < first.probes_.size(); ++i) add_probe(i);
   for (std::size_t i = 0; i < first.rotations_.size(); ++i) {
     LinearForm& form = rotations_.emplace_back(first.rotations_[i]);

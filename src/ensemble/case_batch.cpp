@@ -45,6 +45,8 @@ std::string CaseBatch::obstacle(const scene::Scene& scene, const run::SharedBeam
   if (!scene.model.step) return "the step is not known";
   if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";
   if (scene.beam->ground != std::array{true, true}) return "the running surface ends with the bridge";
+  if (scene.limits_quantity("track_twist") || scene.limits_quantity("bearing_uplift"))
+    return "limits of the twist and of bearings are checked run by run";
   return engine::BatchStructure::obstacle(*shared.beam, shared.modal ? &*shared.modal : nullptr);
 }
 
@@ -79,8 +81,9 @@ void CaseBatch::set_up() {
   if (scene_.limits_quantity("end_rotation") || scene_.limits_quantity("joint_rotation"))
     for (const auto& [unknown, other] : run::DeckRotations(*shared_.beam).differences())
       rotations.push_back({unknown, other});
-  structure_ = std::make_shared<const engine::BatchStructure>(*shared_.beam, modal(), fleet_, unloaded_,
-                                                              scene_.output.probes, gravity, rotations);
+  const recovery::Recovery probes(*shared_.beam, scene_.output.probes, gravity, scene_.output.eccentricities);
+  structure_ =
+      std::make_shared<const engine::BatchStructure>(*shared_.beam, modal(), fleet_, unloaded_, probes, rotations);
   const run::CarAccelerations cars(fleet_);
   if (scene_.limits_quantity("car_acceleration"))
     for (const auto& [vehicle, body] : cars.bodies()) cars_.push_back({vehicle, body});

@@ -118,6 +118,29 @@ TEST(Ranks, Modes) {
                            3);
 }
 
+// A train on one track of three spans that twist, by elements and by modes, and two trains on two tracks.
+TEST(Ranks, BridgesThatTwist) {
+  const Values twisting = {{"beam_spans", "25,27,23"},
+                           {"beam_GJ", "1.1e10"},
+                           {"beam_polar_inertia", "4e4"},
+                           {"track_eccentricity", "2.25"},
+                           {"ts_dt", "2e-3"},
+                           {"output_interval", "0.02"},
+                           {"ts_max_time", "0.8"},
+                           {"train_vehicles", "half_car"},
+                           {"train_positions", "-5"},
+                           {"beam_elements_per_span", "10"}};
+  expect_same_on_all_ranks("three_span_half_car", twisting, 35);
+  expect_same_on_all_ranks("three_span_half_car", twisting + Values{{"model_modes", "12"}}, 35);
+  expect_same_on_all_ranks("two_tracks",
+                           {{"up_vehicles", "coach"},
+                            {"down_vehicles", "coach"},
+                            {"ts_dt", "2e-3"},
+                            {"output_interval", "0.02"},
+                            {"ts_max_time", "0.6"}},
+                           35);
+}
+
 // One element: fewer nodes than ranks.
 TEST(Ranks, MoreRanksThanNodes) {
   expect_same_on_all_ranks("r2_sprung_mass",

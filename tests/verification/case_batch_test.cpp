@@ -92,6 +92,14 @@ TEST(CaseBatch, BentBridges) {
   }
 }
 
+/// A track beside the axis: the beam twists, also with warping, and with a deck above the axis.
+TEST(CaseBatch, TrackBesideTheAxis) {
+  const Values twisting = {{"beam_GJ", "4e10"},         {"beam_polar_inertia", "8e4"}, {"track_eccentricity", "2.3"},
+                           {"train_vehicles", "coach"}, {"output_probes", "20,52,88"}, {"scene_tail", "0.1"}};
+  for (const Values& more : {Values{}, Values{{"beam_ECw", "5e12"}}, Values{{"beam_surface_height", "1.8"}}})
+    expect_same_motion("three_span_train", twisting + more, "76.2,84,7.8", "8e-4", "2e-4", 2e-3);
+}
+
 // Rail, sleepers and ballast carry the wheels; a long track, of which a window is solved anew from pass to pass.
 TEST(CaseBatch, LayeredTrack) { expect_same_motion("r8_ballasted_bridge", {}, "60,66,3", "2e-3", "5e-4", 1e-4); }
 

@@ -31,6 +31,18 @@ TEST(SpansApart, AllSteppedOrOnlyThoseThatMove) {
   EXPECT_LT(relative_difference(moving("/probes/deflection"), all("/probes/deflection")), 1e-9);
 }
 
+TEST(SpansApart, ThatTwist) {
+  const Values twisting = viaduct + Values{{"ts_dt", "2e-2"},
+                                           {"beam_GJ", "1e11"},
+                                           {"beam_polar_inertia", "3e5"},
+                                           {"track_eccentricity", "2.3"}};
+  Results moving = run_scene("danyang_kunshan", twisting);
+  Results all = run_scene("danyang_kunshan", twisting + Values{{"model_window", "0"}});
+  EXPECT_LT(largest_difference(moving, all), 1e-9);
+  for (const char* name : {"/probes/deflection", "/probes/twist", "/probes/torsional_moment"})
+    EXPECT_LT(relative_difference(moving(name), all(name)), 1e-9) << name;
+}
+
 // Around each of two trains that meet and part again.
 TEST(SpansApart, OfTrainsThatMeet) {
   const std::string scene =
