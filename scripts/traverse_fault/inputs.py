@@ -112,8 +112,9 @@ def base_of(paths, folder):
     own = [pathlib.PurePath(path).parent for path in paths if not is_within(path, LIBRARY / "options")]
     if not own:
         return None
-    for base in (folder, own[0], *own[0].parents[:LEVELS]):
-        if all(is_within(one, base) for one in own):
+    above = (one for one in own[0].parents[:LEVELS] if not holds_more(one))
+    for base in (folder, own[0], *above):
+        if base.name and all(is_within(one, base) for one in own):
             return base
     return own[0]
 

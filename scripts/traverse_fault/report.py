@@ -19,7 +19,7 @@ class LeakError(Exception):
 def plain(name):
     """A name that leaves no folder and that every system can unpack."""
     parts = [OWN.sub("_", part) for part in name.split("/") if part not in ("", ".", "..")]
-    return "/".join(part.lstrip(".") or "_" for part in parts) or "_"
+    return "/".join(part.lstrip(".-") or "_" for part in parts) or "_"
 
 
 class Report:

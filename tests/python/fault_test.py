@@ -126,6 +126,21 @@ class Fault(unittest.TestCase):
             self.assertEqual(list(copy["more/texts"].asstr()), ["FOLDER/x.csv", "file://FOLDER/y.csv", "m/s"])
             self.assertEqual(copy["more/USER"][0], 1.0)
 
+    def test_hostile_names_in_results(self):
+        with h5py.File(self.project / "a.h5", "a") as file:
+            texts = file["input/files"].asstr()[()].tolist()
+            del file["input/files"]
+            names = ("../" * 9 + "cron.d/x", "/etc/passwd", "a\\..\\..\\b.yml", ".hidden/../..//c\x01.yml", "", "-rf", "con/../.d.yml")
+            file["input"].create_dataset("files", data=[*texts, *([name, HIDDEN] for name in names if name != "/etc/passwd"),
+                                                        ["/etc/passwd", "as in the file"]], dtype=h5py.string_dtype())
+        said = self.fault("a.h5", "--describe", "--results", "none")
+        with zipfile.ZipFile(self.project / "fault.zip") as archive:
+            for part in archive.namelist():
+                self.assertRegex(part, r"^([\w@+ ][\w.@+ -]*/)*[\w@+ ][\w.@+ -]*$")
+                self.assertNotIn(b"root:", archive.read(part))
+            self.assertIn("input/a.yml", archive.namelist())
+        self.assertIn("left out: /etc/passwd: is no ordinary file", said)
+
     def test_a_scene_that_is_refused(self):
         outside, huge = self.home / "other.csv", self.project / "tables/huge.csv"
         outside.write_text(HIDDEN, encoding="utf-8")
