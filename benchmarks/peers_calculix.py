@@ -63,14 +63,11 @@ def sprung_mass(build, folder, smallest):
 
 
 def frequencies(build, folder, smallest):
-    bridge, count = peers_rows.Bridge("bridges", "haunched"), 5
+    bridge = peers_rows.Bridge("bridges", "haunched")
     strip = peers_strip.Strip(bridge, 48 if smallest else 192)
     used = runs.processor_seconds()
-    theirs, _ = solid_ccx.modes(strip, count, folder)
-    used = runs.processor_seconds() - used
-    ours, seconds = peers_rows.frequencies(build, folder, bridge, count)
-    for i in range(count):
-        yield Row("modes of `haunched`", f"frequency {i + 1}", "Hz", theirs[i], ours[i], used, seconds)
+    theirs, _ = solid_ccx.modes(strip, 5, folder)
+    yield from peers_rows.of_modes(build, folder, bridge, theirs, runs.processor_seconds() - used)
 
 
 def main():

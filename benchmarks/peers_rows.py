@@ -25,7 +25,7 @@ class Bridge:
     """The beam of a file of options/; EI(x) and mass(x) in N m2 and kg/m; ends: of the spans, m."""
 
     def __init__(self, kind, name):
-        self.file = os.path.join(runs.ROOT, "options", kind, name + ".yml")
+        self.name, self.file = name, os.path.join(runs.ROOT, "options", kind, name + ".yml")
         with open(self.file) as file:
             self.options = yaml.safe_load(file)
         beam = self.options["beam"]
@@ -73,12 +73,6 @@ def largest(values):
     return float(values[np.abs(values).argmax()])
 
 
-def frequencies(build, folder, bridge, count):
-    """Ours, in Hz, and the seconds."""
-    ours = Ours(build, folder, {"options_file": bridge.file, "scene_analysis": "modes", "modes_count": count})
-    return ours.found["modes/frequency"][:count], ours.seconds
-
-
 def apart(ours, t, theirs):
     """The largest difference of two histories [instant, probe] in parts of our largest value; theirs: m, at t."""
     time, found = ours.found["time"], ours.found["probes/deflection"]
@@ -98,6 +92,13 @@ class Row(NamedTuple):
     @property
     def difference(self):
         return self.theirs / self.ours - 1
+
+
+def of_modes(build, folder, bridge, theirs, their_seconds):
+    """Rows of the first frequencies of a bridge, Hz."""
+    ours = Ours(build, folder, {"options_file": bridge.file, "scene_analysis": "modes", "modes_count": len(theirs)})
+    for i, values in enumerate(zip(theirs, ours.found["modes/frequency"])):
+        yield Row(f"modes of `{bridge.name}`", f"frequency {i + 1}", "Hz", *values, their_seconds, ours.seconds)
 
 
 def page_table(program, rows):
