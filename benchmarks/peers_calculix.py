@@ -49,11 +49,11 @@ def sprung_mass(build, folder, smallest):
     bridge = peers_rows.Bridge("scenes", "r3_sprung_mass")
     vehicle, speed = bridge.options["vehicle"]["sprung_mass"], bridge.options["train"]["speed"]
     until = 0.1 if smallest else 0.998  # within the passage, a multiple of the step
-    strip = peers_strip.Strip(bridge, 40)
+    strip = peers_strip.Strip(bridge, 20)
     mass = peers_strip.SprungMass(strip, vehicle["body"]["mass"], float(vehicle["spring"]["stiffness"]),
                                   speed)
     used = runs.processor_seconds()
-    t, moved = solid_ccx.histories(strip, mass.passage(4e-3 if smallest else 2e-3, until), folder)
+    t, moved = solid_ccx.histories(strip, mass.passage(4e-3 if smallest else 1e-3, until), folder)
     used = runs.processor_seconds() - used
     moved = moved["ROAD"][:, [strip.at(bridge.ends[-1] / 2)], 2]
     ours = peers_rows.Ours(build, folder, {"options_file": bridge.file, "ts_max_time": until})

@@ -103,8 +103,8 @@ class Beam:
 def moving_force(modules, build, folder, smallest):
     bridge = peers_rows.Bridge("scenes", "r6_three_spans")
     load, middles = bridge.options["load"], (bridge.ends[1:] + bridge.ends[:-1]) / 2
-    beam = Beam(modules, bridge, 12 if smallest else 48)
-    t, moved = beam.passage(float(load["forces"]), load["speed"], 4e-3 if smallest else 5e-4, middles)
+    beam = Beam(modules, bridge, 12 if smallest else 96)
+    t, moved = beam.passage(float(load["forces"]), load["speed"], 4e-3 if smallest else 1e-4, middles)
     used = time.process_time() - beam.assembled_from
     ours = peers_rows.Ours(build, folder, {"options_file": bridge.file})
     print(f"moving force: histories differ by {peers_rows.apart(ours, t, moved):.1e} of the peak")

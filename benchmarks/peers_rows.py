@@ -74,10 +74,13 @@ def largest(values):
 
 
 def apart(ours, t, theirs):
-    """The largest difference of two histories [instant, probe] in parts of our largest value; theirs: m, at t."""
+    """The largest difference of two histories [instant, probe] in parts of our largest value, at the instants of the one
+    with fewer of them; theirs: m, at t."""
     time, found = ours.found["time"], ours.found["probes/deflection"]
-    there = np.stack([np.interp(t, time, column) for column in found.T[:theirs.shape[1]]], axis=1)
-    return np.abs(theirs - there).max() / np.abs(there).max()
+    common = time[time <= t[-1]] if len(t) > len(time) else t
+    mine, other = (np.stack([np.interp(common, instants, column) for column in values.T], axis=1)
+                   for instants, values in ((time, found), (t, theirs)))
+    return np.abs(other - mine).max() / np.abs(mine).max()
 
 
 class Row(NamedTuple):

@@ -12,7 +12,7 @@ program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-re
   python3-openpyxl python3-scipy python3-xarray python3-yaml)
 test_packages=(ccache chromium libgtest-dev python3-h5netcdf python3-netcdf4)
 document_packages=(libjs-katex python3-myst-parser python3-sphinx)
-benchmark_packages=(calculix-ccx libbenchmark-dev)
+benchmark_packages=(calculix-ccx libbenchmark-dev python3-dolfinx)
 check_packages=(clang-format clang-tidy)
 
 # One line that says what stopped, with what the log says of the first error: CMake says it on the lines that follow.
