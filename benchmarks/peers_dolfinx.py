@@ -21,7 +21,6 @@ import peers_rows
 import runs
 import scipy.sparse
 import scipy.sparse.linalg
-from peers_rows import Row
 
 PENALTY = 10.0  # of jumps of the slope, times EI over the length of an element
 DEGREE = 3
@@ -107,10 +106,7 @@ def moving_force(modules, build, folder, smallest):
     t, moved = beam.passage(float(load["forces"]), load["speed"], 4e-3 if smallest else 1e-4, middles)
     used = time.process_time() - beam.assembled_from
     ours = peers_rows.Ours(build, folder, {"options_file": bridge.file})
-    print(f"moving force: histories differ by {peers_rows.apart(ours, t, moved):.1e} of the peak")
-    for i, place in enumerate(middles):
-        yield Row("a moving force, `r6_three_spans`", f"peak deflection at {place:g} m", "mm",
-                  1e3 * peers_rows.largest(moved[:, i]), ours.peak(i), used, ours.seconds)
+    return peers_rows.of_peaks("a moving force, `r6_three_spans`", middles, t, moved, used, ours)
 
 
 def frequencies(modules, build, folder, smallest):
@@ -118,7 +114,7 @@ def frequencies(modules, build, folder, smallest):
     beam = Beam(modules, bridge, 48 if smallest else 192)
     theirs = beam.frequencies(count)
     used = time.process_time() - beam.assembled_from
-    yield from peers_rows.of_modes(build, folder, bridge, theirs, used)
+    return peers_rows.of_modes(build, folder, bridge, theirs, used)
 
 
 def main():

@@ -73,6 +73,21 @@ def largest(values):
     return float(values[np.abs(values).argmax()])
 
 
+class Row(NamedTuple):
+    scene: str
+    quantity: str
+    unit: str
+    theirs: float
+    ours: float
+    their_seconds: float  # of the processor, for all values of the scene
+    our_seconds: float
+    over_time: float = None  # the largest difference of the histories of all quantities of the scene
+
+    @property
+    def difference(self):
+        return self.theirs / self.ours - 1
+
+
 def apart(ours, t, theirs):
     """The largest difference of two histories [instant, probe] in parts of our largest value, at the instants of the one
     with fewer of them; theirs: m, at t."""
@@ -83,18 +98,12 @@ def apart(ours, t, theirs):
     return np.abs(other - mine).max() / np.abs(mine).max()
 
 
-class Row(NamedTuple):
-    scene: str
-    quantity: str
-    unit: str
-    theirs: float
-    ours: float
-    their_seconds: float  # of the processor, for all values of the scene
-    our_seconds: float
-
-    @property
-    def difference(self):
-        return self.theirs / self.ours - 1
+def of_peaks(scene, places, t, theirs, their_seconds, ours):
+    """Rows of the largest deflections at probes, mm; theirs: m [instant, place]."""
+    over_time = apart(ours, t, theirs)
+    for i, place in enumerate(places):
+        yield Row(scene, f"peak deflection at {place:g} m", "mm", 1e3 * largest(theirs[:, i]), ours.peak(i), their_seconds,
+                  ours.seconds, over_time)
 
 
 def of_modes(build, folder, bridge, theirs, their_seconds):
@@ -105,16 +114,17 @@ def of_modes(build, folder, bridge, theirs, their_seconds):
 
 
 def page_table(program, rows):
-    """Lines of the table in doc/comparison.md; the seconds stand once a scene."""
-    lines = [f"| scene | quantity | {program} | Traverse | difference | {program}, s | Traverse, s |", 7 * "| --- " + "|"]
+    """Lines of the table in doc/comparison.md; what is of a whole scene stands in its first line."""
+    lines = [f"| scene | quantity | {program} | Traverse | difference | over time | {program}, s | Traverse, s |",
+             8 * "| --- " + "|"]
     before = None
     for row in rows:
-        first = row.scene != before
+        words = [row.scene, f"{row.quantity}, {row.unit}", f"{row.theirs:.5g}", f"{row.ours:.5g}", f"{row.difference:.1e}",
+                 "" if row.over_time is None else f"{row.over_time:.1e}", f"{row.their_seconds:.2g}", f"{row.our_seconds:.2g}"]
+        if row.scene == before:
+            words[0] = words[5] = words[6] = words[7] = ""
         before = row.scene
-        seconds = [f"{row.their_seconds:.2g}", f"{row.our_seconds:.2g}"] if first else ["", ""]
-        words = [row.scene if first else "", f"{row.quantity}, {row.unit}", f"{row.theirs:.5g}", f"{row.ours:.5g}",
-                 f"{row.difference:.1e}", *seconds]
-        lines.append(("| " + " | ".join(words) + " |").replace("|  |", "| |").replace("|  |", "| |"))
+        lines.append("".join(f"| {word} " if word else "| " for word in words) + "|")
     return lines
 
 
