@@ -16,29 +16,32 @@ import runs
 import solid_ccx
 import solid_train
 
-MODES = 12  # up to 198 Hz
+# HSLM-A8 at 456 km/h, where its scene has the largest deflection. Since Traverse adds the static response of the modes that
+# it omits and CalculiX does not, both have twelve modes, up to 198 Hz, in place of the scene's three.
+TRAIN, SPEED, MODES, STEP = 8, 126.6666667, 12, 5e-4
+
+
+def forces_by_traverse(build, folder, bridge, until):
+    beam = bridge.options["beam"]
+    return peers_rows.Ours(build, folder, {
+        "beam_spans": "20.0,20.0", "beam_EI": beam["EI"], "beam_mass": beam["mass"], "support_types": "pinned,roller,roller",
+        "model_modes": MODES, "model_damping_ratios": bridge.options["model"]["damping_ratios"], "load_hslm_a": TRAIN,
+        "load_speed": SPEED, "ts_max_time": until, "output_interval": STEP,
+        "output_probes": ",".join(f"{x:g}" for x in bridge.middles)})
 
 
 def moving_forces(build, folder, smallest):
-    """HSLM-A8 at 456 km/h, where the scene has its largest deflection. Since Traverse adds the static response of the modes
-    that it omits and CalculiX does not, both have MODES in place of the scene's three."""
     bridge = peers_rows.Bridge("scenes", "hslm_two_spans")
-    train, speed = 8, 126.6666667
-    axles, force = solid_train.hslm(train)
-    ratio, middles = bridge.options["model"]["damping_ratios"], (bridge.ends[1:] + bridge.ends[:-1]) / 2
-    until = 0.5 if smallest else round((axles[-1] + bridge.ends[-1]) / speed, 2)
+    axles, force = solid_train.hslm(TRAIN)
+    until = 0.5 if smallest else round((axles[-1] + bridge.ends[-1]) / SPEED, 2)
     strip = peers_strip.Strip(bridge, 40 if smallest else 160)
     used = runs.processor_seconds()
-    t, moved = solid_ccx.histories(
-        strip, peers_strip.modal_passage(strip, axles, force, speed, MODES, ratio, 5e-4, until), folder)
+    t, moved = solid_ccx.histories(strip, peers_strip.modal_passage(
+        strip, axles, force, SPEED, MODES, bridge.options["model"]["damping_ratios"], STEP, until), folder)
     used = runs.processor_seconds() - used
-    moved = moved["ROAD"][:, [strip.at(x) for x in middles], 2]
-    ours = peers_rows.Ours(build, folder, {
-        "beam_spans": "20.0,20.0", "beam_EI": bridge.options["beam"]["EI"], "beam_mass": bridge.options["beam"]["mass"],
-        "support_types": "pinned,roller,roller", "model_modes": MODES, "model_damping_ratios": ratio, "load_hslm_a": train,
-        "load_speed": speed, "ts_max_time": until, "output_interval": 5e-4,
-        "output_probes": ",".join(f"{x:g}" for x in middles)})
-    return peers_rows.of_peaks("HSLM-A8 at 456 km/h, `hslm_two_spans`", middles, t, moved, used, ours)
+    moved = moved["ROAD"][:, [strip.at(x) for x in bridge.middles], 2]
+    ours = forces_by_traverse(build, folder, bridge, until)
+    return peers_rows.of_peaks("HSLM-A8 at 456 km/h, `hslm_two_spans`", bridge.middles, t, moved, used, ours)
 
 
 def sprung_mass(build, folder, smallest):
@@ -46,15 +49,13 @@ def sprung_mass(build, folder, smallest):
     vehicle, speed = bridge.options["vehicle"]["sprung_mass"], bridge.options["train"]["speed"]
     until = 0.1 if smallest else 0.998  # within the passage, a multiple of the step
     strip = peers_strip.Strip(bridge, 20)
-    mass = peers_strip.SprungMass(strip, vehicle["body"]["mass"], float(vehicle["spring"]["stiffness"]),
-                                  speed)
+    mass = peers_strip.SprungMass(strip, vehicle["body"]["mass"], float(vehicle["spring"]["stiffness"]), speed)
     used = runs.processor_seconds()
     t, moved = solid_ccx.histories(strip, mass.passage(4e-3 if smallest else 1e-3, until), folder)
     used = runs.processor_seconds() - used
-    middle = bridge.ends[-1] / 2
-    moved = moved["ROAD"][:, [strip.at(middle)], 2]
+    moved = moved["ROAD"][:, [strip.at(bridge.middles[0])], 2]
     ours = peers_rows.Ours(build, folder, {"options_file": bridge.file, "ts_max_time": until})
-    return peers_rows.of_peaks("a sprung mass, `r3_sprung_mass`", [middle], t, moved, used, ours)
+    return peers_rows.of_peaks("a sprung mass, `r3_sprung_mass`", bridge.middles, t, moved, used, ours)
 
 
 def frequencies(build, folder, smallest):

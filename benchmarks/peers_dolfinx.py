@@ -101,12 +101,12 @@ class Beam:
 
 def moving_force(modules, build, folder, smallest):
     bridge = peers_rows.Bridge("scenes", "r6_three_spans")
-    load, middles = bridge.options["load"], (bridge.ends[1:] + bridge.ends[:-1]) / 2
+    load = bridge.options["load"]
     beam = Beam(modules, bridge, 12 if smallest else 96)
-    t, moved = beam.passage(float(load["forces"]), load["speed"], 4e-3 if smallest else 1e-4, middles)
+    t, moved = beam.passage(float(load["forces"]), load["speed"], 4e-3 if smallest else 1e-4, bridge.middles)
     used = time.process_time() - beam.assembled_from
     ours = peers_rows.Ours(build, folder, {"options_file": bridge.file})
-    return peers_rows.of_peaks("a moving force, `r6_three_spans`", middles, t, moved, used, ours)
+    return peers_rows.of_peaks("a moving force, `r6_three_spans`", bridge.middles, t, moved, used, ours)
 
 
 def frequencies(modules, build, folder, smallest):

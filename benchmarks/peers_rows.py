@@ -22,7 +22,7 @@ ACCURACY = 1e-4  # of our runs
 
 
 class Bridge:
-    """The beam of a file of options/; EI(x) and mass(x) in N m2 and kg/m; ends: of the spans, m."""
+    """The beam of a file of options/; EI(x) and mass(x) in N m2 and kg/m; ends and middles: of the spans, m."""
 
     def __init__(self, kind, name):
         self.name, self.file = name, os.path.join(runs.ROOT, "options", kind, name + ".yml")
@@ -30,6 +30,7 @@ class Bridge:
             self.options = yaml.safe_load(file)
         beam = self.options["beam"]
         self.ends = np.concatenate([[0.0], np.cumsum(numbers(beam["spans"]))])
+        self.middles = (self.ends[1:] + self.ends[:-1]) / 2
         self.EI, self.mass = self.along("EI"), self.along("mass")
 
     def along(self, name):
