@@ -1,8 +1,8 @@
 """A bridge as a strip of hexahedra in CalculiX, and what crosses it, for peers_calculix.py.
 
 The strip is a square bar of SIDE, whose E and density give the bridge's EI and mass in each element; it is so thin that
-shear and rotary inertia change the frequencies of the scenes by 1e-4 at most. One element fills the section. Supports
-hold its axis.
+shear and rotary inertia change the first frequencies of the scenes by little (1.2e-4 of the third one of two spans of 20 m).
+One element fills the section. Supports hold its axis.
 """
 
 import numpy as np
@@ -73,8 +73,8 @@ class SprungMass:
     """
     CUBE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
 
-    def __init__(self, strip, mass, stiffness, speed, gravity=9.81):
-        self.weight, self.speed = mass * gravity, speed
+    def __init__(self, strip, mass, stiffness, speed):
+        self.weight = 9.81 * mass
         face, free = strip.x[1] * SIDE, len(strip.body.nodes) + 1
         bottom = SIDE / 2 - self.weight / stiffness
         corners = [f"{free + i}, {x * SIDE:.9g}, {y * SIDE:.9g}, {bottom + z * SIDE:.12g}"

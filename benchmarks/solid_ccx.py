@@ -115,7 +115,7 @@ def displacements(text):
 
 
 def histories(model, steps, folder):
-    """The instants of steps given as lines, which print each set, and {name of a set: displacements [instant, node, direction]}."""
+    """(instants, {name of a set: displacements [instant, node, direction]}) of steps, given as lines, that print each set."""
     moved = {name: [] for name in model.sets}
     for name, time, block in displacements(run(model.lines + steps, folder)):
         moved[name].append((float(time), in_order(model.sets[name], block)))

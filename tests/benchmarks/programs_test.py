@@ -1,4 +1,5 @@
-"""Every benchmark program, and every script that needs one or a program of others, at its smallest size; built with TRAVERSE_BENCHMARKS=ON.
+"""Every benchmark program, and every script that needs one or a program of others, at its smallest size; built with
+TRAVERSE_BENCHMARKS=ON.
 
 CTest runs each case on its own: programs_test.py Programs.test_NAME (benchmarks/CMakeLists.txt).
 """

@@ -18,10 +18,13 @@ import peers_calculix  # noqa: E402
 import peers_rows  # noqa: E402
 
 
-def stored(program, scene):
+def table():
     with open(SOURCE / "tests" / "data" / "finite_elements.csv", newline="") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    return [float(row["value"]) for row in rows if row["program"] == program and row["scene"] == scene]
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def stored(program, scene):
+    return [float(row["value"]) for row in table() if row["program"] == program and row["scene"] == scene]
 
 
 class AgainstFiniteElements(unittest.TestCase):
@@ -60,6 +63,14 @@ class AgainstFiniteElements(unittest.TestCase):
             theirs = stored(program, "haunched")
             rows = list(peers_rows.of_modes(BUILD, self.folder, bridge, theirs, 0.0))
             self.compare([row.ours for row in rows], theirs, bound)
+
+    def test_page_has_the_stored_values(self):
+        with open(SOURCE / "doc" / "comparison.md", encoding="utf-8") as file:
+            lines = file.read().splitlines()
+        for program in ("CalculiX", "DOLFINx"):
+            start = lines.index(peers_rows.page_table(program, [])[0]) + 2
+            values = [line.split("|")[3].strip() for line in lines[start:lines.index("", start)]]
+            self.assertEqual(values, [f"{float(row['value']):.5g}" for row in table() if row["program"] == program])
 
 
 if __name__ == "__main__":
