@@ -92,6 +92,12 @@ def words(options):
     return [part for name, value in options.items() for part in ("-" + name, str(value))]
 
 
+def processor_seconds():
+    """Of all programs that have been run and have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 class Failed(RuntimeError):
     """A run that the program refused or could not end: the command and what was said."""
 
@@ -109,11 +115,10 @@ class Run:
     def __init__(self, build, options, file, ranks=1):
         command = on_ranks(ranks) + [traverse(build)]
         command += words(options | {"output_file": file, "output_quiet": "true", "accuracy_cache": "false"})
-        begin, used = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
+        begin, used = time.monotonic(), processor_seconds()
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
         self.process_seconds = time.monotonic() - begin
-        now = resource.getrusage(resource.RUSAGE_CHILDREN)
-        self.processor_seconds = now.ru_utime + now.ru_stime - used.ru_utime - used.ru_stime
+        self.processor_seconds = processor_seconds() - used
         if done.returncode != 0:
             raise Failed(command, done.stdout)
         self.text = done.stdout

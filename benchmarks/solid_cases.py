@@ -1,6 +1,6 @@
 """The bodies of solid_bridge.py, and their values by CalculiX: frequencies, static values, responses to trains.
 
-Each has an upper half in z only, as of solid_ccx.Model. parts: into how many elements each interval of the coarse mesh is
+Each has an upper half in z only, as of solid_ccx.UpperHalf. parts: into how many elements each interval of the coarse mesh is
 divided, along x, y and z. Deflections are positive upwards, twists where the left side goes up; the forces act downwards.
 """
 
@@ -73,7 +73,7 @@ def body(kind, x, parts):
 
 def on_forks(kind, x, forks, parts, material=None):
     """A model with rigid diaphragms that cannot move in their plane, and warp freely."""
-    model = solid_ccx.Model(body(kind, x, parts), material or kind.material)
+    model = solid_ccx.UpperHalf(body(kind, x, parts), material or kind.material)
     for at in forks:
         model.hold(model.body.where(x=at), 2, 3)
     return model
@@ -141,7 +141,7 @@ def passage(frequencies, shapes, x, trains, until):
 def skew(parts, folder):
     """Values of the slab; a bearing holds the mean of its prism through the slab."""
     kind = Slab
-    model = solid_ccx.Model(body(kind, kind.x(), parts), kind.material)
+    model = solid_ccx.UpperHalf(body(kind, kind.x(), parts), kind.material)
     for i, (at, y) in enumerate(kind.bearings):
         region = ((at - kind.half, at + kind.half), (y - kind.half, y + kind.half), ALL)
         model.hold_mean(region, 3)

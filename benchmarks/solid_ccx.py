@@ -18,7 +18,7 @@ NUMBER = r"[-+]?\d\.\d+E[-+]\d+"
 def program():
     found = shutil.which("ccx")
     if not found:
-        sys.exit("solid_bridge.py: ccx is missing; install it with: apt-get install calculix-ccx")
+        sys.exit(f"{os.path.basename(sys.argv[0])}: ccx is missing; install it with: apt-get install calculix-ccx")
     return found
 
 
@@ -29,24 +29,27 @@ def rows(words, width=8):
 
 
 class Model:
-    """Lines of the model of a body's upper half; displacements held at nodes, or their mean over a region.
+    """Lines of the model of a body; displacements held at nodes, or their mean over a region.
 
-    The whole body is symmetric about z = 0, as are the vertical forces and what holds it: in bending and in torsion the
-    points of this plane move vertically only. Forces, reactions and modes are those of the whole body. material: (E, nu,
-    rho). Directions are 1, 2, 3 along x, y, z.
+    Directions are 1, 2, 3 along x, y, z.
     """
+    share = 1.0  # of the whole body
 
-    def __init__(self, body, material):
-        self.body, self.sets = body, {}
-        elastic, poisson, density = material
+    def __init__(self, body):
+        self.body, self.sets, self.materials = body, {}, 0
         self.lines = ["*NODE, NSET=EVERY"]
         self.lines += [f"{i + 1}, {x:.9g}, {y:.9g}, {z:.9g}" for i, (x, y, z) in enumerate(body.nodes)]
         self.lines.append("*ELEMENT, TYPE=C3D20R, ELSET=BODY")
         for i, element in enumerate(body.elements):
             self.lines += rows([i + 1, *(element + 1)])
-        self.lines += ["*MATERIAL, NAME=SAME", "*ELASTIC", f"{elastic:.9g}, {poisson:.9g}", "*DENSITY", f"{density:.9g}",
-                       "*SOLID SECTION, ELSET=BODY, MATERIAL=SAME"]
-        self.hold(body.where(z=0), 1, 2)
+
+    def made_of(self, elements, elastic, poisson, density):
+        """Elements, by their indices, of a material."""
+        self.materials += 1
+        name = f"MATERIAL{self.materials}"
+        self.lines += [f"*ELSET, ELSET={name}", *rows(np.asarray(elements) + 1), f"*MATERIAL, NAME={name}",
+                       "*ELASTIC", f"{elastic:.9g}, {poisson:.9g}", "*DENSITY", f"{density:.9g}",
+                       f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"]
 
     def name(self, name, nodes):
         self.sets[name] = np.asarray(nodes)
@@ -66,7 +69,21 @@ class Model:
     def force(self, region, direction, total):
         """Lines of a force with an equal part in each part of the volume of a region."""
         nodes, shares = self.body.shares(region)
-        return [f"{node + 1}, {direction}, {total / 2 * share:.12g}" for node, share in zip(nodes, shares)]
+        return [f"{node + 1}, {direction}, {total * self.share * share:.12g}" for node, share in zip(nodes, shares)]
+
+
+class UpperHalf(Model):
+    """The upper half of a body that is symmetric about z = 0, as are the vertical forces and what holds it.
+
+    In bending and in torsion the points of this plane move vertically only. Forces, reactions and modes are those of the
+    whole body. material: (E, nu, rho).
+    """
+    share = 0.5
+
+    def __init__(self, body, material):
+        super().__init__(body)
+        self.made_of(range(len(body.elements)), *material)
+        self.hold(body.where(z=0), 1, 2)
 
 
 def statics(model, loads, folder):
@@ -78,8 +95,7 @@ def statics(model, loads, folder):
             steps += [f"*NODE PRINT, NSET={name}", "U", f"*NODE PRINT, NSET={name}, TOTALS=ONLY", "RF"]
         steps.append("*END STEP")
     text = run(model.lines + steps, folder)
-    head = r" displacements \(vx,vy,vz\) for set (\w+) and time\s+\S+\n\n((?:\s+\d+" + 3 * rf"\s+{NUMBER}" + r"\n)+)"
-    moved = re.findall(head, text)
+    moved = displacements(text)
     held = re.findall(rf" total force \(fx,fy,fz\) for set (\w+) and time\s+\S+\n\n"
                       rf"\s+({NUMBER})\s+({NUMBER})\s+({NUMBER})", text)
     count = len(model.sets)
@@ -87,9 +103,24 @@ def statics(model, loads, folder):
         raise RuntimeError(f"{len(moved)} tables of displacements of CalculiX in place of {count * len(loads)}")
     results = []
     for i in range(0, len(moved), count):
-        fields = {name: in_order(model.sets[name], block) for name, block in moved[i:i + count]}
-        results.append((fields, {name: 2 * np.array(force, float) for name, *force in held[i:i + count]}))
+        fields = {name: in_order(model.sets[name], block) for name, _, block in moved[i:i + count]}
+        results.append((fields, {name: np.array(force, float) / model.share for name, *force in held[i:i + count]}))
     return results
+
+
+def displacements(text):
+    """(name of a set, time, lines of its nodes), in the order in which CalculiX printed them."""
+    return re.findall(r" displacements \(vx,vy,vz\) for set (\w+) and time\s+(\S+)\n\n((?:\s+\d+"
+                      + 3 * rf"\s+{NUMBER}" + r"\n)+)", text)
+
+
+def histories(model, steps, folder):
+    """(instants, {name of a set: displacements [instant, node, direction]}) of steps, given as lines, that print each set."""
+    moved = {name: [] for name in model.sets}
+    for name, time, block in displacements(run(model.lines + steps, folder)):
+        moved[name].append((float(time), in_order(model.sets[name], block)))
+    t = [time for time, _ in next(iter(moved.values()))]
+    return np.array(t), {name: np.array([field for _, field in fields]) for name, fields in moved.items()}
 
 
 def in_order(nodes, block):
@@ -109,7 +140,7 @@ def modes(model, count, folder):
     shapes = {name: [] for name in model.sets}
     for mode in found:
         field = mode.fields["DISP"]
-        values = dict(zip(field.ids, field.values / np.sqrt(2 * mode.mass)))
+        values = dict(zip(field.ids, field.values / np.sqrt(mode.mass / model.share)))
         for name, nodes in model.sets.items():
             shapes[name].append([values[node + 1] for node in nodes])
     return np.array([mode.frequency for mode in found]), {name: np.array(rows) for name, rows in shapes.items()}

@@ -156,7 +156,7 @@ def of_static_effects(x, quantities):
     """The table of the least and greatest static effects of each load model at the stations x."""
     def table(file, add):
         add("x", file[f"static/{x}"].attrs["unit"], file[f"static/{x}"][:])
-        for name in quantities:
+        for name in filter(file["static"].__contains__, quantities):
             effects = file[f"static/{name}"]
             for k, load in enumerate(texts(file, "static/load")[:, 0]):
                 for side, extreme in enumerate(("least", "greatest")):
@@ -184,7 +184,7 @@ TABLES = {"find/ratios": ("find/value", of_find), "find/intervals": ("find/inter
           "modes/damped": ("modes/damped_frequency",
                            of_modes("damped_frequency", "damping_ratio", "decay_rate", "damped_axial",
                                     "damped_twisting")),
-          "static/effects": ("static/x", of_static_effects("x", ("deflection", "moment", "shear"))),
+          "static/effects": ("static/x", of_static_effects("x", ("deflection", "moment", "shear", "track_twist"))),
           "static/reactions": ("static/reaction", of_static_effects("reaction_x", ("reaction",))),
           "static/end_rotations": ("static/end_rotation", of_static_effects("end_rotation_x", ("end_rotation",)))}
 

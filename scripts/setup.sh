@@ -12,7 +12,8 @@ program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-re
   python3-openpyxl python3-scipy python3-xarray python3-yaml)
 test_packages=(ccache chromium libgtest-dev python3-h5netcdf python3-netcdf4)
 document_packages=(libjs-katex python3-myst-parser python3-sphinx)
-benchmark_packages=(calculix-ccx libbenchmark-dev)
+benchmark_packages=(libbenchmark-dev)
+other_programs=(calculix-ccx python3-dolfinx)  # that benchmarks compare with; not every distribution has all of them
 check_packages=(clang-format clang-tidy)
 
 # One line that says what stopped, with what the log says of the first error: CMake says it on the lines that follow.
@@ -61,6 +62,16 @@ install_packages() {
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends -o Dpkg::Use-Pty=0 \
       -o DPkg::Lock::Timeout=600 $missing
   } >"$setup_log" 2>&1 </dev/null || fail "Packages could not be installed."
+}
+
+# Installs those of the packages that the distribution has.
+install_offered() {
+  local name offered=()
+  command -v apt-cache >/dev/null || return 0
+  for name in "$@"; do
+    ! apt-cache show "$name" >/dev/null 2>&1 || offered+=("$name")
+  done
+  [ ${#offered[@]} = 0 ] || install_packages "${offered[@]}"
 }
 
 # Whether build/ is configured for this very folder with all the given options of CMake, each as -DNAME=VALUE.
@@ -113,7 +124,7 @@ set_up_tests() {
 }
 set_up_benchmarks() {
   install_packages "${program_packages[@]}" "${document_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}" &&
-    build all -DTRAVERSE_TESTS=ON -DTRAVERSE_BENCHMARKS=ON
+    install_offered "${other_programs[@]}" && build all -DTRAVERSE_TESTS=ON -DTRAVERSE_BENCHMARKS=ON
 }
 
 # What scripts/tidy.py needs: how each file is compiled, one by one and without precompiled headers, which are g++'s own,

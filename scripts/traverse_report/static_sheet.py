@@ -9,8 +9,8 @@ from .language import capital, digits, known, num, t
 from .page import GREY, LEFT, table
 from .quantities import unit_of_si
 
-EFFECTS = {"deflection": "x", "moment": "x", "shear": "x", "reaction": "reaction_x", "end_rotation": "end_rotation_x",
-           "joint_rotation": "joint_rotation_x"}
+EFFECTS = {"deflection": "x", "moment": "x", "shear": "x", "track_twist": "x", "reaction": "reaction_x",
+           "end_rotation": "end_rotation_x", "joint_rotation": "joint_rotation_x"}
 DRAWN = (("deflection", "Deflection, upward positive"), ("moment", "Bending moment, positive in sagging"),
          ("shear", "Shear force, on both sides of passing loads"))
 

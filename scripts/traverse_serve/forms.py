@@ -95,6 +95,10 @@ def check():
                         Field("GJ", "torsional stiffness GJ", "", EI, optional=True, more=True, hint="instead of it"),
                         Field("polar-inertia", "polar moment of inertia per length", "", ("t m", "kg m"), optional=True,
                               more=True, hint="with GJ"),
+                        Field("eccentricity", "track beside the axis", "", ("m",), optional=True, more=True,
+                              hint="with GJ: the bridge twists"),
+                        chosen("tracks", "tracks", {"1": "one", "2": "two"}, "1", more=True,
+                               hint="two: load models stand on both"),
                         text("hslm-b", "N, d of HSLM-B", more=True, hint="simple spans below 7 m: from its chart"))),
                     ("title page of the report", tuple(
                         text(f"report-{name}", words, more=True) for name, words in (

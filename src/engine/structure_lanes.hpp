@@ -16,7 +16,7 @@
 namespace traverse::engine {
 
 /// The order in which the unknowns of a structure's columns are eliminated, and the links that this causes: the
-/// symbolic part of the factorisation in lanes (beam_kernel.hpp).
+/// symbolic part of the factorisation in lanes (beam_factor.hpp).
 class EliminationOrder {
  public:
   /// coupled(i, j): whether the matrices couple two unknowns of a column, or of neighbouring columns. Small columns

@@ -17,11 +17,20 @@ constexpr double min_static_share = 0.25;  // relative to the greatest static ef
 }  // namespace
 
 NormCheck::NormCheck(const beam::BeamModel& model, const options::NormRules& rules, std::vector<LoadModel> trains,
-                     const std::vector<double>& probes)
-    : rules_(rules), lengths_(determinant_lengths(model)), trains_(trains.size()), models_(rules.load_models) {
+                     const std::vector<double>& probes, const std::vector<double>& eccentricities)
+    : eccentricities_(eccentricities),
+      rules_(rules),
+      lengths_(determinant_lengths(model)),
+      trains_(trains.size()),
+      models_(rules.load_models) {
   beam::BeamModel with_tracks = model;
-  if (model.torsion) std::erase_if(with_tracks.torsion->tracks, &beam::ActionLine::sideways);
-  if (rules.second_track) with_tracks.torsion->tracks.push_back({*rules.second_track});
+  if (model.torsion) {
+    std::vector<beam::ActionLine>& tracks = with_tracks.torsion->tracks;
+    std::erase_if(tracks, &beam::ActionLine::sideways);
+    track_ = tracks.front().lever;
+    tracks.front() = {track_ + tracks.front().shift};  // of weights at rest
+    if (rules.second_track) tracks.push_back({*rules.second_track});
+  }
   StaticBridge bridge(with_tracks);
   n0_ = bridge.first_frequency();
   const bool continuous = lengths_ != model.spans;
@@ -32,7 +41,7 @@ NormCheck::NormCheck(const beam::BeamModel& model, const options::NormRules& rul
   if (rules.length) std::fill(lengths_.begin(), lengths_.end(), *rules.length);
   std::vector<LoadModel> loads = std::move(trains);
   for (const std::string& name : models_) loads.push_back(load_model(name));
-  effects_ = static_effects(bridge, std::move(loads), rules.spacing, probes);
+  effects_ = static_effects(bridge, std::move(loads), rules.spacing, probes, track_);
 }
 
 double NormCheck::length_at(const Place& place) const { return lengths_[place.number]; }
@@ -49,6 +58,10 @@ double NormCheck::alpha(std::size_t load) const {
 /// Phi and alpha of a load model.
 double NormCheck::factor(std::size_t load, const Place& place) const { return phi_at(place) * alpha(load); }
 
+bool NormCheck::is_beside_the_trains(std::size_t probe) const {
+  return !eccentricities_.empty() && eccentricities_[probe] != track_;
+}
+
 DynamicFactor NormCheck::dynamic_factor(const ComputedPeaks& computed, std::size_t train, Effect effect) const {
   const std::vector<Place>& places = effects_.places[static_cast<std::size_t>(effect)];
   const std::vector<double>& peaks =
@@ -62,7 +75,7 @@ DynamicFactor NormCheck::dynamic_factor(const ComputedPeaks& computed, std::size
   DynamicFactor factor;
   for (std::size_t v = 0; v < computed.speeds.size(); ++v)
     for (std::size_t p = 0; p < computed.probes.size(); ++p) {
-      if (!(static_effect[p] > 0.0 && static_effect[p] >= least)) continue;
+      if (!(static_effect[p] > 0.0 && static_effect[p] >= least) || is_beside_the_trains(p)) continue;
       const double value = peaks[v * computed.probes.size() + p] / static_effect[p] - 1.0;
       if (value > factor.value || factor.speed == 0.0)
         factor = {std::max(value, 0.0), computed.speeds[v], computed.probes[p]};

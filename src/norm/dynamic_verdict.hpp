@@ -32,8 +32,10 @@ struct DynamicFactor {
 class NormCheck {
  public:
   /// The loads are the trains, then the rules' load models; on continuous bridges SW/0 is added to LM71.
+  /// eccentricities: of each probe, m; those of other tracks than that of the trains are not compared. Empty: all are
+  /// on it.
   NormCheck(const beam::BeamModel& model, const options::NormRules& rules, std::vector<LoadModel> trains,
-            const std::vector<double>& probes);
+            const std::vector<double>& probes, const std::vector<double>& eccentricities = {});
 
   /// Compares trains with computed runs by 6.4.6.5. Values of incomplete runs are NaN.
   void compare(const ComputedPeaks& computed);
@@ -62,6 +64,7 @@ class NormCheck {
   double phi_at(const Place& place) const;
   double alpha(std::size_t load) const;
   double factor(std::size_t load, const Place& place) const;
+  bool is_beside_the_trains(std::size_t probe) const;
   DynamicFactor dynamic_factor(const ComputedPeaks& computed, std::size_t train, Effect effect) const;
   results::EvaluatedQuantity of_lm71(Effect effect, bool over_span) const;
   results::EvaluatedQuantity of_trains() const;
@@ -69,6 +72,8 @@ class NormCheck {
   void print_static() const;
   void print_rows() const;
 
+  std::vector<double> eccentricities_;  // m, of the probes
+  double track_ = 0.0;                  // m: that of the track of the trains
   options::NormRules rules_;
   std::vector<double> lengths_;  // L_Phi of each span, m
   double n0_ = 0.0;              // Hz

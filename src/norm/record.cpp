@@ -15,8 +15,7 @@ namespace {
 
 /// "11.25 mm", "5082 kN m".
 std::string size_text(Effect effect, double value) {
-  const char* quantities[] = {"deflection", "moment", "force", "force", "rotation", "rotation"};
-  return results::in_engineering_units(quantities[static_cast<std::size_t>(effect)], value, 5);
+  return results::in_engineering_units(effect_rows[static_cast<std::size_t>(effect)].quantity, value, 5);
 }
 
 std::vector<std::string> first_words(const std::vector<std::pair<std::string, std::string>>& rows) {
@@ -83,9 +82,10 @@ void NormCheck::record(results::Recorder& recorder) const {
     const std::vector<Place>& places = effects_.places[e];
     if (places.empty()) continue;
     const std::string name = "/static/" + std::string(effect_rows[e].name);
-    Dataset x{e < 3 ? "/static/x" : name + "_x", {places.size()}, {}, "m"};
+    const bool at_section = static_cast<Effect>(e) <= Effect::track_twist;
+    Dataset x{at_section ? "/static/x" : name + "_x", {places.size()}, {}, "m"};
     for (const Place& place : places) x.values.push_back(place.x);
-    if (e == 0 || e >= 3) sets.push_back(std::move(x));
+    if (e == 0 || !at_section) sets.push_back(std::move(x));
     Dataset values{name, {loads.size(), places.size(), 2}, {}, std::string(effect_rows[e].unit)};
     for (const Extremes& one : effects_.values[e])
       values.values.insert(values.values.end(), {one.least.value, one.greatest.value});

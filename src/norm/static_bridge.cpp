@@ -224,7 +224,7 @@ std::vector<InfluenceLine> StaticBridge::joint_rotation(int span_end) {
 }
 
 StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads, double spacing,
-                             const std::vector<double>& given_stations) {
+                             const std::vector<double>& given_stations, double eccentricity) {
   StaticEffects result;
   result.loads = std::move(loads);
   const beam::BeamModel& model = bridge.model();
@@ -259,7 +259,6 @@ StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads,
       }
     }
   };
-  const double eccentricity = model.torsion ? model.torsion->tracks.front().lever : 0.0;
   for (std::size_t i = 0; i < places(Effect::deflection).size(); ++i) {
     const auto on_tracks = bridge.lines_at(places(Effect::deflection)[i].x, eccentricity);
     for (std::size_t q = 0; q < at_sections.size(); ++q) {

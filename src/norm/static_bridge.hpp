@@ -67,12 +67,17 @@ class StaticBridge {
 enum class Effect { deflection, moment, shear, track_twist, reaction, end_rotation, joint_rotation };
 struct EffectRow {
   std::string_view name, words, unit;
+  const char* quantity;  // of engineering_units.csv
 };
 /// The effects in the order of Effect.
 inline constexpr EffectRow effect_rows[] = {
-    {"deflection", "deflection", "m"},           {"moment", "moment", "N m"},   {"shear", "shear", "N"},
-    {"track_twist", "twist over 3 m", "m"},      {"reaction", "reaction", "N"}, {"end_rotation", "end rotation", "rad"},
-    {"joint_rotation", "joint rotation", "rad"},
+    {"deflection", "deflection", "m", "deflection"},
+    {"moment", "moment", "N m", "moment"},
+    {"shear", "shear", "N", "force"},
+    {"track_twist", "twist over 3 m", "m", "deflection"},
+    {"reaction", "reaction", "N", "force"},
+    {"end_rotation", "end rotation", "rad", "rotation"},
+    {"joint_rotation", "joint rotation", "rad", "rotation"},
 };
 inline constexpr std::size_t effect_count = std::size(effect_rows);
 
@@ -118,8 +123,9 @@ struct StaticEffects {
 };
 
 /// Evaluates the effects at stations at most `spacing` m apart in each span (0: at its twentieths), at the given
-/// stations, and on both sides of each support at a distance of a millionth of the span.
+/// stations, and on both sides of each support at a distance of a millionth of the span. eccentricity: of the stations
+/// to the left of the shear centre, m.
 StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads, double spacing,
-                             const std::vector<double>& given_stations);
+                             const std::vector<double>& given_stations, double eccentricity = 0.0);
 
 }  // namespace traverse::norm

@@ -208,7 +208,7 @@ constexpr Row later_rows[] = {
   {"norm_load_models", choice_list, "", "(lm71 if limits need it)", any, names_of_load_models, 0, "static effects of these load models of EN 1991-2 along the bridge; lm71 and a train: also the check of 6.4.6.5, with sw0 on continuous bridges", true},
   {"norm_alpha", number, "1", "1", {0.1, 10.0}, "", 0, "classification factor of LM71 and SW/0, EN 1991-2 6.3.2"},
   {"norm_track", choice, "", "standard", any, "standard careful", 0, "maintenance of the track; standard: Phi3; careful: Phi2 of EN 1991-2 6.4.5.2"},
-  {"norm_second_track", number, "m", "", any, "", 0, "distance of a second track to the left of the beam's axis, on which load models stand too; the train is on track_eccentricity alone"},
+  {"norm_second_track", number, "m", "", any, "", 0, "distance of a second track to the left of the beam's axis, on which load models stand too; the train is on track_eccentricity alone; with names of tracks the other one is the second"},
   {"norm_length", number, "m", "(from the spans)", positive, "", 0, "determinant length L_Phi of EN 1991-2 6.4.5.3"},
   {"norm_lane_load", number, "N/m", "0", not_negative, "", 0, "uniform load that accompanies the scene's train or forces in static effects, on all unfavourable parts of the bridge"},
   {"norm_range", numbers, "m", "(everywhere)", any, "", 2, "from, to: x between which the foremost force of the scene's train or forces stands in static effects; a trolley or crane that reaches a part of the beam only"},

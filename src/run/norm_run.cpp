@@ -60,7 +60,7 @@ norm::NormCheck norm_check(const scene::Scene& scene, std::vector<norm::LoadMode
     train.free_from = front + scene.norm->lane_gap_from;
     train.free_to = front + scene.norm->lane_gap_to;
   }
-  return {*scene.beam, *scene.norm, std::move(trains), scene.output.probes};
+  return {*scene.beam, *scene.norm, std::move(trains), scene.output.probes, scene.output.eccentricities};
 }
 
 norm::ComputedPeaks peaks_of_run(const scene::Scene& scene, const ResponseExtremes& peaks) {

@@ -83,12 +83,14 @@ void read_norm(const Options& o, Scene& scene) {
   }
   if (several_courses(scene))
     o.refuse(asked, "static effects are computed for one train or load; several are given (trains, loads)");
-  if (!scene.tracks.empty()) {
-    const std::string why = "static effects of tracks are those of track_eccentricity and norm_second_track";
-    if (asked != "limits") o.refuse(asked, why + "; remove the names of tracks");
-    scene.notes.push_back(asked + ": " + why + "; with names of tracks there is no verdict of EN 1991-2");
+  if (scene.tracks.size() > 2) {
+    const std::string why = "load models stand on two tracks at most, and tracks has more names";
+    if (asked != "limits") o.refuse(asked, why);
+    scene.notes.push_back(asked + ": " + why + "; there is no verdict of EN 1991-2");
     return;
   }
+  if (!scene.tracks.empty() && o.has("norm_second_track"))
+    o.refuse("norm_second_track", "the second track is that which tracks names");
   if (!only_axle_loads(scene.load)) {
     const std::string why = "static effects are computed for constant concentrated forces";
     if (asked == "scene_analysis") o.refuse(asked, why);
@@ -111,6 +113,8 @@ void read_norm(const Options& o, Scene& scene) {
     rules.load_models = {"lm71"};
   if (o.has("norm_second_track"))
     rules.second_track = o.number("norm_second_track") - scene.beam->torsion->shear_centre;
+  for (const Track& track : scene.tracks)
+    if (track.line != scene.beam->torsion->tracks.front()) rules.second_track = track.line.lever + track.line.shift;
   rules.alpha = o.number("norm_alpha");
   rules.careful = o.choice("norm_track") == "careful";
   rules.length = o.optional_number("norm_length");

@@ -109,9 +109,10 @@ std::vector<std::string> description(const Problem& problem) {
   std::vector<std::string> lines = {
       fmt::format("{} bridges under {} formations at up to {} speeds from {:g} to {:g} km/h", problem.stock.size(),
                   problem.fleet.size(), screen.speeds.size(), kmh * screen.speeds.front(), kmh * screen.speeds.back()),
-      fmt::format("moving forces on {} modes of bending of each bridge, exact in time; deck accelerations have no other filter "
-                  "than these modes",
-                  screen.modes)};
+      fmt::format(
+          "moving forces on {} modes of bending of each bridge, exact in time; deck accelerations have no other filter "
+          "than these modes",
+          screen.modes)};
   lines.insert(lines.end(), problem.notes.begin(), problem.notes.end());
   return lines;
 }

@@ -1,8 +1,11 @@
-"""Every benchmark program, and every script that needs one, at its smallest size; built with TRAVERSE_BENCHMARKS=ON.
+"""Every benchmark program, and every script that needs one or a program of others, at its smallest size; built with
+TRAVERSE_BENCHMARKS=ON.
 
 CTest runs each case on its own: programs_test.py Programs.test_NAME (benchmarks/CMakeLists.txt).
 """
 
+import importlib.util
+import itertools
 import json
 import os
 import pathlib
@@ -10,10 +13,12 @@ import shutil
 import subprocess
 import sys
 import unittest
+from unittest import mock
 
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
 sys.path.insert(0, str(SOURCE / "tests" / "python"))
 sys.path.insert(0, str(SOURCE / "benchmarks"))
+import peers_dolfinx  # noqa: E402
 import runs  # noqa: E402
 from benchmark_scripts import BUILD, InAFolder, start  # noqa: E402
 
@@ -140,8 +145,41 @@ class Scripts(InAFolder):
         columns = [f"{what} of {place}" for what in ("deflection", "acceleration")
                    for place in ("the left track", "the axis", "the right edge")]
         self.assertEqual(len(self.table("solid_bridge_trains.csv", ["passage", "t", *columns])), 90)
-        done = start("solid_bridge", BUILD, self.folder, "--smallest", more={"PATH": str(self.folder)})  # where no ccx is
-        self.assertEqual(done.stderr, "solid_bridge.py: ccx is missing; install it with: apt-get install calculix-ccx\n")
+
+    @unittest.skipUnless(shutil.which("ccx"), "ccx is not installed (Debian's calculix-ccx)")
+    def test_peers_calculix(self):
+        self.run_smallest("peers_calculix")
+        forces, mass, modes = self.of_peers("peers_calculix", {"deflection": 3, "frequency": 5})
+        self.assertEqual((len(forces), len(mass), len(modes)), (2, 1, 5))
+        self.assert_errors(forces + mass + modes, "difference", 2e-3)
+        self.assert_errors(forces + mass, "over_time", 1e-2)
+
+    @unittest.skipUnless(importlib.util.find_spec("dolfinx"), "dolfinx is not installed (Debian's python3-dolfinx)")
+    def test_peers_dolfinx(self):
+        self.run_smallest("peers_dolfinx")
+        force, modes = self.of_peers("peers_dolfinx", {"deflection": 3, "frequency": 5})
+        self.assertEqual((len(force), len(modes)), (3, 5))
+        self.assert_errors(force, "difference", 2e-2)
+        self.assert_errors(modes, "difference", 2e-5)
+        self.assert_errors(force, "over_time", 3e-2)
+
+    def of_peers(self, name, quantities):
+        """The rows of a peers' table by scene; quantities: how many rows are of each."""
+        rows = self.table(name + ".csv", ["scene", "quantity", "unit", "theirs", "ours", "their_seconds", "our_seconds",
+                                          "over_time", "difference"])
+        self.assert_positive(rows, "their_seconds", "our_seconds")
+        for quantity, count in quantities.items():
+            self.assertEqual(sum(quantity in row["quantity"] for row in rows), count)
+        return [list(group) for _, group in itertools.groupby(rows, lambda row: row["scene"])]
+
+    def test_programs_that_are_missing_are_named(self):
+        for name in ("solid_bridge", "peers_calculix"):
+            done = start(name, BUILD, self.folder, "--smallest", more={"PATH": str(self.folder)})  # where no ccx is
+            self.assertEqual(done.stderr, f"{name}.py: ccx is missing; install it with: apt-get install calculix-ccx\n")
+        with mock.patch("importlib.util.find_spec", return_value=None), self.assertRaises(SystemExit) as ended:
+            peers_dolfinx.dolfinx_modules(self.folder)
+        self.assertEqual(ended.exception.code,
+                         "peers_dolfinx.py: dolfinx is missing; install it with: apt-get install python3-dolfinx")
 
 
 if __name__ == "__main__":

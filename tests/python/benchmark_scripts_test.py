@@ -17,10 +17,11 @@ sys.path.insert(0, str(SOURCE / "benchmarks"))
 # Those that need a benchmark program are tested by tests/benchmarks/programs_test.py.
 WITH_PROGRAMS = {"step_parts": "step_parts_benchmark", "ranks": "step_parts_benchmark",
                  "scaling": "step_parts_benchmark"}
-WITH_CALCULIX = {"solid_bridge"}  # tested there, too
+WITH_PACKAGES = {"solid_bridge", "peers_calculix", "peers_dolfinx"}  # of others; tested there, too
 OF_OTHERS = {"peers_here"}  # runs no program of ours
-PARTS = {"runs", "scene_texts", "work_precision_scenes", "beam_solver_picture", "mutated_files", "solid_beams",
-         "solid_cases", "solid_ccx", "solid_mesh", "solid_section", "solid_train", "solid_traverse"}  # imported by the others, or draws a table that is given
+# Imported by the others, or draws a table that is given.
+PARTS = {"runs", "scene_texts", "work_precision_scenes", "beam_solver_picture", "mutated_files", "peers_rows", "peers_strip",
+         "solid_beams", "solid_cases", "solid_ccx", "solid_mesh", "solid_section", "solid_train", "solid_traverse"}
 
 
 class Scripts(InAFolder):
@@ -280,7 +281,7 @@ class ScalingModel(unittest.TestCase):
 
 class Arguments(InAFolder):
     def test_every_script_has_its_test(self):
-        scripts = {path.stem for path in (SOURCE / "benchmarks").glob("*.py")} - PARTS - set(WITH_PROGRAMS) - WITH_CALCULIX
+        scripts = {path.stem for path in (SOURCE / "benchmarks").glob("*.py")} - PARTS - set(WITH_PROGRAMS) - WITH_PACKAGES
         tested = {name.removeprefix("test_") for name in dir(Scripts) if name.startswith("test_")} - PARTS
         self.assertEqual(scripts, tested)
 

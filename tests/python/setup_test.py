@@ -1,4 +1,4 @@
-"""scripts/setup.sh: the progress of the build on a terminal, and one line elsewhere."""
+"""scripts/setup.sh: the progress of the build on a terminal, and one line elsewhere; programs that a distribution lacks."""
 
 import os
 import pathlib
@@ -46,6 +46,17 @@ class Progress(unittest.TestCase):
     def test_nothing_to_build_is_silent(self):
         for terminal in (False, True):
             self.assertEqual(self.said(["[0/1] Re-checking globbed directories...", "ninja: no work to do."], terminal), "")
+
+
+class OtherPrograms(unittest.TestCase):
+    def test_what_the_distribution_lacks_is_left_out(self):
+        script = """source "$1/scripts/setup.sh"
+            apt-cache() { [ "$2" = known ]; }
+            install_packages() { echo "installs $*"; }
+            install_offered missing known
+            install_offered missing"""
+        said = subprocess.run(["bash", "-euo", "pipefail", "-c", script, "bash", SOURCE], capture_output=True, text=True)
+        self.assertEqual((said.returncode, said.stdout, said.stderr), (0, "installs known\n", ""))
 
 
 if __name__ == "__main__":

@@ -159,6 +159,17 @@ TEST(Tracks, LoadModelsOnOneAndTwoTracks) {
   EXPECT_NEAR(greatest(two, "/static/track_twist", 0), twist, 1e-5 * twist);
   EXPECT_NEAR(greatest(one, "/static/moment", 1) / greatest(plain, "/static/moment", 1), 1.0, 1e-9);
   EXPECT_NEAR(greatest(two, "/static/moment", 1) / greatest(plain, "/static/moment", 1), 2.0, 1e-9);
+  Results named =
+      run_yaml("tracks: {left: {eccentricity: 2.25}, right: {eccentricity: -2.25}}\n" + flat + twisting + rest,
+               {{"load_track", "left"}});
+  for (const char* name : {"/static/deflection", "/static/track_twist", "/static/reaction"})
+    EXPECT_EQ(named(name), two(name)) << name;
+  // On cant a force at rest acts beside the track, whose own place is that of the deflection.
+  Results canted = run_yaml(flat + twisting + rest, {{"track_eccentricity", "2.25"},
+                                                     {"track_cant", "0.16"},
+                                                     {"track_cant_base", "1.5"},
+                                                     {"track_load_height", "1.8"}});
+  EXPECT_NEAR(greatest(canted, "/static/track_twist", 0) / twist, (e + 1.8 * 0.16 / 1.5) / e, 1e-5);
 }
 
 // Cant and a curve: the weights act beside the track, as forces on a track at their place do, by elements and by modes.

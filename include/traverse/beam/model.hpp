@@ -88,10 +88,6 @@ struct Temperature {
   double curvature() const { return -expansion * gradient / depth; }  // 1/m, positive in sagging
 };
 
-/// Torsion of the beam: the twist of its sections about the line of their shear centres, to which the deflection v of
-/// the beam belongs. It is positive if the left side, seen along x, goes up: a point at the distance e to the left of
-/// the shear centre has the deflection v + e*twist. With the twist p, the inertia I about the shear centre and an
-/// external moment t per length:  I p'' (in time) - (GJ p')' + (EC p'')'' = t.
 /// A line along the beam on which wheels or forces act: a track at a distance to the left of the shear centre, or a
 /// line above it at which forces to the left act, which only twist the beam. In a curve or on a canted track the
 /// weights act at shift + shift_by_speed v^2 to the left of the track, at the speed v.
@@ -101,9 +97,14 @@ struct ActionLine {
   double shift = 0.0;           // m
   double shift_by_speed = 0.0;  // s2/m
   bool operator==(const ActionLine&) const = default;
+  /// Whether weights act beside the line.
   bool shifts() const { return shift != 0.0 || shift_by_speed != 0.0; }
 };
 
+/// Torsion of the beam: the twist of its sections about the line of their shear centres, to which the deflection v of
+/// the beam belongs. It is positive if the left side, seen along x, goes up: a point at the distance e to the left of
+/// the shear centre has the deflection v + e*twist. With the twist p, the inertia I about the shear centre and an
+/// external moment t per length:  I p'' (in time) - (GJ p')' + (EC p'')'' = t.
 struct Torsion {
   Distribution GJ;                      // N m2, > 0: stiffness of St. Venant
   std::optional<Distribution> warping;  // N m4, > 0: stiffness EC against warping (Vlasov); empty: none
@@ -115,6 +116,7 @@ struct Torsion {
       bearing_spacing;  // m, between the two bearings of each support that holds the twist; 0: not known
   std::vector<ActionLine> tracks = {{}};  // those that carry wheels or forces
 
+  /// Whether weights act beside a line.
   bool shifts() const { return std::ranges::any_of(tracks, &ActionLine::shifts); }
 };
 
