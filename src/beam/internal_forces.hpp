@@ -61,8 +61,8 @@ class InternalForces {
     int first = 0;  // local column of its first element's left node; -1: a column of the neighbour rank
     int u = -1, v = 0, theta = 0;
     TwistPlaces twist;
-    std::vector<Stiffness> elements;
-    std::vector<TwistForces> twisting;  // of each element, only with torsion
+    std::vector<Stiffness> elements = {};
+    std::vector<TwistForces> twisting = {};  // of each element, only with torsion
   };
   Run run_of(const Beam& beam, const Line& line) const;
   template <class Real, bool axial>

@@ -84,15 +84,15 @@ void RecoverySection::add_torsion(const beam::Line& line) {
                     [&](double x, double piece) { add((x - element.x) / element.length, factor * piece); });
   };
   const auto add_twist = [&](double xi, double piece) {
-    const auto shape = beam::hermite(xi, element.length).value;
-    for (std::size_t j = 0; j < 4; ++j) t.moment_by_twist[j] += piece * shape[j];
+    const auto value = beam::hermite(xi, element.length).value;
+    for (std::size_t j = 0; j < 4; ++j) t.moment_by_twist[j] += piece * value[j];
   };
   const double e = torsion.mass_centre;
   add_until_here(torsion.inertia, 1.0, add_twist);
   add_until_here(line.model.mass, e * e, add_twist);
   add_until_here(line.model.mass, e, [&](double xi, double piece) {
-    const auto shape = beam::hermite(xi, element.length, element.shear).value;
-    for (std::size_t i = 0; i < 4; ++i) t.moment_by_bending[i] += piece * shape[i];
+    const auto value = beam::hermite(xi, element.length, element.shear).value;
+    for (std::size_t i = 0; i < 4; ++i) t.moment_by_bending[i] += piece * value[i];
   });
   twisting = t;
 }

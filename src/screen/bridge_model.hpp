@@ -23,7 +23,7 @@ struct ModeOfBridge {
   double beta = 0.0, omega = 0.0;  // 1/m, rad/s
   std::vector<SpanShape> shape;    // mass-normalised, 1/sqrt(kg)
   double omega_d = 0.0;            // rad/s
-  std::complex<double> lambda2;    // (-zeta omega + i omega_d)^2, 1/s2
+  std::complex<double> lambda2{};  // (-zeta omega + i omega_d)^2, 1/s2
   double size = 0.0;               // 1/sqrt(kg): |phi|, |phi'|/beta and |phi''|/beta^2 do not exceed it
 };
 

@@ -76,7 +76,9 @@ TEST(SpeedLaw, PassesEveryRowOfATableOfPositions) {
     }
     for (double t = -0.5; t < 6.0; t += 0.01) {
       EXPECT_GE(sign * halting.speed(t), 0.0) << t;
-      if (t > 0.0) EXPECT_NEAR(uniform.acceleration(t), sign * 2.0, 1e-11) << "a constant acceleration, at " << t;
+      if (t > 0.0) {
+        EXPECT_NEAR(uniform.acceleration(t), sign * 2.0, 1e-11) << "a constant acceleration, at " << t;
+      }
     }
     EXPECT_EQ(halting.speed(2.8), 0.0) << "it stands between two equal rows";
     EXPECT_DOUBLE_EQ(uniform.speed(9.0), uniform.speed(6.0));
