@@ -12,6 +12,7 @@ program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-re
   python3-openpyxl python3-scipy python3-xarray python3-yaml)
 test_packages=(ccache chromium libgtest-dev python3-h5netcdf python3-netcdf4)
 document_packages=(libjs-katex python3-myst-parser python3-sphinx)
+packaging_packages=(build-essential debhelper dh-python)
 benchmark_packages=(calculix-ccx libbenchmark-dev)
 check_packages=(clang-format clang-tidy)
 
