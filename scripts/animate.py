@@ -60,7 +60,7 @@ class Stage:
         self.motion = motion
         length = motion.high - motion.low
         self.width = min((1.0 + 2.0 * MARGIN) * length, WIDEST)
-        self.factor = exaggeration or rounded(self.width * min(DRAWN / max(np.abs(motion.at_stations).max(), 1e-12),
+        self.factor = exaggeration or rounded(self.width * min(DRAWN / max(motion.greatest(), 1e-12),
                                                                SWAY / max(motion.sway(), 1e-12)))
         self.height = self.width * AXES[1] / AXES[0]
         reach = [vertical_reach(motion.model, kind) for kind, _ in motion.model.train]
@@ -102,6 +102,8 @@ class Stage:
         ax.plot([motion.low, motion.high], [0.0, 0.0], color=PALE, lw=0.8, ls=(0, (4, 3)))
         ax.plot(motion.x, self.factor * motion.deflection(row), color=COLOURS[0], lw=3.0, solid_capstyle="butt",
                 zorder=5.5)
+        for track in range(1, len(motion.tracks)):
+            ax.plot(motion.x, self.factor * motion.deflection(row, track), color=COLOURS[0], lw=1.2, zorder=5.4)
         draw_foundation(ax, motion.model, left, right)
         draw_supports(ax, motion.model, left, right)
         self.draw_vehicles(row, left, right)

@@ -30,10 +30,11 @@ class Results:
     def values(self, name):
         return self.file[name][()] if name in self.file else None
 
-    def on_first_track(self):
-        """Whether each probe is on the first track; all are if no tracks have names."""
-        tracks = self.eccentricities
-        return np.full(len(self.probes), True) if tracks is None else tracks == tracks[0]
+    def probes_of_tracks(self):
+        """{eccentricity in m, or None if no tracks have names: whether each probe is on this track}"""
+        if self.eccentricities is None:
+            return {None: np.full(len(self.probes), True)}
+        return {e: self.eccentricities == e for e in dict.fromkeys(self.eccentricities.tolist())}
 
     def beside_axis(self, probe):
         """The eccentricity of a probe's track as text, empty if no tracks have names."""

@@ -63,9 +63,11 @@ class Motion:
             why = f": it is that of a {what}; run one of its cases alone" if what else ""
             raise ValueError(f"holds no deflections of a bridge over time{why}")
         self.results, self.model, self.time = results, Model(results), results.time
-        drawn = results.on_first_track()
-        self.stations = np.asarray(results.probes, dtype=float)[drawn]
-        self.at_stations = results.over_time(results.file["probes/deflection"])[:, drawn]
+        self.tracks = results.probes_of_tracks()
+        self.stations = np.asarray(results.probes, dtype=float)[next(iter(self.tracks.values()))]
+        deflections = results.over_time(results.file["probes/deflection"])
+        self.at_tracks = [deflections[:, own] for own in self.tracks.values()]  # each track has the same stations
+        self.at_stations = self.at_tracks[0]
         ends = self.model.span_ends if len(self.model.span_ends) else self.stations
         self.low, self.high = float(ends[0]), float(ends[-1])
         points = int(np.clip(POINTS * (len(ends) - 1), FEWEST_POINTS, MOST_POINTS))
@@ -111,14 +113,21 @@ class Motion:
                     matrix[inside] = np.nan
         return matrix
 
-    def deflection(self, row):
-        """The deflection at self.x, m upward; NaN if unknown."""
-        return self.matrix @ self.at_stations[row] + self.settled
+    def deflection(self, row, track=0):
+        """The deflection of a track at self.x, m upward; NaN if unknown."""
+        return self.matrix @ self.at_tracks[track][row] + self.settled
+
+    def greatest(self):
+        """The greatest deflection at a station, m."""
+        return max(np.abs(values).max() for values in self.at_tracks)
 
     def in_words(self):
         many = len(self.stations) > 1
         said = f"between the {f'{len(self.stations)} stations' if many else 'one station'} and the supports: " \
             f"{'cubic splines' if many else 'a cubic spline'}"
+        if len(self.tracks) > 1:
+            first, *others = (f"{e:+.4g} m" for e in self.tracks)
+            said += f"; thick: the track at {first}, thin: {', '.join(others)}"
         return said + ("; spans without a station are not drawn" if np.isnan(self.matrix).any() else "")
 
     def forces(self, row):

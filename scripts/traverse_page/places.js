@@ -77,9 +77,10 @@ class Places {
     return this.zero - height * this.scale;
   }
 
-  // Deflection of the drawn line at its point with this index, m; NaN out of sight.
-  deflectionAt(index) {
-    const { first, values, count } = this.stage.line;
+  // Deflection of the drawn line of a track at its point with this index, m; NaN out of sight.
+  deflectionAt(index, track = 0) {
+    const { first, tracks, count } = this.stage.line;
+    const values = tracks[track];
     const at = (frame) => {
       const i = index - first[frame];
       return i >= 0 && i < count ? values[frame * count + i] : NaN;

@@ -65,16 +65,6 @@ class Stage extends Places {
     pen.lineWidth = 1.2;
     for (const [x, kind, gap] of springs) if (seen(x)) drawSpring(pen, kind, this.x(x), lies(x) + 3, gap);
     for (const [x, kind] of supports) if (seen(x)) drawSupport(pen, kind, this.x(x), lies(x) + 3, this.fill);
-    const points = [];
-    if (line) {
-      const start = Math.max(lastNotAbove(line.x, this.left) - 1, 0);
-      for (let i = start; i < line.x.length && line.x[i] <= this.left + 1.02 * this.width; ++i) {
-        const w = this.deflectionAt(i);
-        if (!Number.isNaN(w)) points.push([this.x(line.x[i]), this.y(factor * w) + deck]);
-      }
-    } else {
-      points.push([this.x(low), this.y(0) + deck], [this.x(high), this.y(0) + deck]);
-    }
     if (rail) this.drawTrack(lies, deck);
     pen.strokeStyle = colour("soft");
     pen.lineWidth = 1;
@@ -83,14 +73,28 @@ class Stage extends Places {
     pen.stroke();
     pen.setLineDash([]);
     pen.strokeStyle = colour("bridge");
-    pen.lineWidth = 4;
-    path(pen, points);
-    pen.stroke();
+    (line ? line.tracks : [null]).forEach((_, track) => {
+      pen.lineWidth = track === 0 ? 4 : 1.5;
+      path(pen, line ? this.pointsOf(track, deck) : [[this.x(low), this.y(0) + deck], [this.x(high), this.y(0) + deck]]);
+      pen.stroke();
+    });
     pen.strokeStyle = this.ink;
     pen.lineWidth = 1.2;
     for (const [x, , joint] of supports) if (seen(x)) drawJoint(pen, joint, this.x(x), lies(x), this.fill);
     for (const x of hinges) drawJoint(pen, "hinge", this.x(x), lies(x), this.fill);
     for (const x of cracks) drawJoint(pen, "crack", this.x(x), lies(x), this.fill);
+  }
+
+  // The points in sight of the deflected line of a track.
+  pointsOf(track, deck) {
+    const { line, factor } = this.stage;
+    const points = [];
+    const start = Math.max(lastNotAbove(line.x, this.left) - 1, 0);
+    for (let i = start; i < line.x.length && line.x[i] <= this.left + 1.02 * this.width; ++i) {
+      const w = this.deflectionAt(i, track);
+      if (!Number.isNaN(w)) points.push([this.x(line.x[i]), this.y(factor * w) + deck]);
+    }
+    return points;
   }
 
   // The rail on its sleepers, as a symbol of the track.

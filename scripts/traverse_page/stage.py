@@ -90,8 +90,8 @@ def known(motion):
     return (motion.x >= knots.min() - apart) & (motion.x <= knots.max() + apart)
 
 
-class Line:
-    """The deflected line of the bridge at the drawn instants; in long bridges only the part in sight."""
+class Lines:
+    """The deflected line of each track at the drawn instants; in long bridges only the part in sight."""
 
     def __init__(self, motion, rows, view, middles):
         gap = max(1, int(view["width"] / POINTS / np.diff(motion.x).mean()))
@@ -104,14 +104,16 @@ class Line:
         self.count = int((last - first).max())
         self.first = np.clip(first, 0, len(self.x) - self.count)
         unknown = ~known(motion)[shown]
-        self.values = np.empty((len(rows), self.count))
-        for values, first, row in zip(self.values, self.first, rows):
+        self.values = np.empty((len(motion.at_tracks), len(rows), self.count))
+        for i, (first, row) in enumerate(zip(self.first, rows)):
             part = shown[first:first + self.count]
-            values[:] = motion.matrix[part] @ motion.at_stations[row] + motion.settled[part]
-            values[unknown[first:first + self.count]] = np.nan
+            for values, at_stations in zip(self.values, motion.at_tracks):
+                values[i] = motion.matrix[part] @ at_stations[row] + motion.settled[part]
+                values[i, unknown[first:first + self.count]] = np.nan
 
     def packed(self):
-        return {"x": packed(self.x), "count": self.count, "first": packed(self.first), "values": packed(self.values)}
+        return {"x": packed(self.x), "count": self.count, "first": packed(self.first),
+                "tracks": [packed(values) for values in self.values]}
 
 
 def chosen_frames(results, size):
@@ -141,7 +143,7 @@ def moving(results):
     motion = Motion(results) if "probes/deflection" in results.file and len(results.probes) else None
     bodies = motion.bodies if motion else bodies_without_bridge(results)
     bodies = [body for body in bodies if body.vehicle < len(model.train)]
-    rows = chosen_frames(results, 3 * len(bodies) + (POINTS if motion else 0) + len(model.forces.get("load", ())))
+    rows = chosen_frames(results, 3 * len(bodies) + (POINTS * len(motion.tracks) if motion else 0) + len(model.forces.get("load", ())))
     forces = np.array([model.forces_at(results.time[row], results.options)[:, 0] for row in rows]) if motion else \
         np.zeros((len(rows), 0))
     left, bottom, right, top = extents(results, model, bodies) if bodies else (0.0, 0.0, 0.0, 0.0)
@@ -150,7 +152,7 @@ def moving(results):
         left, right = motion.low, motion.high
         view = view_of(left, right, bottom, top)
         stage["factor"] = exaggeration(motion, bodies, view["width"])
-        drop = stage["factor"] * np.abs(motion.at_stations).max()
+        drop = stage["factor"] * motion.greatest()
         view.update(bottom=min(bottom, -drop), top=max(top, drop))
     elif bodies:
         view = view_of(left, right, bottom, top)
@@ -158,7 +160,7 @@ def moving(results):
         return None
     middles = middles_of(bodies, forces, rows, view["width"])
     if motion:
-        stage.update(low=left, high=right, line=Line(motion, rows, view, middles).packed(), **symbols(model),
+        stage.update(low=left, high=right, line=Lines(motion, rows, view, middles).packed(), **symbols(model),
                      words=exaggeration_in_words(stage["factor"], bodies) + f" The line is drawn {motion.in_words()}." +
                      ("" if known(motion).all() else " Far from them it is not known."))
     types, vehicles = packed_vehicles(results, model, bodies, rows, motion is not None)
@@ -178,7 +180,7 @@ def exaggeration(motion, bodies, width):
             points = attached(motion.model, kind)[numbers(motion.model, kind)[body.name]]
             turn = np.abs(body.position[:, 2] - body.position[0, 2]) * np.abs(points[:, 0] - points[0, 0]).max()
             sway = max(sway, (np.abs(body.position[:, 1] - body.height) + turn).max())
-    return rounded(width * min(DRAWN / max(np.abs(motion.at_stations).max(), 1e-12), SWAY / max(sway, 1e-12)))
+    return rounded(width * min(DRAWN / max(motion.greatest(), 1e-12), SWAY / max(sway, 1e-12)))
 
 
 def exaggeration_in_words(factor, bodies):

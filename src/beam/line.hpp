@@ -80,15 +80,18 @@ struct Line {
   std::array<int, 2> axial(int element) const;
   std::array<int, 4> twists(int element) const;  // twist1, rate1, twist2, rate2, only with torsion
   int tracks() const { return model.torsion ? static_cast<int>(model.torsion->tracks.size()) : 1; }
-  /// The distance of an element's track to the left of the shear centre, m (Mesh::element).
-  double eccentricity(int element) const {
-    return model.torsion ? model.torsion->tracks[static_cast<std::size_t>(element / mesh.elements())] : 0.0;
+  /// The lever of an element's track, m: its distance to the left of the shear centre (Mesh::element).
+  double eccentricity(int element) const { return action_line(element).lever; }
+  /// The line of action that an element belongs to (Mesh::element).
+  const ActionLine& action_line(int element) const {
+    static constexpr ActionLine axis;
+    return model.torsion ? model.torsion->tracks[static_cast<std::size_t>(element / mesh.elements())] : axis;
   }
   /// Whether a track is beside the shear centre, or there are several.
-  bool has_tracks_beside() const { return model.torsion && model.torsion->tracks != std::vector<double>{0.0}; }
+  bool has_tracks_beside() const { return model.torsion && model.torsion->tracks != std::vector<ActionLine>{{}}; }
   /// Calls use(k, unknown, factor): nodal value k of an element's track, in the order of unknowns(), is the sum of
   /// these unknowns times their factors: deflection and rotation of the beam, and its twist with the rate along x,
-  /// times the eccentricity.
+  /// times the lever; only the latter on a line of forces to the left.
   template <class Use>
   void for_unknowns(int element, Use use) const;
   /// The unknowns node by node: (v1, theta1, v2, theta2) or (u1, v1, theta1, u2, v2, theta2), 2*per_node in number.
@@ -101,8 +104,10 @@ struct Line {
 
 template <class Use>
 void Line::for_unknowns(int element, Use use) const {
-  const auto own = unknowns(element);
-  for (int k = 0; k < 2 * per_node; ++k) use(k, own[static_cast<std::size_t>(k)], 1.0);
+  if (!action_line(element).sideways) {
+    const auto own = unknowns(element);
+    for (int k = 0; k < 2 * per_node; ++k) use(k, own[static_cast<std::size_t>(k)], 1.0);
+  }
   const double e = eccentricity(element);
   if (e == 0.0) return;
   const auto twist = twists(element);

@@ -72,6 +72,19 @@ std::string range_text(const beam::Distribution& d, const char* unit) {
                      : fmt::format("{:.4g} to {:.4g} {}", d.minimum(), d.maximum(), unit);
 }
 
+/// Prints a line on which something acts on a beam that twists.
+void print_line(const Page& page, const beam::ActionLine& line) {
+  if (line == beam::ActionLine{1.0, true}) return;  // of the torques in curves
+  const char* where = line.sideways ? "forces to the left, {:g} m above the shear centre"
+                                    : "track {:g} m to the left of the shear centre";
+  std::string text = fmt::format(fmt::runtime(where), line.lever);
+  if (line.shift_by_speed != 0.0)
+    text += fmt::format(", weights {:.4g} m + {:.4g} s2/m v2 to its left", line.shift, line.shift_by_speed);
+  else if (line.shift != 0.0)
+    text += fmt::format(", weights {:.4g} m to its left", line.shift);
+  page.line("", text);
+}
+
 /// Prints the further properties of a beam, and its imposed deformations.
 void print_properties(const Page& page, const beam::BeamModel& beam) {
   if (beam.GA) page.line("GA, shear", range_text(*beam.GA, "N"));
@@ -80,8 +93,8 @@ void print_properties(const Page& page, const beam::BeamModel& beam) {
     page.line("torsion", fmt::format("GJ {}, polar inertia {}", range_text(beam.torsion->GJ, "N m2"),
                                      range_text(beam.torsion->inertia, "kg m")));
     if (beam.torsion->warping) page.line("ECw, warping", range_text(*beam.torsion->warping, "N m4"));
-    page.line("", fmt::format("from the shear centre to the left: tracks {:g} m, centre of mass {:g} m",
-                              fmt::join(beam.torsion->tracks, ", "), beam.torsion->mass_centre));
+    page.line("", fmt::format("centre of mass {:g} m to the left of the shear centre", beam.torsion->mass_centre));
+    for (const beam::ActionLine& line : beam.torsion->tracks) print_line(page, line);
   }
   for (const beam::Crack& crack : beam.cracks)
     page.line("crack", fmt::format("at x = {:g} m, {:.4g} N m/rad", crack.x, crack.k));

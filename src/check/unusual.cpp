@@ -243,7 +243,7 @@ double dead_load_effect(const norm::InfluenceLine& line, const beam::BeamModel& 
 /// The influence line of the deflection of the first track, for loads on it.
 norm::InfluenceLine deflection_line(norm::StaticBridge& bridge, double x) {
   const std::optional<beam::Torsion>& torsion = bridge.model().torsion;
-  return bridge.lines_at(x, torsion ? torsion->tracks.front() : 0.0).front().front();
+  return bridge.lines_at(x, torsion ? torsion->tracks.front().lever : 0.0).front().front();
 }
 
 void compute_deflection(norm::StaticBridge& bridge, const std::vector<norm::LoadModel>& trains,

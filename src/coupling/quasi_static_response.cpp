@@ -39,7 +39,7 @@ struct QuasiStaticResponse::InfluenceLine {
     const auto first = 4 * static_cast<std::size_t>(number);
     const beam::Hermite psi = beam::hermite(s.xi, element.length, element.shear);
     recovery::ElementLoad unit = {s.element, s.xi, 0.0, -1.0, 0.0};
-    unit.torque = -on.eccentricity(number);
+    unit.move_from(on.action_line(number));
     double sum = inside ? inside->deflection_inside(0, unit) : 0.0;
     for (int i = 0; i < 4; ++i) sum += psi.value[i] * nodal[first + static_cast<std::size_t>(i)];
     return sum;

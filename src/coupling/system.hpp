@@ -307,6 +307,9 @@ class System {
   void load_structure(double t);
   beam::Station station_in_step(double x, double middle) const;
   void load_line(std::size_t i, double t);
+  void turn_beam(recovery::ElementLoad load, int track, double speed);
+  void record_shifted();
+  std::size_t turning_source() const { return input_.load.forces.size() + braking_.size() + fleet_.wheels.size(); }
   double gradient() const;
   void record_braking();
   bool brakes_track(int wheel) const;
@@ -353,6 +356,8 @@ class System {
   std::vector<recovery::ElementLoad> loads_;            // loads of the moving forces on the beam
   std::vector<BrakingWheel> braking_;                   // wheels of trains whose speed is prescribed and changes
   std::vector<double> braking_force_;                   // N along x on the line, during the step
+  std::vector<std::pair<StaticLoad, char>> shifted_;    // wheels in curves or on cant; whether they are on the line
+  int unit_lever_ = 0;                                  // the line of action of their torques
   std::map<double, double> applied_;                    // N by station, m: the forces of apply_to_beam
   bool applied_changed_ = false;                        // since the last step
   std::vector<char> on_beam_;                           // whether each moving force is on the beam during the step

@@ -15,10 +15,20 @@ void System::load_structure(double t) {
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
     if (train::length_of(input_.load, i) > 0.0) load_line(i, t);
     if (on_beam_[i] == 0) continue;
-    const beam::Station s =
-        line_->mesh.on_track(station_in_step(train::place_of(input_.load, i, t), middle_[i]), track_of(input_.load, i));
-    loads_.push_back({s.element, s.xi, 0.0, -train::force_at(input_.load, i, t), train::moment_of(input_.load, i),
-                      train::speed_of(input_.load, i, t), 0.0, static_cast<int>(i)});
+    const beam::Station s = station_in_step(train::place_of(input_.load, i, t), middle_[i]);
+    const double speed = train::speed_of(input_.load, i, t), force = -train::force_at(input_.load, i, t);
+    const int track = track_of(input_.load, i);
+    loads_.push_back({line_->mesh.on_track(s, track).element, s.xi, 0.0, force, train::moment_of(input_.load, i), speed,
+                      0.0, static_cast<int>(i)});
+    turn_beam({s.element, s.xi, 0.0, force, 0.0, speed, 0.0, static_cast<int>(turning_source() + i)}, track, speed);
+  }
+  for (std::size_t i = 0; i < shifted_.size(); ++i) {
+    const auto& [weight, on] = shifted_[i];
+    if (on == 0) continue;
+    const beam::Station s = line_->mesh.locate(weight.x + weight.law.distance(t));
+    const double speed = weight.law.speed(t);
+    const std::size_t source = turning_source() + input_.load.forces.size() + i;
+    turn_beam({s.element, s.xi, 0.0, -weight.force, 0.0, speed, 0.0, static_cast<int>(source)}, weight.track, speed);
   }
   for (std::size_t i = 0; i < braking_force_.size(); ++i) {
     if (braking_force_[i] == 0.0) continue;
@@ -32,6 +42,17 @@ void System::load_structure(double t) {
     loads_.push_back({s.element, s.xi, 0.0, force, 0.0, 0.0});
   }
   structure_->load(loads_);
+}
+
+// The torque of a weight beside its track, in a curve or on cant, as a force on the line of action of unit lever. load:
+// the weight, on an element of the beam.
+void System::turn_beam(recovery::ElementLoad load, int track, double speed) {
+  const beam::Mesh& mesh = line_->mesh;
+  const beam::ActionLine& on = line_->action_line(mesh.on_track({load.element, 0.0}, track).element);
+  if (!on.shifts()) return;
+  load.element = mesh.on_track({load.element, 0.0}, unit_lever_).element;
+  load.fy *= on.shift + on.shift_by_speed * speed * speed;
+  loads_.push_back(load);
 }
 
 // The station x in the element on the side of `middle`, where a load is in the middle of the step: at a joint, the
@@ -59,15 +80,17 @@ void System::load_line(std::size_t i, double t) {
   const double from = std::max(x - 0.5 * length, mesh.start()), to = std::min(x + 0.5 * length, mesh.end());
   if (!(to > from)) return;
   const double per_length = -train::force_at(input_.load, i, t) / length;  // N/m, upward
+  const int track = track_of(input_.load, i);
   const int last = mesh.locate(to).element;
   for (int e = mesh.locate(from).element; e <= last; ++e) {
     const beam::Element& element = mesh.element(e);
     const double left = std::max(from, element.x), right = std::min(to, element.x + element.length);
     if (!(right > left)) continue;
-    const beam::Station on = mesh.on_track({e, 0.0}, track_of(input_.load, i));
-    recovery::ElementLoad load{on.element, (0.5 * (left + right) - element.x) / element.length, 0.0,
+    recovery::ElementLoad load{e, (0.5 * (left + right) - element.x) / element.length, 0.0,
                                per_length * (right - left)};
     load.extent = (right - left) / element.length;
+    turn_beam(load, track, train::speed_of(input_.load, i, t));
+    load.element = mesh.on_track({e, 0.0}, track).element;
     loads_.push_back(load);
   }
 }
@@ -125,6 +148,17 @@ void System::record_braking() {
   braking_force_.assign(braking_.size(), 0.0);
 }
 
+// The weights of wheels in curves or on cant, if their speed is prescribed.
+void System::record_shifted() {
+  shifted_.clear();
+  if (line_ == nullptr || !line_->model.torsion) return;
+  const std::vector<beam::ActionLine>& lines = line_->model.torsion->tracks;
+  unit_lever_ = static_cast<int>(std::ranges::find(lines, beam::ActionLine{1.0, true}) - lines.begin());
+  for (std::size_t i = 0; i < fleet_.wheels.size(); ++i)
+    if (const StaticLoad& weight = weights_.all()[i]; lines[static_cast<std::size_t>(weight.track)].shifts())
+      shifted_.push_back({weight, 0});
+}
+
 // The braking forces of a step whose middle is t. True if they have changed.
 bool System::update_braking(double t) {
   bool changed = false;
@@ -152,6 +186,12 @@ bool System::begin_step(double from, double to) {
   changed = select_sides() || changed;
   if (line_ == nullptr) return changed;
   changed = update_braking(middle) || changed;
+  for (auto& [weight, on] : shifted_) {
+    const double x = weight.x + weight.law.distance(middle), speed = weight.law.speed(middle);
+    const char now = train::is_on_line(line_->mesh.start(), line_->mesh.end(), x, speed) ? 1 : 0;
+    changed = changed || on != now;
+    on = now;
+  }
   for (std::size_t i = 0; i < on_beam_.size(); ++i) {
     const double x = train::place_of(input_.load, i, middle), speed = train::speed_of(input_.load, i, middle);
     const bool point = train::length_of(input_.load, i) == 0.0;

@@ -37,7 +37,7 @@ void System::observe(double t, const double* y, const double* a, Observation& ou
       out.loads.push_back({c.patches[c.active].element, c.touch.xi, f.x(), f.y(), moment_about_axis(c),
                            fleet_.velocities(c).x(), 0.0, wheel});
     }
-    for (recovery::ElementLoad& load : out.loads) load.torque = line_->eccentricity(load.element) * load.fy;
+    for (recovery::ElementLoad& load : out.loads) load.move_from(line_->action_line(load.element));
     const structure::ElementLoads contacts =
         from_passes ? structure::ElementLoads{trains_->elements(), structure_->pass_loads()} : contact_loads();
     structure_->observe(y, y + n_, a, contacts, all, out.beam);

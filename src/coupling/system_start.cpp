@@ -12,9 +12,11 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) {
   std::fill_n(y, local_size(), 0.0);
-  // On an incline, the static wheel loads determine the forces along the track that hold the vehicles.
-  const bool loads_known = (!equilibrium || gradient() != 0.0) && static_wheel_loads();
-  if (loads_known) update_braking(0.0);
+  // On an incline, the static wheel loads determine the forces along the track that hold the vehicles; in a curve or on
+  // cant, their torques.
+  const bool shifts = structure_ && beam()->model().torsion && beam()->model().torsion->shifts();
+  const bool loads_known = (!equilibrium || gradient() != 0.0 || shifts) && static_wheel_loads();
+  if (loads_known) begin_step(0.0, 0.0);
   if (equilibrium) {
     find_equilibrium(y);
   } else if (structure_ && structure_->deformed_without_traffic()) {
@@ -65,6 +67,7 @@ void System::record_weights() {
                        train::length_of(input_.load, i), track_of(input_.load, i)});
   weights_.set(std::move(weights), fleet_.wheels.size());
   record_braking();
+  record_shifted();
 }
 
 base::SpeedLaw System::law_of_wheel(int wheel) const {

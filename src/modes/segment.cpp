@@ -130,7 +130,7 @@ bool equal(const Segment& a, const Segment& b) {
 
 /// Whether springs or a layered track beside the shear centre couple bending and twist.
 bool has_eccentric_springs(const beam::BeamModel& model) {
-  if (model.track && model.torsion->tracks.front() != 0.0) return true;
+  if (model.track && model.torsion->tracks.front().lever != 0.0) return true;
   return std::ranges::any_of(model.foundation.vertical,
                              [](const beam::PointFoundation& p) { return p.eccentricity != 0.0; });
 }

@@ -20,7 +20,8 @@ NormCheck::NormCheck(const beam::BeamModel& model, const options::NormRules& rul
                      const std::vector<double>& probes)
     : rules_(rules), lengths_(determinant_lengths(model)), trains_(trains.size()), models_(rules.load_models) {
   beam::BeamModel with_tracks = model;
-  if (rules.second_track) with_tracks.torsion->tracks.push_back(*rules.second_track);
+  if (model.torsion) std::erase_if(with_tracks.torsion->tracks, &beam::ActionLine::sideways);
+  if (rules.second_track) with_tracks.torsion->tracks.push_back({*rules.second_track});
   StaticBridge bridge(with_tracks);
   n0_ = bridge.first_frequency();
   const bool continuous = lengths_ != model.spans;

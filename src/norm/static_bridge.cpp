@@ -126,7 +126,7 @@ InfluenceLine StaticBridge::line_of(const std::vector<double>& nodal, int track,
       if (e == loaded_element) {
         const beam::Cubic more = beam::cubic_through(end - start, [&](double x) {
           recovery::ElementLoad unit{e, (start + x) / element.length, 0.0, -1.0};
-          unit.torque = -bridge.eccentricity(number);
+          unit.move_from(bridge.action_line(number));
           return recovery->inside_response(0, unit).*direct;
         });
         for (std::size_t k = 0; k < 4; ++k) piece[k] += more[k];
@@ -258,7 +258,7 @@ StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads,
       }
     }
   };
-  const double eccentricity = model.torsion ? model.torsion->tracks.front() : 0.0;
+  const double eccentricity = model.torsion ? model.torsion->tracks.front().lever : 0.0;
   for (std::size_t i = 0; i < places(Effect::deflection).size(); ++i) {
     const auto on_tracks = bridge.lines_at(places(Effect::deflection)[i].x, eccentricity);
     constexpr Effect effects[] = {Effect::deflection, Effect::moment, Effect::shear};

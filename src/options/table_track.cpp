@@ -1,4 +1,4 @@
-// Rows of the option table: a layered track, whose properties may vary along x, and its stretches; mass dampers.
+// Rows of the option table: lines of tracks on a bridge that twists; a layered track, whose properties may vary along x, and its stretches; mass dampers.
 #include <fmt/format.h>
 
 #include <string>
@@ -13,6 +13,16 @@ namespace {
 using enum Kind;
 
 // clang-format off
+constexpr Row track_lines[] = {
+  {"track_eccentricity", number, "m", "0", any, "", 0, "distance of the track to the left of the beam's axis, seen along x; deflections at the probes are those of the track"},
+  {"tracks", texts, "", "(one track: the options of track)", any, "", 0, "names of several tracks or lanes of a bridge that twists; each has its own block: NAME_eccentricity, curve and cant, and a running surface as of track: NAME_profile, ...; trains and loads name theirs, and each track has its own probes"},
+  {"track_curve_radius", number, "m", "(straight)", any, "", 0, "radius of the track's curve, positive: a curve to the left; the centrifugal force turns the beam"},
+  {"track_cant", number, "m", "0", any, "", 0, "height of the right rail above the left one; cant moves the weights to the left"},
+  {"track_cant_base", number, "m", "1.5", positive, "", 0, "distance between the rails' centres, over which the cant is measured"},
+  {"track_height", number, "m", "0", any, "", 0, "height of the rails above the shear centres, for centrifugal forces"},
+  {"track_load_height", number, "m", "1.8", not_negative, "", 0, "height above the rails of the weights and of the centrifugal forces"},
+};
+
 constexpr Row rail_rows[] = {
   {"track_rail_EI", number_or_file, "N m2", "", positive, "", 0, "layered track: bending stiffness of both rails, or a file x,value"},
   {"track_rail_EA", number_or_file, "N", "", positive, "", 0, "layered track: axial stiffness of both rails, or a file x,value; only needed for longitudinal action"},
@@ -70,7 +80,8 @@ std::string addition_for(std::string_view name) {
 
 std::span<const Row> track_rows() {
   static const std::vector<Row> rows = [] {
-    std::vector<Row> all(std::begin(rail_rows), std::end(rail_rows));
+    std::vector<Row> all(std::begin(track_lines), std::end(track_lines));
+    all.insert(all.end(), std::begin(rail_rows), std::end(rail_rows));
     for (const beam::TrackProperty& p : beam::track_properties)
       all.push_back(
           {permanent(fmt::format("track_{}", p.name)), number_or_file, p.unit, fallback_of(p.name), not_negative, "", 0,

@@ -25,6 +25,12 @@ struct ElementLoad {
   double extent = 0.0;  // the load is spread uniformly over xi -+ extent/2 within the element; 0: concentrated
   int source = -1;
   double torque = 0.0;
+
+  /// Turns a force on a line of action into what it is on the line of shear centres.
+  void move_from(const beam::ActionLine& line) {
+    torque = line.lever * fy;
+    if (line.sideways) fy = 0.0;
+  }
 };
 
 /// Response at one station. Deflection positive upward, moment positive in sagging (EI v'' > 0),

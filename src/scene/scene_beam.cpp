@@ -72,6 +72,18 @@ void read_supports(const Options& o, beam::BeamModel& beam) {
   }
 }
 
+/// The line of a track, whose options begin with the name of the block.
+beam::ActionLine read_track_line(const Options& o, const Block& block, double shear_centre) {
+  beam::ActionLine line{o.number(block.option("eccentricity")) - shear_centre};
+  const double height = o.number(block.option("load_height"));
+  line.shift = height * o.number(block.option("cant")) / o.number(block.option("cant_base"));
+  const std::string radius = block.option("curve_radius");
+  if (!o.has(radius)) return line;
+  if (o.number(radius) == 0.0 || o.number("gravity") == 0.0) o.refuse(radius, "allowed: not 0, with gravity");
+  line.shift_by_speed = -(o.number(block.option("height")) + height) / (o.number("gravity") * o.number(radius));
+  return line;
+}
+
 /// Reads the torsion of the beam; the supports must have been read.
 void read_torsion(const Options& o, Scene& scene) {
   if (!o.has("beam_GJ")) return;
@@ -82,11 +94,11 @@ void read_torsion(const Options& o, Scene& scene) {
   torsion.inertia = read_distribution(o, "beam_polar_inertia");
   const double shear_centre = torsion.shear_centre = o.number("beam_shear_centre");
   torsion.mass_centre = o.number("beam_mass_centre") - shear_centre;
-  torsion.tracks = {o.number("track_eccentricity") - shear_centre};
+  torsion.tracks = {read_track_line(o, {"track", {}}, shear_centre)};
   for (const Block& block : blocks_of(o, "tracks"))
-    scene.tracks.push_back({block.name, o.number(block.option("eccentricity")) - shear_centre});
-  const bool beside = torsion.tracks.front() != 0.0 ||
-                      std::ranges::any_of(scene.tracks, [](const Track& t) { return t.eccentricity != 0.0; });
+    scene.tracks.push_back({block.name, read_track_line(o, block, shear_centre)});
+  const bool beside = torsion.tracks.front() != beam::ActionLine() ||
+                      std::ranges::any_of(scene.tracks, [](const Track& t) { return t.line != beam::ActionLine(); });
   if (!scene.tracks.empty()) torsion.tracks.clear();  // trains and loads name those that they run on
   const bool by_modes = o.has("model_modes") && o.integer("model_modes") > 0;
   const std::size_t ends = beam.supports.size();

@@ -79,6 +79,17 @@ std::string course_text(const train::Course& course) {
                      std::isfinite(standstill) ? fmt::format(", at rest after {:.6g} s", standstill) : "");
 }
 
+/// Completes the lines on which something acts: there is one at least, and one of unit lever for the torques of weights
+/// in curves or on cant.
+void complete_lines(const Options& o, Scene& scene) {
+  if (!scene.beam || !scene.beam->torsion) return;
+  if (scene.beam->torsion->tracks.empty()) carry(&scene.tracks.front(), scene);
+  if (!scene.beam->torsion->shifts()) return;
+  carry({1.0, true}, scene);
+  if (scene.train.drive == Drive::free)
+    o.refuse("train_drive", "tracks with a curve or cant need trains whose speed is prescribed");
+}
+
 }  // namespace
 
 void declare_blocks(Options& o) {
@@ -86,7 +97,8 @@ void declare_blocks(Options& o) {
   declare_list(o, "trains", "train", all);
   declare_list(o, "loads", "load", all);
   declare_list(o, "tracks", "track", [](std::string_view word) {
-    return word == "eccentricity" || word == "seed" || word == "wavelengths" || word.starts_with("profile") ||
+    return word == "eccentricity" || word == "curve_radius" || word.starts_with("cant") || word == "height" ||
+           word == "load_height" || word == "seed" || word == "wavelengths" || word.starts_with("profile") ||
            word.starts_with("bump_");
   });
 }
@@ -115,12 +127,13 @@ const Track* track_of_block(const Options& o, const Block& block, const Scene& s
   o.refuse(option, fmt::format("{}; allowed: {}", o.has(option) ? "there is no such track" : "missing", names));
 }
 
-int carry(const Track* track, Scene& scene) {
-  if (track == nullptr) return 0;
-  std::vector<double>& carrying = scene.beam->torsion->tracks;
-  const auto same = std::ranges::find(carrying, track->eccentricity);
+int carry(const Track* track, Scene& scene) { return track == nullptr ? 0 : carry(track->line, scene); }
+
+int carry(const beam::ActionLine& line, Scene& scene) {
+  std::vector<beam::ActionLine>& carrying = scene.beam->torsion->tracks;
+  const auto same = std::ranges::find(carrying, line);
   const auto index = static_cast<int>(same - carrying.begin());
-  if (same == carrying.end()) carrying.push_back(track->eccentricity);
+  if (same == carrying.end()) carrying.push_back(line);
   return index;
 }
 
@@ -169,8 +182,10 @@ bool needs_courses(const Options& o, const std::vector<Block>& blocks) {
   const auto own = [&](const Block& block) {
     const std::string profile = block.option("profile");
     const std::string times = block.option("times");
-    return !table_of_motion(o, block).empty() || direction_of(o, block) < 0.0 || (o.knows(profile) && o.has(profile)) ||
-           (o.knows(times) && o.has(times)) || has_line_loads_or_variation(o, block);
+    const std::string sideways = block.option("sideways_height");
+    return !table_of_motion(o, block).empty() || (o.knows(sideways) && o.has(sideways)) ||
+           direction_of(o, block) < 0.0 || (o.knows(profile) && o.has(profile)) || (o.knows(times) && o.has(times)) ||
+           has_line_loads_or_variation(o, block);
   };
   return blocks.size() > 1 || std::any_of(blocks.begin(), blocks.end(), own);
 }
@@ -181,7 +196,7 @@ bool several_courses(const Scene& scene) {
 }
 
 void check_courses(const Options& o, Scene& scene) {
-  if (scene.beam && scene.beam->torsion && scene.beam->torsion->tracks.empty()) carry(&scene.tracks.front(), scene);
+  complete_lines(o, scene);
   const std::size_t trains = scene.train.courses.size(), loads = scene.load.courses.size();
   if (trains + loads == 0) return;
   for (const char* sweep : {"sweep_speed", "sweep_hslm_a"})

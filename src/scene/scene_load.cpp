@@ -198,7 +198,9 @@ void read_load(const Options& o, Scene& scene) {
     train::Course course;
     course.name = block.name;
     course.first = scene.load.forces.size();
-    course.track = carry(track_of_block(o, block, scene), scene);
+    const std::string sideways = block.option("sideways_height");
+    course.track = o.has(sideways) ? carry(beam::ActionLine{o.number(sideways), true}, scene)
+                                   : carry(track_of_block(o, block, scene), scene);
     const double ahead = option == block.option("distributed") ? 0.5 * from.direction * load.lengths.front() : 0.0;
     if (const std::optional<double> start = start_by_table(o, block)) {
       const double shift = *start - load.positions.front() - ahead;

@@ -92,7 +92,7 @@ void repeat_probes_for_tracks(Scene& scene) {
   const std::vector<double> stations = std::exchange(scene.output.probes, {});
   for (const Track& track : scene.tracks) {
     scene.output.probes.insert(scene.output.probes.end(), stations.begin(), stations.end());
-    scene.output.eccentricities.resize(scene.output.probes.size(), track.eccentricity);
+    scene.output.eccentricities.resize(scene.output.probes.size(), track.line.lever);
   }
 }
 

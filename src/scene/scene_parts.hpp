@@ -63,6 +63,7 @@ std::vector<Block> blocks_of(const options::Options& options, const char* list);
 const Track* track_of_block(const options::Options& options, const Block& block, const Scene& scene);
 /// The number of a track among those of the beam that carry something; it is added if it is new.
 int carry(const Track* track, Scene& scene);
+int carry(const beam::ActionLine& line, Scene& scene);
 /// The option of a block that has a table of its motion, speed_file or position_file; empty without one.
 std::string table_of_motion(const options::Options& options, const Block& block);
 /// x of the first wheel or force at t = 0 by a block's position_file, m; none without one.

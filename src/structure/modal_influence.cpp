@@ -95,7 +95,7 @@ PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const s
         if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
           const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {
             recovery::ElementLoad unit = {e, (left + x) / element.length, 0.0, -1.0, 0.0};
-            unit.torque = -beam_.bridge().eccentricity(e);
+            unit.move_from(beam_.bridge().action_line(e));
             return recoveries[line.probe].inside_response(0, unit).*line.direct;
           });
           for (std::size_t k = 0; k < 4; ++k) cubic[k] += more[k];

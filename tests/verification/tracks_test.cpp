@@ -1,5 +1,6 @@
 // Several tracks on a bridge that twists: superposition of trains and forces on two of them, by elements and by modes,
 // the probes of each, and bearings beside the axis with equilibrium and uplift.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -156,6 +157,53 @@ TEST(Tracks, LoadModelsOnOneAndTwoTracks) {
   EXPECT_NEAR(greatest(two, "/static/moment", 1) / greatest(plain, "/static/moment", 1), 2.0, 1e-9);
 }
 
+// Cant and a curve: the weights act beside the track, as forces on a track at their place do, by elements and by modes.
+TEST(Tracks, CantAndCurve) {
+  constexpr double height = 1.8, rails = 1.0, speed = 50.0, radius = -1500.0;
+  const double place = e + height * 0.1 / 1.5 - (rails + height) * speed * speed / (9.81 * radius);
+  const auto run = [&](const Values& track, const char* modes) {
+    Values options = track;
+    options.emplace_back("model_modes", modes);
+    return run_yaml(bridge("load: {forces: [2.0e5, 1.0e5], positions: [0, -3], speed: 50, track: left}\n"), options);
+  };
+  for (const auto& [modes, bound] : {std::pair("0", 1e-12), {"12", 1e-6}}) {
+    Results given = run({{"left_cant", "0.1"}, {"left_curve_radius", "-1500"}, {"left_height", "1"}}, modes),
+            moved = run({{"left_eccentricity", fmt::format("{:.17g}", place)}}, modes);
+    for (const char* name : {"/probes/twist", "/probes/moment", "/probes/torsional_moment"})
+      EXPECT_LT(relative_difference(given(name), moved(name)), bound) << name << ", modes " << modes;
+  }
+}
+
+// A train through a curve: slowly, its torque is that of its weights at their place; and energy is conserved.
+TEST(Tracks, TrainInACurve) {
+  const std::string vehicle = "vehicle: {coach: {file: " + source_folder() + "/options/vehicles/manchester.yml" +
+                              "}}\n" +
+                              "output: {probes: 12}\ntrain: {vehicles: coach, speed: 0.5, positions: 13}\n"
+                              "ts: {max_time: 0.1}\n";
+  const std::string start =
+      "beam: {spans: 24, EI: 3.0e10, mass: 9.0e3, GJ: 1.1e10, polar_inertia: 4.0e4}\n"
+      "support: {types: [pinned, roller]}\n" +
+      vehicle;
+  for (const char* modes : {"", "model: {modes: 12}\n"}) {
+    Results straight = run_yaml(start + modes + "track: {eccentricity: 0.5}\n"),
+            curved = run_yaml(start + modes + "track: {eccentricity: 0.5, curve_radius: 0.5, cant: 0.15}\n");
+    const double ratio = (0.5 + 0.18 - 1.8 * 0.25 / (9.81 * 0.5)) / 0.5;
+    EXPECT_NEAR(curved("/probes/twist").front() / straight("/probes/twist").front(), ratio, 1e-4) << modes;
+    EXPECT_LT(energy_error(curved), 1e-4) << modes;
+  }
+}
+
+// Wind on a train that stands: a torque of force times height, whose twist is that of a bar on forks.
+TEST(Tracks, ForcesToTheLeftTwist) {
+  constexpr double wind = 3e3, height = 3.5, GJ = 1.1e10;
+  Results run = run_yaml(bridge("loads: wind\nwind: {distributed: [0, 24, 3.0e3], sideways_height: 3.5, speed: 0}\n"),
+                         {{"ts_max_time", "1e-3"}});
+  const double twist = -wind * height * L * L / (8.0 * GJ);
+  EXPECT_NEAR(run.column("/probes/twist", 1).front(), twist, 1e-9 * std::abs(twist));
+  EXPECT_NEAR(run.column("/supports/torque", 0).front(), 0.5 * wind * height * L, 1e-6 * wind * height * L);
+  EXPECT_LT(*std::ranges::max_element(run("/probes/moment")), 1e-6 * wind * height);
+}
+
 // The largest twist at the probes and the uplift of a bearing as limits.
 TEST(Tracks, LimitsOfTwistAndUplift) {
   const TemporaryFolder folder;
@@ -175,6 +223,10 @@ TEST(Tracks, LimitsOfTwistAndUplift) {
 }
 
 TEST(Tracks, Refusals) {
+  EXPECT_EQ(message_of([] {
+              run_yaml(bridge("load: {forces: 1, speed: 1}\n"), {{"left_curve_radius", "0"}});
+            }).find("left_curve_radius"),
+            0U);
   const auto refused = [](const std::string& yaml) { return message_of([&] { run_yaml(yaml); }); };
   EXPECT_EQ(refused(bridge("load: {forces: 1, speed: 1}\n")).find("load_track"), 0U);
   EXPECT_NE(refused(bridge("load: {forces: 1, speed: 1}\n")).find("allowed: left, right"), std::string::npos);

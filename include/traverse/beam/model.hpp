@@ -2,6 +2,7 @@
 // another program's model or from a measurement. Units are SI; x is measured from the left end of the first span.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -91,6 +92,18 @@ struct Temperature {
 /// the beam belongs. It is positive if the left side, seen along x, goes up: a point at the distance e to the left of
 /// the shear centre has the deflection v + e*twist. With the twist p, the inertia I about the shear centre and an
 /// external moment t per length:  I p'' (in time) - (GJ p')' + (EC p'')'' = t.
+/// A line along the beam on which wheels or forces act: a track at a distance to the left of the shear centre, or a
+/// line above it at which forces to the left act, which only twist the beam. In a curve or on a canted track the
+/// weights act at shift + shift_by_speed v^2 to the left of the track, at the speed v.
+struct ActionLine {
+  double lever = 0.0;  // m, from the shear centre: to the left, or upward if sideways
+  bool sideways = false;
+  double shift = 0.0;           // m
+  double shift_by_speed = 0.0;  // s2/m
+  bool operator==(const ActionLine&) const = default;
+  bool shifts() const { return shift != 0.0 || shift_by_speed != 0.0; }
+};
+
 struct Torsion {
   Distribution GJ;                      // N m2, > 0: stiffness of St. Venant
   std::optional<Distribution> warping;  // N m4, > 0: stiffness EC against warping (Vlasov); empty: none
@@ -99,8 +112,10 @@ struct Torsion {
   double mass_centre = 0.0;             // m, to the left of the shear centre
   std::vector<char> held;               // at each span end: non-zero if the support holds the twist
   std::vector<double>
-      bearing_spacing;                 // m, between the two bearings of each support that holds the twist; 0: not known
-  std::vector<double> tracks = {0.0};  // m, to the left of the shear centre: tracks that carry wheels or forces
+      bearing_spacing;  // m, between the two bearings of each support that holds the twist; 0: not known
+  std::vector<ActionLine> tracks = {{}};  // those that carry wheels or forces
+
+  bool shifts() const { return std::ranges::any_of(tracks, &ActionLine::shifts); }
 };
 
 struct BeamModel {

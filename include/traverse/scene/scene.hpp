@@ -118,10 +118,10 @@ struct Sweep {
   std::vector<std::uint64_t> seeds;  // seeds of the study's random tracks; empty: only the seed of the scene
 };
 
-/// A track beside the axis of a beam that twists.
+/// A track of a beam that twists.
 struct Track {
   std::string name;
-  double eccentricity = 0.0;  // m, to the left of the shear centre
+  beam::ActionLine line;
 };
 
 /// All data of one problem.
@@ -198,9 +198,11 @@ struct Scene {
     return !support_motion.empty() ||
            (beam && std::any_of(beam->settlement.begin(), beam->settlement.end(), [](double s) { return s != 0.0; }));
   }
-  /// Whether the motion is exact in time: modes under moving forces alone, but not single runs of given modes.
+  /// Whether the motion is exact in time: modes under moving forces alone, but not single runs of given
+  /// modes, nor on a track with a curve or cant.
   bool exact_in_time() const {
-    return model.modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep);
+    return model.modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep) &&
+           !(beam->torsion && beam->torsion->shifts());
   }
 };
 
