@@ -82,7 +82,7 @@ void NormCheck::compare(const ComputedPeaks& computed) {
     const std::vector<Place>& places = effects_.places[e];
     if (places.empty()) continue;
     for (std::size_t train = 0; train < trains_; ++train) {
-      // Shear, reactions and rotations have no computed peaks: they get the factor of the deflection.
+      // Shear, reactions, rotations and twist have no computed peaks: they get the factor of the deflection.
       const DynamicFactor dynamic =
           dynamic_factor(computed, train, row.effect == Effect::moment ? Effect::moment : Effect::deflection);
       const auto factor_at = [&](const Place& p) {
@@ -114,7 +114,8 @@ void NormCheck::compare(const ComputedPeaks& computed) {
 results::EvaluatedQuantity NormCheck::of_lm71(Effect effect, bool over_span) const {
   results::EvaluatedQuantity quantity;
   if (effects_.places[static_cast<std::size_t>(effect)].empty()) {
-    quantity.why = "the bridge has no joint between two decks";
+    quantity.why = effect == Effect::track_twist ? "the bridge does not twist (beam_GJ)"
+                                                 : "the bridge has no joint between two decks";
     return quantity;
   }
   for (std::size_t load = trains_; load < effects_.loads.size(); ++load) {
@@ -153,6 +154,7 @@ void NormCheck::find(std::vector<results::Verdict>& verdicts) const {
     verdict.found = name == "train_over_lm71"       ? of_trains()
                     : name == "lm71_end_rotation"   ? of_lm71(Effect::end_rotation, false)
                     : name == "lm71_joint_rotation" ? of_lm71(Effect::joint_rotation, false)
+                    : name == "lm71_track_twist"    ? of_lm71(Effect::track_twist, false)
                                                     : of_lm71(Effect::deflection, true);
     verdict.found.value *= verdict.limit.factor;
     verdict.runs = 1;

@@ -142,7 +142,7 @@ InfluenceLine StaticBridge::line_of(const std::vector<double>& nodal, int track,
   return {std::move(breaks), std::move(pieces)};
 }
 
-std::vector<std::array<InfluenceLine, 3>> StaticBridge::lines_at(double x, double eccentricity) {
+std::vector<StaticBridge::Lines> StaticBridge::lines_at(double x, double eccentricity) {
   recovery::Recovery recovery(beam_, {x}, 0.0, {eccentricity});
   const int element = beam_.mesh().locate(x).element;
   const auto transverse = beam_.bridge().transverse(element);
@@ -157,18 +157,18 @@ std::vector<std::array<InfluenceLine, 3>> StaticBridge::lines_at(double x, doubl
     unit[static_cast<std::size_t>(unknown)] = 0.0;
     forms.push_back(responses.front());
   }
-  std::vector<std::array<InfluenceLine, 3>> lines(static_cast<std::size_t>(tracks()));
-  constexpr double recovery::Response::*quantities[] = {&recovery::Response::deflection, &recovery::Response::moment,
-                                                        &recovery::Response::shear};
-  for (std::size_t q = 0; q < std::size(quantities); ++q) {
+  std::vector<Lines> lines(static_cast<std::size_t>(tracks()));
+  using recovery::Response;
+  for (const auto quantity : {&Response::deflection, &Response::moment, &Response::shear, &Response::twist_along}) {
+    if (quantity == &Response::twist_along && !beam_.model().torsion) continue;
     std::vector<double> nodal = zero;
     for (std::size_t k = 0; k < unknowns.size(); ++k) {
       const auto unknown = static_cast<std::size_t>(unknowns[k]);
-      if (beam_.fixed()[unknown] == 0) nodal[unknown] = -(forms[k].*quantities[q]);
+      if (beam_.fixed()[unknown] == 0) nodal[unknown] = -(forms[k].*quantity);
     }
     statics_.solve_static(nodal.data());
     for (int track = 0; track < tracks(); ++track)
-      lines[static_cast<std::size_t>(track)][q] = line_of(nodal, track, &recovery, quantities[q]);
+      lines[static_cast<std::size_t>(track)].push_back(line_of(nodal, track, &recovery, quantity));
   }
   return lines;
 }
@@ -234,8 +234,9 @@ StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads,
   const auto places = [&](Effect effect) -> std::vector<Place>& {
     return result.places[static_cast<std::size_t>(effect)];
   };
-  for (const Effect effect : {Effect::deflection, Effect::moment, Effect::shear})
-    places(effect) = sections_of(model, spacing, given_stations);
+  std::vector<Effect> at_sections = {Effect::deflection, Effect::moment, Effect::shear};
+  if (model.torsion) at_sections.push_back(Effect::track_twist);
+  for (const Effect effect : at_sections) places(effect) = sections_of(model, spacing, given_stations);
   for (const StaticBridge::Bearing& b : bearings) places(Effect::reaction).push_back(place_of(model, b.x));
   places(Effect::end_rotation) = {place_of(model, 0.0), place_of(model, model.length())};
   const std::vector<int> joints = bridge.joints();
@@ -261,11 +262,11 @@ StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads,
   const double eccentricity = model.torsion ? model.torsion->tracks.front().lever : 0.0;
   for (std::size_t i = 0; i < places(Effect::deflection).size(); ++i) {
     const auto on_tracks = bridge.lines_at(places(Effect::deflection)[i].x, eccentricity);
-    constexpr Effect effects[] = {Effect::deflection, Effect::moment, Effect::shear};
-    for (std::size_t q = 0; q < std::size(effects); ++q) {
+    for (std::size_t q = 0; q < at_sections.size(); ++q) {
+      const double factor = at_sections[q] == Effect::track_twist ? recovery::track_base : 1.0;
       std::vector<InfluenceLine> lines;
-      for (const auto& line : on_tracks) lines.push_back(line[q]);
-      store(effects[q], i, lines);
+      for (const auto& line : on_tracks) lines.push_back(line[q].times(factor));
+      store(at_sections[q], i, lines);
     }
   }
   for (std::size_t i = 0; i < bearings.size(); ++i) store(Effect::reaction, i, bridge.reaction(bearings[i]));

@@ -31,8 +31,9 @@ class StaticBridge {
   /// The tracks on which loads move; the lines below are for a load on each of them.
   int tracks() const { return beam_.bridge().tracks(); }
   /// Lines at a station, at this distance to the left of the shear centre (m): deflection (m/N, upward), moment (m,
-  /// sagging) and shear (1, d moment/dx).
-  std::vector<std::array<InfluenceLine, 3>> lines_at(double x, double eccentricity = 0.0);
+  /// sagging), shear (1, d moment/dx) and, if the beam twists, the twist of a track over 3 m (m/N).
+  using Lines = std::vector<InfluenceLine>;
+  std::vector<Lines> lines_at(double x, double eccentricity = 0.0);
   /// A support or a point spring, whose force on the bridge under a unit force is positive upward.
   struct Bearing {
     double x = 0.0;
@@ -63,17 +64,14 @@ class StaticBridge {
   std::vector<Bearing> bearings_;
 };
 
-enum class Effect { deflection, moment, shear, reaction, end_rotation, joint_rotation };
+enum class Effect { deflection, moment, shear, track_twist, reaction, end_rotation, joint_rotation };
 struct EffectRow {
   std::string_view name, words, unit;
 };
 /// The effects in the order of Effect.
 inline constexpr EffectRow effect_rows[] = {
-    {"deflection", "deflection", "m"},
-    {"moment", "moment", "N m"},
-    {"shear", "shear", "N"},
-    {"reaction", "reaction", "N"},
-    {"end_rotation", "end rotation", "rad"},
+    {"deflection", "deflection", "m"},           {"moment", "moment", "N m"},   {"shear", "shear", "N"},
+    {"track_twist", "twist over 3 m", "m"},      {"reaction", "reaction", "N"}, {"end_rotation", "end rotation", "rad"},
     {"joint_rotation", "joint rotation", "rad"},
 };
 inline constexpr std::size_t effect_count = std::size(effect_rows);

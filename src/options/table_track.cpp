@@ -1,4 +1,5 @@
-// Rows of the option table: lines of tracks on a bridge that twists; a layered track, whose properties may vary along x, and its stretches; mass dampers.
+// Rows of the option table: lines of tracks on a bridge that twists; a layered track, whose properties may vary along
+// x, and its stretches; mass dampers.
 #include <fmt/format.h>
 
 #include <string>

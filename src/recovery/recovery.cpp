@@ -193,7 +193,7 @@ Response Recovery::evaluate_section(const RecoverySection& s, const Values& v, c
     std::array<double, 4> inertial_twist{};
     for (std::size_t k = 0; k < 4; ++k) inertial_twist[k] = twists[2][k] + drag * twists[1][k];
     r.twist += sum(t.psi, twists[0]);
-    r.twist_along = sum(t.slope, twists[0]);
+    r.twist_along += sum(t.slope, twists[0]);
     r.deflection += t.eccentricity * r.twist;
     r.velocity += t.eccentricity * sum(t.psi, twists[1]);
     r.acceleration += t.eccentricity * sum(t.psi, twists[2]);

@@ -39,7 +39,7 @@ struct Response {
   double deflection = 0.0, velocity = 0.0, acceleration = 0.0;  // in space
   double relative_deflection = 0.0;                             // to the line through the supports (beam/mesh.hpp)
   double twist = 0.0, torsional_moment = 0.0;                   // rad; N m, positive as the twist on a right section
-  double twist_along = 0.0;                                     // rad/m: its rate along x
+  double twist_along = 0.0;                                     // rad/m: the rate of the twist along x
   double moment = 0.0, shear = 0.0;
   double axial_displacement = 0.0, axial_force = 0.0;
   /// The parts of the forces, and of d moment/dt (N m/s), that follow from the nodal values alone, without loads,
@@ -53,7 +53,8 @@ struct Response {
 };
 
 /// The twist of a track of standard gauge over 3 m (EN 1990, A2.4.4.2.2), by its rate along the bridge, m.
-inline double track_twist(const Response& r) { return 1.435 * 3.0 * r.twist_along; }
+inline constexpr double track_base = 1.435 * 3.0;  // m2
+inline double track_twist(const Response& r) { return track_base * r.twist_along; }
 
 /// Moment (N m), shear and axial force (N).
 using Forces = std::array<double, 3>;

@@ -23,6 +23,13 @@ double kink_beside_cubics(double xi, double load) {
   return exact - products * (3.0 + 5.0 * (1.0 - 2.0 * xi) * (1.0 - 2.0 * load));
 }
 
+/// Its derivative by xi; left: whether the load is to the left of xi.
+double rate_beside_cubics(double xi, double load, bool left) {
+  const double other = 1.0 - 2.0 * load, along = 1.0 - 2.0 * xi;
+  return (left ? 0.0 : 1.0) - load -
+         load * (1.0 - load) * (along * (3.0 + 5.0 * along * other) - 10.0 * xi * (1.0 - xi) * other);
+}
+
 }  // namespace
 
 RecoverySection::RecoverySection(const beam::Line& line, double x)
@@ -256,8 +263,10 @@ void RecoverySection::add_point_load(const ElementLoad& load, Response& r) const
   const bool left = beam::is_left(load.xi, at.xi);
   if (load.torque != 0.0) {
     r.torsional_moment += load.torque * (beam::hermite(load.xi, h).value[0] - (left ? 1.0 : 0.0));
-    const double twist = load.torque * twisting->flexibility * kink_beside_cubics(at.xi, load.xi);
+    const double by_torque = load.torque * twisting->flexibility;
+    const double twist = by_torque * kink_beside_cubics(at.xi, load.xi);
     r.twist += twist;
+    r.twist_along += by_torque * rate_beside_cubics(at.xi, load.xi, left) / h;
     r.deflection += twisting->eccentricity * twist;
   }
   if (left) {

@@ -162,6 +162,7 @@ constexpr QuantityRow quantity_rows[] = {
     {"lm71_deflection_over_span", &Quantities::of_norm},
     {"lm71_end_rotation", &Quantities::of_norm},
     {"lm71_joint_rotation", &Quantities::of_norm},
+    {"lm71_track_twist", &Quantities::of_norm},
     {"train_over_lm71", &Quantities::of_norm},
     {"rail_tension", &Quantities::of_rail},
     {"rail_compression", &Quantities::of_rail},

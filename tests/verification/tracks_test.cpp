@@ -153,6 +153,10 @@ TEST(Tracks, LoadModelsOnOneAndTwoTracks) {
   EXPECT_NEAR(least(two, "/static/deflection", 0), force, 1e-9 * std::abs(force));
   EXPECT_LT(least(one, "/static/deflection", 1), 1.05 * least(plain, "/static/deflection", 1));
   EXPECT_NEAR(least(two, "/static/deflection", 1) / least(plain, "/static/deflection", 1), 2.0, 1e-9);
+  // The rate of the twist is greatest beside a support, with the force there.
+  const double twist = 1.435 * 3.0 * F * e / GJ;
+  EXPECT_NEAR(greatest(one, "/static/track_twist", 0), twist, 1e-5 * twist);
+  EXPECT_NEAR(greatest(two, "/static/track_twist", 0), twist, 1e-5 * twist);
   EXPECT_NEAR(greatest(one, "/static/moment", 1) / greatest(plain, "/static/moment", 1), 1.0, 1e-9);
   EXPECT_NEAR(greatest(two, "/static/moment", 1) / greatest(plain, "/static/moment", 1), 2.0, 1e-9);
 }

@@ -49,6 +49,8 @@ inline constexpr LimitQuantity limit_quantities[] = {
      LimitFinder::norm},
     {"lm71_joint_rotation", "rad",
      "difference of static rotations of two decks at a joint under LM71 times alpha and Phi", LimitFinder::norm},
+    {"lm71_track_twist", "m", "static twist of a track of 1.435 m over 3 m under LM71 times alpha and Phi",
+     LimitFinder::norm},
     {"train_over_lm71", "1", "dynamic effect of the trains over Phi times LM71, EN 1991-2 6.4.6.5", LimitFinder::norm},
     {"rail_tension", "Pa", "largest additional tension of the rails along x (track_rail_area)", LimitFinder::rail},
     {"rail_compression", "Pa", "largest additional compression of the rails along x (track_rail_area)",
