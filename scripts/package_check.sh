@@ -28,13 +28,23 @@ copy_sources() {
   git ls-files -z | tar -c --null -T - | tar -x -C "$builder/root/traverse"
 }
 
-# build_packages REVISION NAME: into the folder NAME, with that revision as the end of their version.
+# keep NAME: what was built, in the folder NAME.
+keep() {
+  rm -rf "${folder:?}/$1"
+  mkdir "$folder/$1"
+  mv "$builder"/root/package/*.deb "$folder/$1"
+}
+
 build_packages() {
-  quietly inside "$builder" env REVISION="$1" CMAKE_BUILD_PARALLEL_LEVEL="${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}" \
+  quietly inside "$builder" env CMAKE_BUILD_PARALLEL_LEVEL="${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}" \
     /root/traverse/scripts/package.sh /root/package
-  rm -rf "${folder:?}/$2"
-  mkdir "$folder/$2"
-  mv "$builder"/root/package/*.{deb,changes} "$folder/$2"
+  keep first
+  mv "$builder"/root/package/traverse-*.tar.xz "$folder"
+}
+
+build_higher_version() {
+  quietly inside "$builder" env REVISION=2 /root/traverse/packaging/debian/pack.sh /root/package/build /root/package
+  keep second
 }
 
 check_by_lintian() {
@@ -78,11 +88,11 @@ quietly mkdir -p "$folder"
 quietly make_bare "$release" "$folder/bare"
 passed "a bare system"
 copy_sources
-build_packages 1 first
+build_packages
 passed "packages built: $(cd "$folder/first" && ls -- *.deb | tr '\n' ' ')"
 check_by_lintian
 passed "no error by lintian, $(grep -c '^W:' "$folder/lintian" || true) warnings"
-build_packages 2 second
+build_higher_version
 passed "packages of a higher version built"
 make_machine
 

@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Bare Debian systems in folders, sourced by scripts/package_check.sh. They see no file of this machine; their packages come
 # from the source of this machine's apt, by its settings.
 
