@@ -12,7 +12,7 @@ write_debian_folder() {
   version=$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$BUILD/CMakeCache.txt")
   # shellcheck source=/dev/null
   system=$(. /etc/os-release && echo "$ID$VERSION_ID")
-  maintainer="${DEBFULLNAME:-Traverse developers} <${DEBEMAIL:-$(id -un)@$(hostname -f)}>"
+  maintainer="${DEBFULLNAME:-Traverse developers} <${DEBEMAIL:-traverse@example.org}>"
   rm -rf "$1"
   mkdir -p "$1"
   cp -r packaging/debian/. "$1"
