@@ -32,10 +32,8 @@ quietly() { "$@" >"$log" 2>&1 || failed "$*"; }
 load() {
   # shellcheck source=/dev/null
   source /usr/share/modules/init/bash
-  module unload traverse 2>/dev/null || true
   module use "$1"/traverse-*/share/modulefiles
   module load traverse
-  hash -r
   [[ $(command -v traverse) == "$1"/* ]] || failed "The module does not lead to $1."
 }
 
@@ -53,15 +51,14 @@ write_scene() {
     'load: {forces: 1e5, speed: 2}' "ts: {dt: $3, max_time: $2}" 'output: {interval: 0.01}' >"$1"
 }
 
-use_archive() {
+# use_archive FOLDER NAME: in a shell of its own, by the module.
+use_archive() (
   load "$1"
   check_libraries
   quietly traverse -options_file "$scratch/small.yml" -output_file "$scratch/$2.h5"
   quietly mpirun -n 2 traverse -options_file "$scratch/small.yml" -output_file "$scratch/$2_mpirun.h5"
   quietly /usr/bin/python3 -B -c 'import sys, traverse; traverse.run(sys.argv[1])' "$scratch/small.yml"
-  quietly traverse check --span "28 m" --EI "260 GN.m2" --mass "19 t/m" --type prestressed --line-speed "250 km/h" \
-    --folder "$scratch/$2_check"
-}
+)
 
 start_slurm() {
   local ports
@@ -117,7 +114,7 @@ import numpy
 with h5py.File(sys.argv[1]) as one, h5py.File(sys.argv[2]) as other:
     names = []
     one.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
-    compared = [name for name in names if not name.startswith(("input", "diagnostics", "performance"))]
+    compared = [name for name in names if one[name].dtype.kind in "fiu"]
     differ = [name for name in compared if not numpy.array_equal(one[name][()], other[name][()])]
     sys.exit(f"{sys.argv[1:]} differ: {differ}" if differ or "probes/deflection" not in compared else 0)
 END
@@ -141,11 +138,14 @@ write_scene "$scratch/small.yml" 0.5 5e-3
 mkdir "$scratch/one"
 tar -xJf "$archive" -C "$scratch/one"
 use_archive "$scratch/one" one
-passed "$(basename "$archive"), $(($(stat -c %s "$archive") / 1000000)) MB: by its module the program, 2 ranks, Python and a report"
+passed "$(basename "$archive"), $(($(stat -c %s "$archive") / 1000000)) MB: by its module the program, 2 ranks and Python"
 mv "$scratch/one" "$scratch/two"
 use_archive "$scratch/two" two
 compare "$scratch/one.h5" "$scratch/two.h5"
-passed "moved to another folder: the same"
+load "$scratch/two"
+quietly traverse check --span "28 m" --EI "260 GN.m2" --mass "19 t/m" --type prestressed --line-speed "250 km/h" \
+  --folder "$scratch/check"
+passed "moved to another folder: the same, and a report"
 
 start_slurm
 passed "Slurm $(sinfo --version | cut -d' ' -f2) on $(nproc) processors"
@@ -162,7 +162,7 @@ passed "scontrol requeue: the job is in the queue again, with a checkpoint"
 interrupt 2 scancel --batch --signal=USR1
 passed "the signal before the time limit: the job put itself into the queue, with a checkpoint"
 wait_until "the job has ended" 300 "[[ \$(state $job JobState) =~ COMPLETED|FAILED|CANCELLED|TIMEOUT ]]"
-[ "$(state "$job" JobState)" = COMPLETED ] && [ ! -e results/long.h5.checkpoint ] || failed "The job did not reach its end."
+[[ $(state "$job" JobState) = COMPLETED && ! -e results/long.h5.checkpoint ]] || failed "The job did not reach its end."
 passed "the job continued twice and reached its end"
 quietly srun -n 2 traverse -options_file long.yml -output_file uninterrupted.h5
 compare results/long.h5 uninterrupted.h5
