@@ -86,6 +86,7 @@ ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 MpiDefault=pmix
 ReturnToService=2
+KillWait=120
 SchedulerType=sched/builtin
 NodeName=$(hostname -s) CPUs=$(nproc)
 PartitionName=all Nodes=ALL Default=YES OverSubscribe=FORCE:4
@@ -121,17 +122,16 @@ END
 }
 
 state() { scontrol show job "$1" | sed -n "s/.* *$2=\([^ ]*\).*/\1/p"; }
-rows() { /usr/bin/python3 -c 'import h5py, sys; print(len(h5py.File(sys.argv[1])["time"]))' "$1" 2>/dev/null || echo 0; }
 
-# interrupt TURN COMMAND...: once the job computes, puts it back into the queue by the command.
+# interrupt TURN COMMAND...: once the job computes in that turn, puts it back into the queue by the command.
 interrupt() {
   local turn=$1
   shift
   wait_until "turn $turn of the job runs" 120 "[ \"\$(state $job JobState) \$(state $job Restarts)\" = 'RUNNING $((turn - 1))' ]"
   sleep 4
+  touch "$scratch/before"
   quietly "$@" "$job"
-  wait_until "the job is in the queue again" 60 "[ \"\$(state $job Restarts)\" = $turn ]"
-  [ -s "$scratch/jobs/results/long.h5.checkpoint" ] || failed "There is no checkpoint after turn $turn."
+  wait_until "turn $turn has written a checkpoint" 60 "[ '$scratch/jobs/results/long.h5.checkpoint' -nt '$scratch/before' ]"
 }
 
 write_scene "$scratch/small.yml" 0.5 5e-3
@@ -158,12 +158,12 @@ write_scene long.yml 12 4e-6
 quietly sbatch -n 2 --time=10 "$batch" long.yml
 job=$(grep -o '[0-9]*$' "$log")
 interrupt 1 scontrol requeue
-passed "scontrol requeue: the job is in the queue again, with a checkpoint"
+passed "scontrol requeue: the job ends with a checkpoint"
 interrupt 2 scancel --batch --signal=USR1
-passed "the signal before the time limit: the job put itself into the queue, with a checkpoint"
+passed "it started again; with the signal before its time limit it ends with a checkpoint"
 wait_until "the job has ended" 300 "[[ \$(state $job JobState) =~ COMPLETED|FAILED|CANCELLED|TIMEOUT ]]"
-[[ $(state "$job" JobState) = COMPLETED && ! -e results/long.h5.checkpoint ]] || failed "The job did not reach its end."
-passed "the job continued twice and reached its end"
+[[ $(state "$job" JobState) = COMPLETED && $(state "$job" Restarts) = 2 && ! -e results/long.h5.checkpoint ]] || failed "The job did not reach its end."
+passed "it started again and reached its end"
 quietly srun -n 2 traverse -options_file long.yml -output_file uninterrupted.h5
 compare results/long.h5 uninterrupted.h5
 passed "its results are those of an uninterrupted run, to the last bit"
