@@ -123,15 +123,19 @@ END
 
 state() { scontrol show job "$1" | sed -n "s/.* *$2=\([^ ]*\).*/\1/p"; }
 
+# How many lines of progress the job has written.
+progress() { grep -c '%  *t = ' "$scratch"/jobs/*.out 2>/dev/null || true; }
+
 # interrupt TURN COMMAND...: once the job computes in that turn, puts it back into the queue by the command.
 interrupt() {
   local turn=$1
   shift
-  wait_until "turn $turn of the job runs" 120 "[ \"\$(state $job JobState) \$(state $job Restarts)\" = 'RUNNING $((turn - 1))' ]"
-  sleep 4
+  wait_until "turn $turn of the job runs" 300 "[ \"\$(state $job JobState) \$(state $job Restarts)\" = 'RUNNING $((turn - 1))' ]"
+  wait_until "turn $turn computes" 300 "((\$(progress) > reported))"
+  reported=$(progress)
   touch "$scratch/before"
   quietly "$@" "$job"
-  wait_until "turn $turn has written a checkpoint" 60 "[ '$scratch/jobs/results/long.h5.checkpoint' -nt '$scratch/before' ]"
+  wait_until "turn $turn has written a checkpoint" 120 "[ '$scratch/jobs/results/long.h5.checkpoint' -nt '$scratch/before' ]"
 }
 
 write_scene "$scratch/small.yml" 0.5 5e-3
@@ -156,12 +160,12 @@ passed "2 ranks of srun have the results of 2 ranks of mpirun"
 cd "$scratch/jobs"
 write_scene long.yml 12 4e-6
 quietly sbatch -n 2 --time=10 "$batch" long.yml
-job=$(grep -o '[0-9]*$' "$log")
+job=$(grep -o '[0-9]*$' "$log") reported=0
 interrupt 1 scontrol requeue
 passed "scontrol requeue: the job ends with a checkpoint"
 interrupt 2 scancel --batch --signal=USR1
 passed "it started again; with the signal before its time limit it ends with a checkpoint"
-wait_until "the job has ended" 300 "[[ \$(state $job JobState) =~ COMPLETED|FAILED|CANCELLED|TIMEOUT ]]"
+wait_until "the job has ended" 900 "[[ \$(state $job JobState) =~ COMPLETED|FAILED|CANCELLED|TIMEOUT ]]"
 [[ $(state "$job" JobState) = COMPLETED && $(state "$job" Restarts) = 2 && ! -e results/long.h5.checkpoint ]] || failed "The job did not reach its end."
 passed "it started again and reached its end"
 quietly srun -n 2 traverse -options_file long.yml -output_file uninterrupted.h5

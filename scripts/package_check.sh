@@ -18,7 +18,13 @@ passed() { printf '%-9s %4d s  %s\n' "$release" "$((SECONDS - began))" "$*"; beg
 quietly() { "$@" >"$log" 2>&1 || { tail -n 40 "$log" >&2; fail "$*"; }; }
 install() { quietly inside "$machine" apt-get install -y "$@"; }
 as_user() { inside "$machine" runuser -u someone -- env -C /home/someone HOME=/home/someone USER=someone "$@"; }
-packages() { (cd "$machine" && ls -d ./"$1"); }
+# install_packages PATTERN: those that the machine has in its root.
+install_packages() {
+  local files
+  files=$(cd "$machine" && compgen -G "./$1") || fail "There is no $1."
+  # shellcheck disable=SC2086  # the list is meant to split
+  install $files
+}
 
 # The tracked files as they are now, beside the build of the last time.
 copy_sources() {
@@ -84,7 +90,7 @@ purge() {
 }
 
 began=0
-quietly mkdir -p "$folder"
+mkdir -p "$folder"
 quietly make_bare "$release" "$folder/bare"
 passed "a bare system"
 copy_sources
@@ -98,23 +104,20 @@ make_machine
 
 start=$SECONDS
 began=$SECONDS
-# shellcheck disable=SC2046  # the list is meant to split
-install $(packages 'first/*.deb')
+install_packages 'first/*.deb'
 passed "all packages installed by apt"
 first_report
 passed "first report; $((SECONDS - start)) s from apt install to it"
 install man-db bash-completion desktop-file-utils cmake g++ make
 use_as_user
 passed "used as an ordinary user"
-# shellcheck disable=SC2046
-install $(packages 'second/*.deb')
+install_packages 'second/*.deb'
 use_as_user Program
 passed "upgraded, and used again"
 purge "$folder/left"
 passed "purged: nothing is left"
 
-# shellcheck disable=SC2046
-install $(packages 'second/traverse_*.deb')
+install_packages 'second/traverse_*.deb'
 first_report
 passed "the program installed alone, without downloads, and its first report"
 purge "$folder/left_again"
