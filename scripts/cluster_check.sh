@@ -154,12 +154,13 @@ passed "moved to another folder: the same, and a report"
 start_slurm
 passed "Slurm $(sinfo --version | cut -d' ' -f2) on $(nproc) processors"
 quietly srun -n 2 traverse -options_file "$scratch/small.yml" -output_file "$scratch/srun.h5"
+grep -q 'ranks: .* of 2' "$log" || failed "The two processes do not know of each other."
 compare "$scratch/one_mpirun.h5" "$scratch/srun.h5"
 passed "2 ranks of srun have the results of 2 ranks of mpirun"
 
 cd "$scratch/jobs"
-write_scene long.yml 12 4e-6
-quietly sbatch -n 2 --time=10 "$batch" long.yml
+write_scene long.yml 6 4e-6
+quietly sbatch -n 2 --time=120 "$batch" long.yml
 job=$(grep -o '[0-9]*$' "$log") reported=0
 interrupt 1 scontrol requeue
 passed "scontrol requeue: the job ends with a checkpoint"
