@@ -18,7 +18,11 @@ scratch=$(mktemp -d) log=$scratch/log began=0
 export SLURM_CONF=$scratch/slurm.conf
 
 stop() {
-  local daemon
+  local daemon end=$((SECONDS + 20))
+  if [ -s "$scratch/slurmctld.pid" ]; then
+    scancel --user="$(id -un)" || true
+    while [ -n "$(squeue --noheader)" ] && ((SECONDS < end)); do sleep 0.2; done
+  fi
   for daemon in slurmctld slurmd; do [ ! -s "$scratch/$daemon.pid" ] || kill "$(<"$scratch/$daemon.pid")" || true; done
   sleep 1
   rm -rf "$scratch"
