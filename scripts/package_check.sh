@@ -26,12 +26,18 @@ install_packages() {
   install $files
 }
 
-# The tracked files as they are now, beside the build of the last time.
+# The tracked files as they are now, beside the build of the last time: what has changed is newer than that.
 copy_sources() {
+  local before=$builder/root/traverse now=$builder/root/traverse.now file
   [ -e "$builder" ] || cp -a "$folder/bare" "$builder"
-  rm -rf "$builder/root/traverse"
-  mkdir -p "$builder/root/traverse"
-  git ls-files -z | tar -c --null -T - | tar -x -C "$builder/root/traverse"
+  rm -rf "$now"
+  mkdir -p "$now"
+  git ls-files -z | tar -c --null -T - | tar -x -C "$now"
+  while IFS= read -r -d '' file; do
+    if cmp -s "$before/$file" "$now/$file"; then touch -r "$before/$file" "$now/$file"; else touch "$now/$file"; fi
+  done < <(git ls-files -z)
+  rm -rf "$before"
+  mv "$now" "$before"
 }
 
 # keep NAME: what was built, in the folder NAME.
