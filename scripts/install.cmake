@@ -1,10 +1,9 @@
-# What `cmake --install` puts where, in two components: the program with its scripts, scenes and documents, and what a
-# program that embeds its library needs, find_package(Traverse) or pkg-config (examples/embed, examples/simulate). And the Debian packages of
-# both, which scripts/package.sh makes.
+# What `cmake --install` puts where: the program with its scripts, scenes and documents, and what a program that embeds its
+# library needs, find_package(Traverse) or pkg-config (examples/embed, examples/simulate). packaging/debian distributes it.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(share ${CMAKE_INSTALL_DATADIR}/traverse)  # where the program looks for scenes that are not in the working directory
-set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME traverse)
+set(examples ${CMAKE_INSTALL_DOCDIR}/examples)
 
 install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
 install(PROGRAMS scripts/traverse-check scripts/traverse-fault scripts/traverse-report scripts/traverse-serve
@@ -22,8 +21,7 @@ install(FILES ${several} scripts/animate.py scripts/axle_tables.py scripts/comfo
         DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
 install(FILES packaging/traverse.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
-install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
-install(FILES examples/three_span_train.py examples/bridge.yml DESTINATION ${share}/examples)
+install(DIRECTORY examples/ packaging/slurm DESTINATION ${examples})
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -65,10 +63,8 @@ traverse_install_words(man ${CMAKE_INSTALL_MANDIR}/man1 traverse.1)
 traverse_install_words(bash ${CMAKE_INSTALL_DATADIR}/bash-completion/completions traverse)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/traverse)
-set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 install(TARGETS traverse_core traverse_mechanics EXPORT traverse ARCHIVE)
 install(DIRECTORY include/traverse DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY examples/embed examples/simulate DESTINATION ${share}/examples)
 install(EXPORT traverse NAMESPACE traverse:: DESTINATION ${package_folder} FILE traverse-targets.cmake)
 # Names in small letters, which find_package(Traverse) and find_package(traverse) look for alike.
 write_basic_package_version_file(traverse-config-version.cmake COMPATIBILITY SameMinorVersion)
@@ -83,26 +79,3 @@ endif()
 file(RELATIVE_PATH to_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)  # so that what is installed may be moved
 configure_file(scripts/traverse.pc.in traverse.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/traverse.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-
-set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_CONTACT "Traverse developers")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "how trains, lorries and mechanisms cross flexible beams")
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_STRIP_FILES ON)
-set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL traverse development)
-set(CPACK_COMPONENT_TRAVERSE_DESCRIPTION "${PROJECT_DESCRIPTION}: deflections, accelerations and moments of bridges,
- forces of wheels and joints, resonance over speeds, checks of EN 1991-2.")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Libraries and headers for programs that run scenes of Traverse themselves.")
-cmake_host_system_information(RESULT system QUERY DISTRIB_INFO)
-set(CPACK_DEBIAN_PACKAGE_RELEASE 1+${system_ID}${system_VERSION_ID})
-set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_TRAVERSE_PACKAGE_NAME traverse)
-set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_TRAVERSE_PACKAGE_RECOMMENDS "openmpi-bin, libjs-chart.js, python3-h5py, python3-matplotlib, python3-openpyxl, python3-scipy, python3-xarray, python3-yaml")
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtraverse-dev)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libpetsc-real-dev, libslepc-real-dev, libopenmpi-dev, libhdf5-openmpi-dev, libeigen3-dev, libyaml-cpp-dev, libfmt-dev, pkg-config")
-include(CPack)

@@ -12,6 +12,8 @@ program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-re
   python3-openpyxl python3-scipy python3-xarray python3-yaml)
 test_packages=(ccache chromium libgtest-dev python3-h5netcdf python3-netcdf4)
 document_packages=(libjs-katex python3-myst-parser python3-sphinx)
+packaging_packages=(build-essential debhelper dh-python patchelf)
+cluster_packages=(environment-modules openmpi-bin slurm-client slurmctld slurmd)
 benchmark_packages=(libbenchmark-dev)
 other_programs=(calculix-ccx python3-dolfinx)  # that benchmarks compare with; not every distribution has all of them
 check_packages=(clang-format clang-tidy)

@@ -38,7 +38,7 @@ def shared_library():
     beside_program = pathlib.Path(named).parent / "libtraverse.so" if named else None
     if beside_program is not None and beside_program.is_file():
         return str(beside_program)
-    found = _beside_package("build/libtraverse.so", "lib/*/libtraverse.so", "lib/libtraverse.so")
+    found = _beside_package("build/libtraverse.so", "lib/*/libtraverse.so*", "lib/libtraverse.so*")
     return str(found) if found else "libtraverse.so"  # in the library path of the system
 
 

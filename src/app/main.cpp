@@ -36,11 +36,11 @@ namespace {
 // The system calls the functions of this section before it initialises the libraries.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = traverse::run::store_ignored_signals;
 
-/// Whether this is the first rank. Open MPI's mpirun passes the rank's number in the environment, before MPI_Init.
+/// Whether this is the first rank, before and after MPI too.
 bool first_rank() {
   int started = 0, ended = 0;
   static int rank = [] {  // stored, because MPI does not return it after MPI_Finalize
-    const char* told = std::getenv("OMPI_COMM_WORLD_RANK");
+    const char* told = traverse::app::rank_of_launcher();
     return told == nullptr ? 0 : std::atoi(told);
   }();
   MPI_Initialized(&started);

@@ -42,11 +42,16 @@ const OpenBlas& openblas() {
 
 }  // namespace
 
-// Without mpirun the initialisation of Open MPI needs 0.3 s, unless it is set to a single process; programs that start
-// at the same time would compete for its session folder. The search for displays as accelerators is disabled too.
+const char* rank_of_launcher() {
+  const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
+  return rank != nullptr ? rank : std::getenv("PMIX_RANK");
+}
+
+// Without a launcher the initialisation of Open MPI needs 0.3 s, unless it is set to a single process; programs that
+// start at the same time would compete for its session folder. The search for displays as accelerators is disabled too.
 void start_lightly() {
   setenv("HWLOC_COMPONENTS", "-gl,-opencl", 0);
-  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) return;
+  if (rank_of_launcher() != nullptr) return;
   setenv(no_session_folder, "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);
   setenv("OMPI_MCA_btl", "self", 1);  // without shared memory

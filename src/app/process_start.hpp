@@ -5,6 +5,10 @@
 
 namespace traverse::app {
 
+/// The number of this process among those of its launcher, which the launcher tells in the environment: Open MPI's
+/// mpirun, or another one that speaks PMIx, as Slurm's srun. Null: started without a launcher, as a single process.
+const char* rank_of_launcher();
+
 /// Call before MPI_Init. Sets the variables that are not set in the environment.
 void start_lightly();
 

@@ -51,6 +51,20 @@ classic options files of PETSc and from the command line; later options override
 track from the bridge's left end, y upward. In lists value*count repeats.
 .PP
 Results go to an HDF5 file; the terminal shows what was modelled, progress and a summary.
+.SH COMMANDS
+Each lists its words after \-h.
+.TP
+.B traverse check
+checks a railway bridge by EN 1991-2 and writes a report.
+.TP
+.B traverse fault
+packs a scene, versions and results without private names, to report a fault.
+.TP
+.B traverse serve
+offers forms and results as a page on this machine.
+.TP
+.B traverse\-report
+writes a report of results files.
 .SH OPTIONS
 )troff";
 
@@ -69,6 +83,7 @@ traverse \-options_file options/scenes/three_span_train.yml
 traverse \-options_file options/scenes/three_span_train.yml \-train_speed 70 \-describe
 traverse \-help beam
 traverse\-report results/three_span_train.h5
+traverse check \-\-span 28 m \-\-EI 260 GN.m2 \-\-mass 19 t/m \-\-type prestressed \-\-line\-speed 250 km/h
 .fi
 )troff";
 

@@ -1,5 +1,5 @@
-"""The example job for Slurm, with stand-ins for srun, scontrol and the program: it goes back into the queue when its time
-is nearly up, continues from what is there, and ends with the status of the run."""
+"""The example job for Slurm, with stand-ins for srun, scancel, scontrol and the program: it goes back into the queue when its
+time is nearly up, continues from the checkpoint, and ends with the status of the run. scripts/cluster_check.sh has Slurm."""
 
 import os
 import pathlib
@@ -22,7 +22,8 @@ class Job(unittest.TestCase):
     def setUp(self):
         self.scratch = tempfile.TemporaryDirectory()
         self.folder = pathlib.Path(self.scratch.name)
-        for name, text in (("srun", '#!/usr/bin/env bash\nexec "$@"\n'), ("traverse", PROGRAM),
+        for name, text in (("srun", '#!/usr/bin/env bash\n"$@" &\necho $! >task\nwait $!\n'), ("traverse", PROGRAM),
+                           ("scancel", '#!/usr/bin/env bash\n[ "$*" = "--signal=TERM 7" ] && kill "$(<task)"\n'),
                            ("scontrol", '#!/usr/bin/env bash\necho scontrol "$@" >>words\n')):
             (self.folder / name).write_text(text, encoding="utf-8")
             (self.folder / name).chmod(0o755)
@@ -54,9 +55,9 @@ class Job(unittest.TestCase):
         self.assertEqual(job.wait(), 143)
         self.assertEqual(self.words()[1:], ["checkpoint", "scontrol requeue 7"])
         (self.folder / "results").mkdir()
-        (self.folder / "results/bridge.h5").touch()
+        (self.folder / "results/bridge.h5.checkpoint").touch()
         self.assertEqual(self.start(SLURM_RESTART_COUNT="1").wait(), 0)
-        self.assertEqual(self.words()[-1], "-restart results/bridge.h5")
+        self.assertEqual(self.words()[-1], self.words()[0] + " -restart results/bridge.h5.checkpoint")
 
 
 if __name__ == "__main__":
