@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "norm/en1991.hpp"
 
@@ -17,8 +18,8 @@ constexpr double min_static_share = 0.25;  // relative to the greatest static ef
 }  // namespace
 
 NormCheck::NormCheck(const beam::BeamModel& model, const options::NormRules& rules, std::vector<LoadModel> trains,
-                     const std::vector<double>& probes, const std::vector<double>& eccentricities)
-    : eccentricities_(eccentricities),
+                     const std::vector<double>& probes, std::vector<double> eccentricities)
+    : eccentricities_(std::move(eccentricities)),
       rules_(rules),
       lengths_(determinant_lengths(model)),
       trains_(trains.size()),

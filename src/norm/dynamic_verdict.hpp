@@ -35,7 +35,7 @@ class NormCheck {
   /// eccentricities: of each probe, m; those of other tracks than that of the trains are not compared. Empty: all are
   /// on it.
   NormCheck(const beam::BeamModel& model, const options::NormRules& rules, std::vector<LoadModel> trains,
-            const std::vector<double>& probes, const std::vector<double>& eccentricities = {});
+            const std::vector<double>& probes, std::vector<double> eccentricities = {});
 
   /// Compares trains with computed runs by 6.4.6.5. Values of incomplete runs are NaN.
   void compare(const ComputedPeaks& computed);
