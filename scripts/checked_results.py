@@ -21,12 +21,12 @@ WHOLE, DAMAGED, ELSEWHERE = 0, 10, 11  # exit status of the process
 
 
 def own_version():
-    """The version that cmake --install has put beside this file, otherwise that of the checkout."""
-    here = pathlib.Path(__file__).resolve().parent
-    if (here / "version.txt").is_file():
-        return (here / "version.txt").read_text(encoding="utf-8").strip()
-    lists = (here.parent / "CMakeLists.txt").read_text(encoding="utf-8")
-    return re.search(r"^project\(traverse VERSION ([\d.]+)", lists, re.MULTILINE)[1]
+    """The version that cmake --install has put beside this file, otherwise that of the checkout around it."""
+    here = pathlib.Path(__file__).resolve()
+    if here.with_name("version.txt").is_file():
+        return here.with_name("version.txt").read_text(encoding="utf-8").strip()
+    lists = next(path for path in (folder / "CMakeLists.txt" for folder in here.parents) if path.is_file())
+    return re.search(r"^project\(traverse VERSION ([\d.]+)", lists.read_text(encoding="utf-8"), re.MULTILINE)[1]
 
 
 VERSION = own_version()
