@@ -18,6 +18,7 @@
 #include <optional>
 #include <utility>
 
+#include "results/stage.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results {
@@ -122,7 +123,9 @@ std::string isolated_bytes(const std::string& path, const std::function<void(bas
   const double size = size_of(path);
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) throw FileError(path + ": no pipe to read it through");
+  std::unique_lock lock = Heartbeat::asleep();
   const pid_t child = ::fork();
+  lock.unlock();
   if (child == 0) {
     ::close(ends[0]);
     confine(size);

@@ -22,6 +22,7 @@ constexpr double longest_interval = 50.0;                 // s, longest interval
 constexpr double share = 0.2;                             // interval between lines, relative to the time so far
 constexpr double silent_start = 2.0, redraw_every = 1.0;  // s, on a terminal
 
+std::mutex awake;  // held by the thread of a heartbeat unless it sleeps
 std::atomic<const char*> outermost{idle}, innermost{idle};
 std::atomic<double> done{0.0};
 std::atomic<long> line_count{0};
@@ -71,12 +72,14 @@ Heartbeat::Heartbeat(bool quiet, double first) : first_(first), terminal_(isatty
   pthread_sigmask(SIG_SETMASK, &all, &before);
   thread_ = std::thread([this] { print_progress(); });
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  std::unique_lock lock(awake);
+  wake_.wait(lock, [this] { return started_; });
 }
 
 Heartbeat::~Heartbeat() {
   if (!thread_.joinable()) return;
   {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(awake);
     ending_ = true;
   }
   wake_.notify_one();
@@ -87,9 +90,13 @@ void Heartbeat::shown() { last_shown = ticks(); }
 
 long Heartbeat::lines() { return line_count; }
 
+std::unique_lock<std::mutex> Heartbeat::asleep() { return std::unique_lock(awake); }
+
 void Heartbeat::print_progress() {
   bool drawn = false;  // a line on the terminal must be rewritten
-  std::unique_lock lock(mutex_);
+  std::unique_lock lock(awake);
+  started_ = true;
+  wake_.notify_one();
   const auto check_interval = std::chrono::duration<double>(0.1 * std::min(first_, 2.0));
   while (!wake_.wait_for(lock, check_interval, [this] { return ending_; })) {
     const double elapsed = since(start_time);

@@ -38,14 +38,16 @@ class Heartbeat {
   /// Reports that something else has been printed.
   static void shown();
   static long lines();  // lines printed by all heartbeats
+  /// Keeps the threads of all heartbeats asleep. A process that is forked meanwhile inherits no lock that they hold,
+  /// such as one of the allocator.
+  static std::unique_lock<std::mutex> asleep();
 
  private:
   void print_progress();
 
   double first_;
   bool terminal_;
-  bool ending_ = false;
-  std::mutex mutex_;
+  bool started_ = false, ending_ = false;
   std::condition_variable wake_;
   std::thread thread_;
 };
