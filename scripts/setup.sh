@@ -66,14 +66,14 @@ install_packages() {
   } >"$setup_log" 2>&1 </dev/null || fail "Packages could not be installed."
 }
 
-# Installs those of the packages that the distribution has.
+# Installs those of the packages that the distribution has. Nothing else needs them: what does is skipped without them.
 install_offered() {
   local name offered=()
   command -v apt-cache >/dev/null || return 0
   for name in "$@"; do
     ! apt-cache show "$name" >/dev/null 2>&1 || offered+=("$name")
   done
-  [ ${#offered[@]} = 0 ] || install_packages "${offered[@]}"
+  [ ${#offered[@]} = 0 ] || (install_packages "${offered[@]}") || echo "It goes on without them." >&2
 }
 
 # Whether build/ is configured for this very folder with all the given options of CMake, each as -DNAME=VALUE.
