@@ -32,10 +32,9 @@ TEST(SpansApart, AllSteppedOrOnlyThoseThatMove) {
 }
 
 TEST(SpansApart, ThatTwist) {
-  const Values twisting = viaduct + Values{{"ts_dt", "2e-2"},
-                                           {"beam_GJ", "1e11"},
-                                           {"beam_polar_inertia", "3e5"},
-                                           {"track_eccentricity", "2.3"}};
+  const Values twisting =
+      viaduct +
+      Values{{"ts_dt", "2e-2"}, {"beam_GJ", "1e11"}, {"beam_polar_inertia", "3e5"}, {"track_eccentricity", "2.3"}};
   Results moving = run_scene("danyang_kunshan", twisting);
   Results all = run_scene("danyang_kunshan", twisting + Values{{"model_window", "0"}});
   EXPECT_LT(largest_difference(moving, all), 1e-9);
