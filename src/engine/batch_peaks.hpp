@@ -41,12 +41,13 @@ void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection, Row& m
     if (!Rows::any(inside_element)) continue;
     const Row lever =
         rows(train.normal)[i] * (rows(train.normal_along)[i] + rows(train.normal_up)[i] * rows(train.turn)[i]);
-    const Row load[3] = {inside_element ? -force : Row{}, inside_element ? train.surface_height * lever : Row{},
-                         beside ? row(t.beam->lever) * (inside_element ? -force : Row{}) : Row{}};
+    const Row load[] = {inside_element ? -force : Row{}, inside_element ? train.surface_height * lever : Row{},
+                        beside ? row(t.beam->lever) * (inside_element ? -force : Row{}) : Row{}};
     const Row xi = (x - p.from) / length;
     const RowMask left = x < p.x;
-    for (int kind = 0; kind < 3; ++kind) {
-      if (kind == 1 ? train.surface_height == 0.0 : kind == 2 && !beside) continue;
+    const bool acts[] = {true, train.surface_height != 0.0, beside};
+    for (int kind = 0; kind < ProbeForms::kinds; ++kind) {
+      if (!acts[kind]) continue;
       const auto by = [&](int response) {
         Row on_left{}, on_right{};
         const Entry* of_left = entries<Entry>(p.inside) + (2 * kind + response) * ProbeForms::powers;

@@ -229,20 +229,22 @@ void BatchStructure::find_inner_responses(const recovery::Recovery& recovery, st
   p.x = recovery.stations()[station];
   std::tie(p.from, p.to) = recovery.element_of(station);
   const double xi = (p.x - p.from) / (p.to - p.from);
-  constexpr int n = ProbeForms::powers, kinds = 3;
+  constexpr int n = ProbeForms::powers, kinds = ProbeForms::kinds;
+  constexpr double recovery::ElementLoad::*loads[] = {&recovery::ElementLoad::fy, &recovery::ElementLoad::moment,
+                                                      &recovery::ElementLoad::torque};
   for (int side = 0; side < 2; ++side) {
     const double from = side == 0 ? 0.0 : xi, to = side == 0 ? xi : 1.0;
     if (to - from < 1e-6) continue;
     Eigen::Matrix<double, n, n> powers;
-    Eigen::Matrix<double, n, 2 * kinds> values;
+    Eigen::Matrix<double, n, 2 * kinds> values = Eigen::Matrix<double, n, 2 * kinds>::Zero();
     for (int i = 0; i < n; ++i) {
       const double at = from + (to - from) * (i + 0.5) / n;
       for (int k = 0; k < n; ++k) powers(i, k) = std::pow(at, k);
-      for (int kind = 0; kind < kinds; ++kind) {
+      for (int kind = 0; kind < (line_.model.torsion ? kinds : 2); ++kind) {  // a torque needs a beam that twists
         recovery::ElementLoad load;
         load.element = element;
         load.xi = at;
-        (kind == 0 ? load.fy : kind == 1 ? load.moment : load.torque) = kind < 2 || line_.model.torsion ? 1.0 : 0.0;
+        load.*loads[kind] = 1.0;
         const recovery::Response r = recovery.inside_response(station, load);
         values(i, 2 * kind) = r.deflection;
         values(i, 2 * kind + 1) = r.moment;

@@ -79,8 +79,8 @@ struct BeamTask {
   // at the nodes of each element, `values` rows from track_row on in v_stage, and load the same rows of work.
   const double* lever = nullptr;
   int track_row = 0, values = 0;
-  int place[most_nodal] = {},
-      twist[4] = {};  // unknowns of an element from its first column on: beam; twist, with rates
+  int place[most_nodal] = {};                 // the element's unknowns, counted from its first column
+  int twist[4] = {};                          // likewise those of its twist: twist and rate of both nodes
   int *touched = nullptr, touched_count = 0;  // the elements under wheels
 };
 
@@ -106,7 +106,7 @@ struct ProbeForms {
   double from = 1.0, to = 0.0, x = 0.0;  // m: ends of the element, if wheels run on it; station
   /// The contributions of a force or a moment at xi of the element, left and right of the station, to deflection and
   /// moment: coefficients of the powers of xi, [side][force, moment, torque][deflection, moment][power].
-  static constexpr int powers = 6, inner = 12 * powers;
+  static constexpr int powers = 6, kinds = 3, inner = 2 * kinds * 2 * powers;
   const double* inside = nullptr;
 };
 
