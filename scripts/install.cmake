@@ -4,6 +4,11 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(share ${CMAKE_INSTALL_DATADIR}/traverse)  # where the program looks for scenes that are not in the working directory
 set(examples ${CMAKE_INSTALL_DOCDIR}/examples)
+foreach(part IN ITEMS BIN LIB)
+  file(RELATIVE_PATH ${part} ${CMAKE_INSTALL_FULL_${part}DIR} ${CMAKE_INSTALL_FULL_DATADIR}/traverse)
+endforeach()
+set_source_files_properties(src/options/installed.cpp PROPERTIES COMPILE_DEFINITIONS
+  "DATA_FROM_PROGRAM=\"${BIN}\";DATA_FROM_LIBRARY=\"${LIB}\";DATA=\"${CMAKE_INSTALL_FULL_DATADIR}/traverse\"")
 
 install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
 install(PROGRAMS scripts/traverse-check scripts/traverse-fault scripts/traverse-report scripts/traverse-serve

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the Debian packages on a bare Debian, installs them on another one, which has no sources, uses them there as an
-# ordinary user (tests/packages/as_user.py), upgrades and removes them. One line for each check; the first failure ends it.
+# ordinary user (tests/packages/as_user.py), removes them, and installs them over the packages of the version before, which are
+# built from its last commit. One line for each check; the first failure ends it.
 #   scripts/package_check.sh [RELEASE [FOLDER]]      as root; RELEASE: bookworm, trixie (default: that of this machine)
 # FOLDER (default: /var/tmp/traverse-RELEASE) keeps the bare system, the build and the packages; the next call is faster.
 set -euo pipefail
@@ -40,30 +41,28 @@ copy_sources() {
   mv "$now" "$before"
 }
 
-# keep NAME: what was built, in the folder NAME.
-keep() {
-  rm -rf "${folder:?}/$1"
-  mkdir "$folder/$1"
-  mv "$builder"/root/package/*.deb "$folder/$1"
-}
-
+# build_packages SOURCES NAME: the packages of these sources of the builder, in the folder NAME.
 build_packages() {
   quietly inside "$builder" env CMAKE_BUILD_PARALLEL_LEVEL="${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}" \
-    /root/traverse/scripts/package.sh /root/package
-  keep first
-  mv "$builder"/root/package/traverse-*.tar.xz "$folder"
+    "/root/$1/scripts/package.sh" "/root/$2"
+  rm -rf "${folder:?}/$2"
+  mkdir "$folder/$2"
+  mv "$builder/root/$2"/*.deb "$folder/$2"
 }
 
-build_higher_version() {
-  quietly inside "$builder" env REVISION=2 /root/traverse/packaging/debian/pack.sh /root/package/build /root/package
-  keep second
+build_version_before() {
+  local commit
+  [ ! -e "$folder/before" ] || return 0
+  commit=$(git log -1 --format=%H -G'^project\(traverse VERSION' -- CMakeLists.txt)
+  git archive --prefix=traverse-before/ "$commit^" | tar -x -C "$builder/root"
+  build_packages traverse-before before
 }
 
 check_by_lintian() {
   quietly inside "$builder" apt-get install -y lintian
-  rm -rf "$builder/root/first"
-  cp -r "$folder/first" "$builder/root/first"
-  quietly inside "$builder" bash -c 'lintian --allow-root --fail-on error --display-level ">=warning" /root/first/*.deb'
+  cp -r "$folder/package" "$builder/root/checked"
+  quietly inside "$builder" bash -c 'lintian --allow-root --fail-on error --display-level ">=warning" /root/checked/*.deb'
+  rm -r "$builder/root/checked"
   cp "$log" "$folder/lintian"
 }
 
@@ -71,7 +70,7 @@ check_by_lintian() {
 make_machine() {
   rm -rf --one-file-system "$machine"
   cp -a "$folder/bare" "$machine"
-  cp -r "$folder/first" "$folder/second" tests/packages/as_user.py "$machine/"
+  cp -r "$folder/package" "$folder/before" tests/packages/as_user.py "$machine/"
   quietly inside "$machine" useradd --create-home someone
 }
 
@@ -81,7 +80,7 @@ first_report() {
   rm -r "$machine/home/someone/results"
 }
 
-use_as_user() { as_user /usr/bin/python3 -B /as_user.py "$@" || fail "as an ordinary user"; }
+use_as_user() { as_user /usr/bin/python3 -B /as_user.py || fail "as an ordinary user"; }
 
 # Removes all packages of Traverse, after which no file of theirs may be left; lists what else there is.
 purge() {
@@ -90,7 +89,7 @@ purge() {
   # shellcheck disable=SC2086  # the list is meant to split
   quietly inside "$machine" apt-get purge -y $names
   ! inside "$machine" dpkg-query -W '*traverse*' >"$log" 2>/dev/null || fail "A package is left."
-  (cd "$machine" && find . -xdev \( -path ./proc -o -path ./home -o -path ./first -o -path ./second -o -path ./var/cache -o \
+  (cd "$machine" && find . -xdev \( -path ./proc -o -path ./home -o -path ./package -o -path ./before -o -path ./var/cache -o \
     -path ./var/log \) -prune -o -print | sort) >"$1"
   # Boost and SymPy have files of this name, too, in folders of their own.
   ! grep -E '^\./(etc|var/lib|usr/(s?bin|include|share|share/doc|lib|lib/python3/dist-packages|lib/[^/]*))/(python3-|lib)?traverse' \
@@ -102,32 +101,40 @@ mkdir -p "$folder"
 quietly make_bare "$release" "$folder/bare"
 passed "a bare system"
 copy_sources
-build_packages
-passed "packages built: $(cd "$folder/first" && ls -- *.deb | tr '\n' ' ')"
+build_packages traverse package
+mv "$builder"/root/package/traverse-*.tar.xz "$folder"
+passed "packages built: $(cd "$folder/package" && ls -- *.deb | tr '\n' ' ')"
 check_by_lintian
 passed "no error by lintian, $(grep -c '^W:' "$folder/lintian" || true) warnings"
-build_higher_version
-passed "packages of a higher version built"
+build_version_before
+passed "packages of the version before built: $(cd "$folder/before" && ls -- *.deb | tr '\n' ' ')"
 make_machine
 
 start=$SECONDS
 began=$SECONDS
-install_packages 'first/*.deb'
+install_packages 'package/*.deb'
 passed "all packages installed by apt"
 first_report
 passed "first report; $((SECONDS - start)) s from apt install to it"
 install man-db bash-completion desktop-file-utils cmake g++ make
 use_as_user
 passed "used as an ordinary user"
-install_packages 'second/*.deb'
-use_as_user Program
-passed "upgraded, and used again"
 purge "$folder/left"
 passed "purged: nothing is left"
 
-install_packages 'second/traverse_*.deb'
+install_packages 'package/traverse_*.deb'
 first_report
 passed "the program installed alone, without downloads, and its first report"
 purge "$folder/left_again"
 diff "$folder/left" "$folder/left_again" || fail "Files differ after a purge."
 passed "purged again: all files are as after the first purge"
+
+install_packages 'before/*.deb'
+first_report
+passed "the version before installed, and its first report"
+install_packages 'package/*.deb'
+use_as_user
+passed "installed over the version before, and used as an ordinary user"
+purge "$folder/left_again"
+diff "$folder/left" "$folder/left_again" || fail "Files differ after a purge."
+passed "purged: all files are as after the first purge"

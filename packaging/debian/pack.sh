@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the Debian packages of what is built: packaging/debian/pack.sh BUILD FOLDER
-# That of the documents only if scripts/site.sh has made BUILD/site. REVISION (default: 1) counts packages of one version.
+# That of the documents only if scripts/site.sh has made BUILD/site.
 set -euo pipefail
 BUILD=$(realpath "$1") folder=$(realpath -m "$2")
 cd -P "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -19,8 +19,8 @@ write_debian_folder() {
   mv "$1/libtraverse.install" "$1/libtraverse${version%%.*}.install"
   sed -i "s/@soversion@/${version%%.*}/; s/@maintainer@/$maintainer/" "$1/control"
   sed -i -e '/@license@/{r /dev/stdin' -e 'd}' "$1/copyright" < <(sed -e '1,/^Copyright/d' -e 's/^$/./; s/^/ /' LICENSE)
-  printf 'traverse (%s-%s+%s) unstable; urgency=medium\n\n  * changelog.gz lists what a user notices.\n\n -- %s  %s\n' \
-    "$version" "${REVISION:-1}" "$system" "$maintainer" "$(date -R -r CHANGELOG.md)" >"$1/changelog"
+  printf 'traverse (%s-1+%s) unstable; urgency=medium\n\n  * changelog.gz lists what a user notices.\n\n -- %s  %s\n' \
+    "$version" "$system" "$maintainer" "$(date -R -r CHANGELOG.md)" >"$1/changelog"
 }
 
 write_debian_folder "$folder/package/debian"

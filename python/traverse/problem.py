@@ -24,7 +24,7 @@ class Problem:
 
     def __init__(self, scene=None, *, folder=None, **options):
         self.folder = os.path.abspath(folder or ".")
-        self.file = None if scene is None or isinstance(scene, dict) else os.path.join(self.folder, os.fspath(scene))
+        self.file = None if scene is None or isinstance(scene, dict) else os.fspath(scene)
         self.tables = {}
         self.options = self._flat(scene if isinstance(scene, dict) else {}) | self._flat(options)
 

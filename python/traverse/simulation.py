@@ -33,7 +33,7 @@ def simulate(problems, observers=(), *, ranks=1, progress=None):
     observers: functions of a `Passage`, called at t = 0 and at each sample (output_interval); they may read it and set
         forces. A function that returns False ends the run. Then problems are computed one after another, their vehicles
         as mechanisms.
-    ranks: processes that share the runs; the results are the same. Under mpirun, all processes call `simulate` and
+    ranks: processes that share the runs; the results are the same. Under mpirun or srun, all processes call `simulate` and
         share the runs, with the default.
     progress: a function of the share that is done (0 to 1), called about twenty times a second; False ends the runs.
 
@@ -86,7 +86,7 @@ def _together(problems, progress):
         handles = [stack.enter_context(problem.handle()) for problem in problems]
         made = ctypes.c_void_p()
         status = library().traverse_simulate(len(handles), (ctypes.c_void_p * len(handles))(*handles),
-                                             int(_under_mpirun()), go_on, None, ctypes.byref(made))
+                                             int(_has_launcher()), go_on, None, ctypes.byref(made))
         results = results_of(made) if made else None
     if raised:
         raise raised[0]
@@ -115,8 +115,9 @@ def _deferred_interrupts():
         before(*interrupts[0])
 
 
-def _under_mpirun():
-    return int(os.environ.get("OMPI_COMM_WORLD_SIZE", "1")) > 1
+def _has_launcher():
+    """Whether mpirun, or another launcher that speaks PMIx, as Slurm's srun, has started this process."""
+    return "OMPI_COMM_WORLD_RANK" in os.environ or "PMIX_RANK" in os.environ
 
 
 def _observed(problem, functions):

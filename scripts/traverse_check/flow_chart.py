@@ -76,13 +76,13 @@ def torsion_steps(part, line):
     if line.torsional_wave_speed is not None:
         of_torsion = line.torsional_wave_speed / (2.0 * part.length)
     if of_torsion is None:
-        return [(clause("torsion"), t("nT > {factor} n0 cannot be decided without --torsional-frequency, or --GJ and "
-                                      "--polar-inertia: dynamic analysis; if it is not satisfied, it must include "
-                                      "torsion, which the runs here do not", factor=factor))]
+        return [(clause("torsion"), t("nT > {factor} n0 cannot be decided without a torsional frequency, or GJ and a "
+                                      "polar inertia: dynamic analysis; if it is not satisfied, with torsion, which runs "
+                                      "with an eccentricity of the track include", factor=factor))]
     frequency = num(of_torsion)
     if of_torsion <= value * part.n0:
         return [(clause("torsion"), t("nT = {frequency} Hz is not above {factor} n0 = {bound} Hz: dynamic analysis "
-                                      "with torsion, which the runs here do not include", frequency=frequency,
+                                      "with torsion, which runs with an eccentricity of the track include", frequency=frequency,
                                       factor=factor, bound=bound))]
     return [(clause("torsion"), t("nT = {frequency} Hz is above {factor} n0 = {bound} Hz: bending modes are sufficient",
                                   frequency=frequency, factor=factor, bound=bound)),

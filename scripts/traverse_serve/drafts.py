@@ -10,7 +10,7 @@ import h5py
 from picture_data import Results
 from traverse_check import flow_chart, question, runs, scene, units
 from traverse_check import main as checking
-from traverse_check.rules import CheckError
+from traverse_check.rules import MARKS, CheckError
 from traverse_page import stage
 from traverse_report.language import capital, num, t
 
@@ -122,6 +122,10 @@ class Drafts:
             needed |= found.needed
             for clause, sentence in found.steps:
                 answer["facts"].append([clause, sentence])
+        if any(clause.endswith(MARKS) for clause, _ in answer["facts"]):
+            answer["facts"].append([" ".join(MARKS), t("{one}: one public source confirms the number of the clause; {none}: no "
+                                                       "public source confirms it. Such numbers must be checked with the "
+                                                       "norm.", one=MARKS[1], none=MARKS[0])])
         first, last, _ = scene.speeds(asked)
         speeds = [num(value * 3.6, ".4g") for value in (first, last)] if needed or asked.always else None
         answer["facts"].insert(0, [capital(t("need for a dynamic analysis")), t("yes: {first} to {last} km/h", first=speeds[0],

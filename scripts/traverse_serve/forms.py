@@ -92,7 +92,7 @@ def check():
                         flag("complex", "no simple structure: skew, flexible supports, torsion", more=True),
                         Field("torsional-frequency", "first natural frequency of torsion", "", ("Hz",), optional=True,
                               more=True),
-                        Field("GJ", "torsional stiffness GJ", "", EI, optional=True, more=True, hint="instead of it"),
+                        Field("GJ", "torsional stiffness GJ", "", EI, optional=True, more=True, hint="instead of this frequency"),
                         Field("polar-inertia", "polar moment of inertia per length", "", ("t m", "kg m"), optional=True,
                               more=True, hint="with GJ"),
                         Field("eccentricity", "track beside the axis", "", ("m",), optional=True, more=True,

@@ -3,7 +3,6 @@
 #include "options/read_file.hpp"
 
 #include <fmt/format.h>
-#include <sys/auxv.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 
 #include "base/text.hpp"
 #include "options/input_texts.hpp"
+#include "options/installed.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/table.hpp"
 
@@ -340,11 +340,7 @@ std::string find_file(const std::string& path, const std::string& named_in) {
     if (std::filesystem::exists(beside, ignored)) return beside.string();
   }
   if (std::filesystem::exists(path, ignored)) return path;
-  const auto* started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));  // NOLINT: an address, by its definition
-  if (started == nullptr) return "";
-  const std::filesystem::path program = std::filesystem::canonical(started, ignored);
-  const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "traverse" / path;
-  return std::filesystem::exists(installed, ignored) ? installed.string() : "";
+  return installed_path(path);
 }
 
 std::vector<Entry> read_options_file(const std::string& path) {

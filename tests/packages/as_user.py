@@ -126,10 +126,6 @@ class Page(Installed):
 
 
 class Libraries(Installed):
-    def find_scenes_in_working_folder(self):
-        """The examples name files as options/...; programs that are not installed beside these find them from there."""
-        (self.folder / "options").symlink_to("/usr/share/traverse/options")
-
     def test_the_python_module(self):
         said = self.succeed("/usr/bin/python3", "-W", "ignore", "-c", """
 import traverse
@@ -140,7 +136,6 @@ with traverse.Passage("scene.yml") as passage:
         self.assertEqual(said, "/usr/lib/python3/dist-packages/traverse/__init__.py 0.0\n")
 
     def test_programs_by_cmake(self):
-        self.find_scenes_in_working_folder()
         self.succeed("cmake", "-S", DOCUMENTS / "examples/simulate", "-B", "build")
         self.succeed("cmake", "--build", "build", "--target", "bridge_and_train")
         self.assertEqual(len(self.succeed(self.folder / "build/bridge_and_train").splitlines()), 4)
@@ -168,7 +163,6 @@ int main(void) {
         self.assertEqual(self.succeed(self.folder / "steps"), "0.500\n")
 
     def test_an_example_in_python(self):
-        self.find_scenes_in_working_folder()
         self.succeed("/usr/bin/python3", DOCUMENTS / "examples/three_span_train.py", self.folder)
         self.assertTrue(list(self.folder.glob("python_*.png")))
 

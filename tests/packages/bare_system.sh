@@ -8,6 +8,7 @@ make_bare() {
   [ ! -e "$2/bare" ] || return 0
   mirror=$(apt-get indextargets --format '$(REPO_URI)' | grep -v security | grep debian | head -n 1 || true)
   [ -n "$mirror" ] || { echo "apt knows no package source; run apt-get update first" >&2; return 1; }
+  command -v debootstrap >/dev/null || apt-get install -y debootstrap || return 1
   { [ -e "$2/etc/debian_version" ] && [ ! -e "$2/debootstrap" ]; } || debootstrap --variant=minbase "$1" "$2" "$mirror" &&
     cp /etc/resolv.conf "$2/etc/" &&
     { apt-config dump | grep '^Acquire::\(http\|https\|Check\)' >"$2/etc/apt/apt.conf.d/20acquire" || true; } &&

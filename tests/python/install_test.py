@@ -133,13 +133,14 @@ class Install(unittest.TestCase):
         elsewhere.mkdir()
         code = ("import traverse\nresults = traverse.run('scene.yml')\n"
                 "with traverse.Passage('scene.yml') as passage:\n    passage.advance(passage.end)\n"
-                "    print(traverse.__file__, abs(passage.read('deflection') - results['deflection'].values[-1]).max())")
+                "    print(traverse.__file__, abs(passage.read('deflection') - results['deflection'].values[-1]).max())\n"
+                "with traverse.Passage('options/scenes/three_span_half_car.yml') as installed:\n    print(installed.time)")
         shutil.copy(self.scene, elsewhere)
         without = {name: value for name, value in os.environ.items() if name != "TRAVERSE_BINARY"}
         place = self.prefix / "lib/python3/dist-packages"
         run = subprocess.run(["/usr/bin/python3", "-B", "-c", code], cwd=elsewhere, capture_output=True, text=True,
                              env=without | {"PYTHONPATH": str(place)})
-        self.assertEqual(run.stdout, f"{place / 'traverse/__init__.py'} 0.0\n")
+        self.assertEqual(run.stdout, f"{place / 'traverse/__init__.py'} 0.0\n0.0\n")
         self.assertTrue(all(": UnusualInput: " in line for line in run.stderr.splitlines()), run.stderr)
 
     def test_scripts_find_what_they_import(self):

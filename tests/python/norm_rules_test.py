@@ -75,7 +75,7 @@ class FlowChart(unittest.TestCase):
         self.assertIn("very good passenger comfort", said)
 
     def test_a_fast_line(self):
-        for length, n0, words, said in ((28.0, 5.0, (), "cannot be decided without --torsional-frequency"),
+        for length, n0, words, said in ((28.0, 5.0, (), "cannot be decided without a torsional frequency"),
                                         (28.0, 5.0, ("--torsional-frequency", "6.1 Hz"), "tables F.1 and F.2"),
                                         (28.0, 5.0, ("--torsional-frequency", "5.9 Hz"), "not above 1.2 n0 = 6 Hz"),
                                         # 1000 m/s: 17.857 Hz between forks 28 m apart
