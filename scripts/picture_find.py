@@ -6,7 +6,7 @@ from matplotlib.ticker import LogLocator
 from option_words import option_in_words
 from picture_axes import GREY, PALE, Panel
 from picture_rows import draw_beside, height_of, wrapped_rows
-from picture_runs import Axis, Limit, Runs, digits, engineering, engineering_of_si, in_words
+from picture_runs import Axis, Limit, Runs, digits, engineering, engineering_of_si, grouped, in_words
 from picture_speeds import draw_lines, is_logarithmic, looks_of
 from picture_table import keep
 from search_answers import Search
@@ -38,7 +38,7 @@ class Words:
 
     def value(self, value):
         """A searched value with as many digits as the accuracy of the search has."""
-        return f"{float(f'{self.factor * value:.{self.search.digits()}g}'):,.12g}"
+        return grouped(float(f"{self.factor * value:.{self.search.digits()}g}"), ",.12g")
 
     def name(self, answer):
         words = []

@@ -25,16 +25,21 @@ def engineering_of_si(unit):
     return engineering(rows[0]) if rows else (engineering_units.printed(unit) if unit != "1" else "", 1.0)
 
 
+def grouped(value, form):
+    """A number with narrow spaces between its thousands; form: a format with a comma."""
+    return format(value, form).replace(",", "\u202f")
+
+
 def digits(value):
     """A number with four significant digits, without a power of ten if possible."""
     short = f"{value:.4g}"
-    return f"{float(short):,.0f}" if "e+" in short and abs(value) < 1e7 else short
+    return grouped(float(short), ",.0f") if "e+" in short and abs(value) < 1e7 else short
 
 
 def in_words(value, unit):
     """A value with its unit: '3.5 m/s²', and a deflection over the span as engineers write it: 'L/600'."""
     if unit == SPAN:
-        return f"L/{float(f'{1.0 / value:.4g}'):,.0f}" if value > 0.0 else "0"
+        return f"L/{grouped(float(f'{1.0 / value:.4g}'), ',.0f')}" if value > 0.0 else "0"
     return f"{digits(value)} {unit}".strip()
 
 

@@ -18,11 +18,11 @@ function said(name, parts = {}) {
 // A number with five significant digits, a whole number with all; an empty text for an unknown one.
 function digits(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "";
-  if (Number.isSafeInteger(value)) return String(value);
   const size = Math.abs(value);
   const exponential = size !== 0 && (size < 1e-4 || size >= 1e7);
-  const text = exponential ? value.toExponential(DIGITS - 1).replace(/\.?0+e\+?/, "e") : String(Number(value.toPrecision(DIGITS)));
-  return text.replace(".", data.words.decimal);
+  const text = Number.isSafeInteger(value) ? String(value) : exponential ? value.toExponential(DIGITS - 1).replace(/\.?0+e\+?/, "e") : String(Number(value.toPrecision(DIGITS)));
+  const grouped = text.replace(/^-?\d{5,}/, (whole) => whole.replace(/\B(?=(\d{3})+$)/g, "\u202f"));
+  return grouped.replace(".", data.words.decimal);
 }
 
 function withUnit(value, unit) {

@@ -9,6 +9,7 @@ from .packing import packed
 from .vehicles import attached, is_free, numbers, parts_of
 
 MOST_FRAMES, MOST_VALUES = 800, 190_000  # of drawn samples; of their numbers together, about 1 MB
+NARROWEST = 1.0  # m of the track in the drawing, for bodies without extent
 SWAY = 0.02  # of the ends of a body, as a share of the width
 TRAVELS = "The train moves at the speed of the chosen run; the file has no deflections over time."
 POINTS = 160  # of the deflected line in the width of the drawing
@@ -132,8 +133,8 @@ def middles_of(bodies, forces, rows, width):
 
 def view_of(low, high, bottom, top):
     """The visible part: m along the track, and above it."""
-    width = min((1.0 + 2.0 * MARGIN) * (high - low), WIDEST)
-    spare = MARGIN * min(high - low, width)
+    width = min(max((1.0 + 2.0 * MARGIN) * (high - low), NARROWEST), WIDEST)
+    spare = max(MARGIN * min(high - low, width), 0.5 * (width - (high - low)))
     return {"left": low - spare, "right": high + spare, "width": width, "bottom": bottom, "top": top}
 
 

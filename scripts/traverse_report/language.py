@@ -70,7 +70,7 @@ def digits(value):
 
 
 def number(value):
-    return num(value, ".0f") if value == round(value) and abs(value) < 1e5 else digits(value)
+    return num(value, ".0f") if value == round(value) and abs(value) < 1e4 else digits(value)
 
 
 def percent(share):

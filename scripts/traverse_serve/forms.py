@@ -118,7 +118,7 @@ def find():
                 "trains HSLM.", (
                     bridge(searched=True),
                     ("search", (
-                        Field("find_between.from", "least EI of the search", "50", EI),
+                        Field("find_between.from", "least EI of the search", "100", EI),
                         Field("find_between.to", "greatest EI of the search", "500", EI),
                         chosen("find_keep", "limit", {"deck_acceleration": "vertical acceleration of the deck",
                                                       "deflection_over_span": "deflection over span length",

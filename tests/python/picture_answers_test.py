@@ -84,7 +84,7 @@ class SearchTest(Drawn):
                           options=[["-find_keep", "end_rotation"]])
         figure = self.assert_readable(
             self.figure(), "bending stiffness EI that keeps the limit (rotation of the deck",
-            "all runs: from 31,623 MN m²", "below 31,623: rotation of the deck ends")
+            "all runs: from 31\u202f623 MN m²", "below 31\u202f623: rotation of the deck ends")
         self.assertEqual([ax.get_xscale() for ax in figure.axes], ["log", "log"])
 
     def test_no_value_within_the_bound(self):

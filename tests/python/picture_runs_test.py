@@ -57,7 +57,7 @@ class SweepTest(Drawn):
 
     def test_limits_and_where_they_are_exceeded(self):
         peaks = self.write_sweep(10, limit=1e-4)
-        figure = self.assert_readable(self.figure(), "limit L/10,000 (EN 1990)", "limit 3.5 m/s² (EN 1990)")
+        figure = self.assert_readable(self.figure(), "limit L/10\u202f000 (EN 1990)", "limit 3.5 m/s² (EN 1990)")
         deflection, acceleration = figure.axes
         speed = 3.6 * np.linspace(30.0, 90.0, 31)
         for ax, values in ((deflection, peaks / 25.0 / 1e-4), (acceleration, 2000.0 * peaks / 3.5)):
@@ -80,10 +80,10 @@ class SweepTest(Drawn):
             file["verdicts/factor"] = [1.1, 1.25]
             file["sweep/judged"][...] = file["sweep/judged"][:] * [1.1, 1.25]
         deflection, acceleration = self.assert_readable(self.figure(), "low-pass filtered × 1.25", "limit 3.5 m/s² (EN 1990)",
-                                                        "limit L/10,000 of 1.1 times the value").axes
+                                                        "limit L/10\u202f000 of 1.1 times the value").axes
         kept = [{name: values for name, _, values, _ in ax.kept_curves} for ax in (deflection, acceleration)]
         np.testing.assert_allclose(kept[0]["A2"], 1e3 * peaks[1])
-        np.testing.assert_allclose(kept[0]["limit L/10,000 of 1.1 times the value (EN 1990)"], 2.5 / 1.1)
+        np.testing.assert_allclose(kept[0]["limit L/10\u202f000 of 1.1 times the value (EN 1990)"], 2.5 / 1.1)
         np.testing.assert_allclose(kept[1]["A2"], 1.25 * 2000.0 * peaks[1])
         self.assertEqual(set(kept[1]["limit 3.5 m/s² (EN 1990)"]), {3.5})
 

@@ -236,10 +236,10 @@ study: {vary: {load_speed: [30.0, 50.0], beam_mass: [1.6e4, 1.8e4, 2.0e4], beam_
     def test_of_several_options_the_name_of_a_curve_has_the_values(self):
         runs = source.Source(self.folder / "three.h5").runs
         self.assertEqual(runs.line_names, ["beam_mass", "beam_EI", "model_damping_ratios"])
-        self.assertEqual(curves.names_of(runs)[0], "16, 20000, 0.01")
+        self.assertEqual(curves.names_of(runs)[0], "16, 20\u202f000, 0.01")
         self.assertEqual(runs.lines_in_words(), "mass per length (t/m), bending stiffness EI (MN m²), damping ratio")
         self.assertEqual(runs.lines()[0][0],
-                         "mass per length 16 t/m, bending stiffness EI 20000 MN m², damping ratio 0.01")
+                         "mass per length 16 t/m, bending stiffness EI 20\u202f000 MN m², damping ratio 0.01")
 
 
 if __name__ == "__main__":
