@@ -218,7 +218,8 @@ class PageTest(Computed):
             for name, factor, unit in (("peak_deflection", 1e3, "mm"), ("peak_moment", 1e-3, "kN m"),
                                        ("peak_acceleration", 1.0, "m/s²")):
                 largest = factor * np.abs(file[f"sweep/{name}"][train, run]).max()
-                self.assertIn(f"{shown(largest):,g} {unit}".replace(",", "\u202f"), row)
+                number = format(shown(largest), ",g" if largest >= 1e4 else "g").replace(",", "\u202f")
+                self.assertIn(f"{number} {unit}", row)
             quantities = list(file["verdicts/quantity"].asstr()[:, 0])
             value = file["sweep/judged"][train, run, quantities.index("deck_acceleration")]
             limit = file["verdicts/limit"][quantities.index("deck_acceleration")]
