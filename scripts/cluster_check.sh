@@ -161,6 +161,11 @@ quietly srun -n 2 traverse -options_file "$scratch/small.yml" -output_file "$scr
 grep -q 'ranks: .* of 2' "$log" || failed "The two processes do not know of each other."
 compare "$scratch/one_mpirun.h5" "$scratch/srun.h5"
 passed "2 ranks of srun have the results of 2 ranks of mpirun"
+quietly srun -n 2 /usr/bin/python3 -B -W ignore -c 'import sys, traverse
+problems = [traverse.Problem(sys.argv[1], load_speed=speed) for speed in (2.0, 3.0)]
+print(traverse.simulate(problems)["peak_deflection"].values.tolist())' "$scratch/small.yml"
+[[ $(wc -l <"$log") = 2 && $(sort -u "$log" | wc -l) = 1 ]] || failed "The two processes of Python do not have the same results."
+passed "2 processes of Python, which srun has started, share runs and have the same results"
 
 cd "$scratch/jobs"
 write_scene long.yml 6 4e-6
