@@ -117,8 +117,8 @@ std::unique_ptr<Engine> modal_engine_for(CaseSet& cases, std::string& why) {
     why = "the motion is not that of modes under moving forces alone";
   else if (cases.scene().has_run_limits() && cases.dampers_couple_modes())
     why = "dampers couple the modes, and limits are checked";
-  else if (cases.scene().limits_quantity("track_twist") || cases.scene().limits_quantity("bearing_uplift"))
-    why = "limits of the twist and of bearings are checked run by run";
+  else if (cases.scene().limits_quantity("bearing_uplift"))
+    why = "limits of bearings are checked run by run";
   return why.empty() ? std::make_unique<ModalEngine>(cases) : nullptr;
 }
 

@@ -19,8 +19,11 @@ MovingForceLimits::MovingForceLimits(const scene::Scene& scene, run::SharedBeam&
       by_modes_(shared.modal->modes() < shared.modal->probes().count),
       count_(by_modes_ ? shared.modal->modes() : shared.modal->probes().count),
       rotates_(scene.limits_quantity("end_rotation") || scene.limits_quantity("joint_rotation")),
-      slopes_(
-          shared.modal->slopes(run::DeckRotations(*shared.beam).unknowns(), scene.self_weight ? scene.gravity : 0.0)) {}
+      twists_(scene.limits_quantity("track_twist") && shared.beam->model().torsion),
+      rotations_(run::DeckRotations(*shared.beam).unknowns().size()),
+      slopes_(shared.modal->slopes(run::DeckRotations(*shared.beam).unknowns(),
+                                   twists_ ? scene.output.probes : std::vector<double>(),
+                                   scene.self_weight ? scene.gravity : 0.0, scene.output.eccentricities)) {}
 
 std::vector<results::EvaluatedQuantity> MovingForceLimits::evaluate(std::size_t train, double end_time,
                                                                     std::span<const base::ProbePeaks> peaks,
@@ -45,12 +48,13 @@ void MovingForceLimits::sample_run(std::size_t train, const run::Plan& plan, run
   const std::size_t modes = bridge.modes();
   std::vector<double> slopes(slopes_.count);
   const auto sample = [&] {
-    if (!rotates_) return;
+    if (!rotates_ && !twists_) return;
     std::copy(slopes_.weight.begin(), slopes_.weight.end(), slopes.begin());
     motion.add_channels(modes, slopes_.count, slopes.data());
     for (std::size_t i = 0; i < modes; ++i)
       for (std::size_t k = 0; k < slopes_.count; ++k) slopes[k] += slopes_.of_q[i * slopes_.count + k] * motion.q()[i];
-    check.rotations(motion.time(), slopes);
+    check.rotations(motion.time(), std::span(slopes).first(rotations_));
+    check.twist_rates(motion.time(), std::span(slopes).subspan(rotations_));
   };
   const double slack = 1e-3 * std::min(plan.interval, plan.end_time);
   const auto instants = static_cast<std::size_t>(std::floor((plan.end_time + slack) / plan.interval)) + 1;
@@ -58,7 +62,14 @@ void MovingForceLimits::sample_run(std::size_t train, const run::Plan& plan, run
   for (std::size_t k = 0; k < instants; ++k) {
     const double t = static_cast<double>(k) * plan.interval;
     const double at = t > plan.end_time - slack ? plan.end_time : t;
-    rotates_ ? motion.advance(at) : motion.advance_acceleration(at);
+    // The rate of the twist jumps where a force passes: its extremes are there.
+    while (twists_ && motion.next_event() < at) {
+      motion.advance(motion.next_event());
+      sample();
+      motion.pass_event();
+      sample();
+    }
+    rotates_ || twists_ ? motion.advance(at) : motion.advance_acceleration(at);
     sample();
     double* row = &series_[k * count_];
     if (by_modes_)

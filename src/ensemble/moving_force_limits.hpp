@@ -1,6 +1,6 @@
 // Evaluates limited quantities of moving forces by modes that are exact in time, where peaks are not sufficient:
-// filtered accelerations and rotations. The accelerations of the probes are filtered, or the accelerations of the modes
-// if there are fewer modes.
+// filtered accelerations, rotations and the twist. The accelerations of the probes are filtered, or the accelerations
+// of the modes if there are fewer modes.
 #pragma once
 
 #include <map>
@@ -40,9 +40,11 @@ class MovingForceLimits {
   const scene::Scene& scene_;
   const run::SharedBeam& shared_;
   double cutoff_frequency_;
-  bool by_modes_;      // the modes' accelerations are filtered, because there are fewer modes than probes
-  std::size_t count_;  // number of filtered series
-  bool rotates_;       // a rotation has a limit
+  bool by_modes_;          // the modes' accelerations are filtered, because there are fewer modes than probes
+  std::size_t count_;      // number of filtered series
+  bool rotates_;           // a rotation has a limit
+  bool twists_;            // the twist of a track has a limit
+  std::size_t rotations_;  // number of slopes that are rotations; the others are rates of the twist
   train::Fleet no_fleet_;
   structure::ModalSlopes slopes_;
   std::map<std::size_t, integrate::ForceHistory> histories_;  // the key is the train

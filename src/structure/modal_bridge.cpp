@@ -157,8 +157,12 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   recovery::Recovery with_weight(beam_, stations, gravity, eccentricities);
   record_weight(with_weight, gravity);
   std::vector<Line> lines = lines_of_modes();
-  for (const auto quantity : {&recovery::Response::deflection, &recovery::Response::moment})
-    for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
+  for (const auto quantity : {&recovery::Response::deflection, &recovery::Response::moment}) {
+    const std::vector<double>& form = quantity == &recovery::Response::deflection ? probes_.deflection : probes_.moment;
+    for (std::size_t p = 0; p < stations.size(); ++p)
+      lines.push_back(
+          correction_of(recovery, p, quantity, [&](std::size_t mode) { return form[mode * probes_.count + p]; }));
+  }
   influence_ = influence_of(lines, stations, eccentricities);
 }
 
@@ -182,21 +186,33 @@ void ModalBridge::add_given_probes(const std::vector<double>& stations) {
   influence_ = influence_of(lines, stations);
 }
 
-ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, double gravity) {
+ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, const std::vector<double>& stations, double gravity,
+                                const std::vector<double>& eccentricities) {
   ModalSlopes slopes;
-  slopes.count = unknowns.size();
-  for (const auto& shape : basis_.shape)
-    for (const int unknown : unknowns) slopes.of_q.push_back(shape[static_cast<std::size_t>(unknown)]);
-  const std::vector<double> weight = weight_displacements(gravity);
+  slopes.count = unknowns.size() + stations.size();
+  recovery::Recovery recovery(beam_, stations, 0.0, eccentricities);
+  const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
+  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
+  std::vector<recovery::Response> responses;
+  const auto add = [&](const std::vector<double>& displacements, std::vector<double>& to) {
+    for (const int unknown : unknowns) to.push_back(displacements[static_cast<std::size_t>(unknown)]);
+    recovery.evaluate(displacements.data() + begin, zero.data(), zero.data(), {}, responses);
+    for (const recovery::Response& r : responses) to.push_back(r.twist_along);
+  };
+  for (const auto& shape : basis_.shape) add(shape, slopes.of_q);
+  add(weight_displacements(gravity), slopes.weight);
   std::vector<Line> lines = lines_of_modes();
-  for (const int unknown : unknowns) {
-    const auto u = static_cast<std::size_t>(unknown);
-    slopes.weight.push_back(weight[u]);
+  for (std::size_t k = 0; k < slopes.count; ++k) {
+    const auto form = [&](std::size_t mode) { return slopes.of_q[mode * slopes.count + k]; };
+    if (k >= unknowns.size()) {
+      lines.push_back(correction_of(recovery, k - unknowns.size(), &recovery::Response::twist_along, form));
+      continue;
+    }
     std::vector<double> load(basis_.shape.front().size(), 0.0);
-    load[u] = 1.0;
-    lines.push_back(line_of(load, [&](std::size_t mode) { return basis_.shape[mode][u]; }));
+    load[static_cast<std::size_t>(unknowns[k])] = 1.0;
+    lines.push_back(line_of(load, form));
   }
-  slopes.influence = influence_of(lines, {});
+  slopes.influence = influence_of(lines, stations, eccentricities);
   return slopes;
 }
 

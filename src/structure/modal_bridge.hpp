@@ -66,12 +66,13 @@ struct ModalProbes {
   std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: due to the beam's own weight
 };
 
-/// Rotations at nodes as linear combinations of the modes' coordinates.
+/// Rotations at nodes, rad, then rates of the twist at stations, rad/m, as linear combinations of the modes'
+/// coordinates.
 struct ModalSlopes {
   std::size_t count = 0;
-  std::vector<double> of_q;    // [mode][rotation]
-  std::vector<double> weight;  // rad, due to the beam's own weight
-  /// Same layout as ModalBridge::influence: first the modal forces, then the rotations.
+  std::vector<double> of_q;    // [mode][slope]
+  std::vector<double> weight;  // due to the beam's own weight
+  /// Same layout as ModalBridge::influence: first the modal forces, then the slopes.
   PiecewiseCubic influence;
 };
 
@@ -93,8 +94,10 @@ class ModalBridge {
   /// without self-weight; eccentricities: as of recovery::Recovery.
   void add_probes(const std::vector<double>& stations, double gravity, const std::vector<double>& eccentricities = {});
 
-  /// Collective. Rotations of nodes given by their unknowns, if dampers do not couple modes.
-  ModalSlopes slopes(const std::vector<int>& unknowns, double gravity);
+  /// Collective. Rotations of nodes given by their unknowns, and rates of the twist at stations, if dampers do not
+  /// couple modes. gravity, eccentricities: as of add_probes.
+  ModalSlopes slopes(const std::vector<int>& unknowns, const std::vector<double>& stations, double gravity,
+                     const std::vector<double>& eccentricities);
 
   /// Whether the modes were given, and are complete.
   bool given() const { return beam_.model().given.has_value(); }
@@ -143,7 +146,8 @@ class ModalBridge {
   void record_forms(recovery::Recovery& recovery);
   void record_others(recovery::Recovery& recovery);
   void record_weight(recovery::Recovery& recovery, double gravity);
-  Line correction_of(recovery::Recovery& recovery, std::size_t probe, double recovery::Response::*quantity);
+  Line correction_of(recovery::Recovery& recovery, std::size_t probe, double recovery::Response::*quantity,
+                     const std::function<double(std::size_t)>& form);
   std::vector<Line> lines_of_modes() const;
   std::array<double, 4> transverse_values(const std::vector<double>& nodal, int element) const;
   Line line_of(const std::vector<double>& load, const std::function<double(std::size_t)>& form);

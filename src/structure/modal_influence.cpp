@@ -19,9 +19,10 @@ std::vector<ModalBridge::Line> ModalBridge::lines_of_modes() const {
 
 /// The influence line of a response at a probe, minus the modes' share. By the theorem of Maxwell and Betti it is the
 /// deflection of the structure under a load. The nodal forces of this load are the coefficients of the nodal values of
-/// the probe's element in the response.
+/// the probe's element in the response; `form` is the response to each mode shape.
 ModalBridge::Line ModalBridge::correction_of(recovery::Recovery& recovery, std::size_t p,
-                                             double recovery::Response::*quantity) {
+                                             double recovery::Response::*quantity,
+                                             const std::function<double(std::size_t)>& form) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
   std::vector<recovery::Response> responses;
   std::vector<double> load(basis_.shape.front().size(), 0.0);
@@ -35,8 +36,7 @@ ModalBridge::Line ModalBridge::correction_of(recovery::Recovery& recovery, std::
   for (const int unknown : beam_.bridge().transverse(element)) add_unit(unknown);
   if (beam_.model().torsion)
     for (const int unknown : beam_.bridge().twists(element)) add_unit(unknown);
-  const std::vector<double>& form = quantity == &recovery::Response::deflection ? probes_.deflection : probes_.moment;
-  Line line = line_of(load, [&](std::size_t mode) { return form[mode * probes_.count + p]; });
+  Line line = line_of(load, form);
   line.probe = p;
   line.direct = quantity;
   return line;

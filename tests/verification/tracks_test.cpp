@@ -237,6 +237,28 @@ TEST(Tracks, LimitsOfTwistAndUplift) {
   EXPECT_NEAR(found[1] / uplift, 1.0, 5e-2);
 }
 
+// Runs by modes are judged together: the rate of the twist is known on both sides of each force that passes. A run by
+// itself knows it at its samples, which come close to a passage.
+TEST(Tracks, ASweepIsJudgedByTheTwist) {
+  const TemporaryFolder folder;
+  const std::string limits = folder.write("limits.yml",
+                                          "- {clause: EN 1990, quantity: track_twist, value: 1e-3}\n"
+                                          "- {clause: EN 1990, quantity: end_rotation, value: 1e-3}\n");
+  const std::string loads = "loads: up\n" + up;
+  const Values judged = {{"limits", limits}, {"model_modes", "8"}};
+  Results sweep = run_yaml(bridge(loads), judged + Values{{"sweep_speed", "40,60,10"}, {"sweep_refine", "0"}});
+  EXPECT_EQ(sweep("/sweep/speed"), (std::vector<double>{40, 50, 60}));
+  const std::vector<double> found = sweep("/sweep/judged");
+  for (std::size_t run = 0; run < 3; ++run) {
+    Results alone = run_yaml(bridge(loads),
+                             judged + Values{{"up_speed", std::to_string(40 + 10 * run)}, {"output_interval", "2e-5"}});
+    const std::vector<double> wanted = alone("/verdicts/value");
+    for (std::size_t limit = 0; limit < 2; ++limit)
+      EXPECT_NEAR(found[2 * run + limit] / wanted[limit], 1.0, 2e-4) << run << ", limit " << limit;
+    EXPECT_GE(found[2 * run], wanted[0] * (1.0 - 1e-9)) << run;
+  }
+}
+
 TEST(Tracks, Refusals) {
   EXPECT_EQ(message_of([] {
               run_yaml(bridge("load: {forces: 1, speed: 1}\n"), {{"left_curve_radius", "0"}});
