@@ -55,6 +55,9 @@ void read_limits(const Options& o, Scene& scene) {
     if (scene.sweep && !o.has("sweep_refine") && scene.has_run_limits() &&
         scene.sweep->speeds.size() >= fewest_to_refine)
       scene.sweep->refine = -1.0;
+    if (scene.limits_quantity("track_twist"))
+      scene.notes.emplace_back(
+          "error not estimated: track_twist: compare with more of model_modes, or beam_elements_per_span");
     return;
   }
   if (scene.analysis == Analysis::static_envelope || scene.analysis == Analysis::rail_forces) {
