@@ -187,7 +187,7 @@ study: {vary: {load_speed: {from: 20.0, to: 80.0, step: 10.0}, beam_mass: [1.6e4
         title = "Greatest deck acceleration, low-pass filtered"
         for factors in ((1.14, 1.14), (1.14, 1.05)):
             cases = compare_data.opened_cases([file(f"{k + 1}e10", factor) for k, factor in enumerate(factors)])
-            self.assertEqual([case.name for case in cases], ["beam_EI 10,000 MN m²", "beam_EI 20,000 MN m²"])
+            self.assertEqual([case.name for case in cases], ["beam_EI 10\u202f000 MN m²", "beam_EI 20\u202f000 MN m²"])
             kept = self.kept(cases)
             if factors[0] == factors[1]:
                 self.assertEqual(list(kept[f"{title} × 1.14"]), [case.name for case in cases])
