@@ -89,8 +89,8 @@ purge() {
   # shellcheck disable=SC2086  # the list is meant to split
   quietly inside "$machine" apt-get purge -y $names
   ! inside "$machine" dpkg-query -W '*traverse*' >"$log" 2>/dev/null || fail "A package is left."
-  (cd "$machine" && find . -xdev \( -path ./proc -o -path ./home -o -path ./package -o -path ./before -o -path ./tmp -o -path ./var/cache -o \
-    -path ./var/log \) -prune -o -print | sort) >"$1"
+  (cd "$machine" && find . -xdev \( -path ./proc -o -path ./home -o -path ./package -o -path ./before -o -path ./tmp \
+    -o -path ./var/cache -o -path ./var/log \) -prune -o -print | sort) >"$1"
   # Boost and SymPy have files of this name, too, in folders of their own.
   ! grep -E '^\./(etc|var/lib|usr/(s?bin|include|share|share/doc|lib|lib/python3/dist-packages|lib/[^/]*))/(python3-|lib)?traverse' \
     "$1" >"$log" || { cat "$log"; fail "Files are left."; }
