@@ -221,9 +221,9 @@ void ModalBridge::record_forms(recovery::Recovery& recovery) {
   std::vector<recovery::Response> responses;
   for (std::size_t i = 0; i < modes(); ++i) {
     recovery.evaluate(shape(i), zero.data(), zero.data(), {}, responses);
-    for (std::size_t p = 0; p < responses.size(); ++p) {
-      probes_.deflection.push_back(responses[p].deflection);
-      probes_.moment.push_back(responses[p].moment);
+    for (const recovery::Response& r : responses) {
+      probes_.deflection.push_back(r.deflection);
+      probes_.moment.push_back(r.moment);
     }
     recovery.evaluate(zero.data(), zero.data(), shape(i), {}, responses);
     const double squared = basis_.omega[i] * basis_.omega[i];  // adds inertia: the mode's shape, also on a bed
