@@ -19,7 +19,10 @@ class Progress(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             log = pathlib.Path(folder) / "setup.log"
             script = 'source "$1/scripts/setup.sh"; setup_log=$2; show_progress'
-            reader, writer = pty.openpty() if terminal else os.pipe()
+            try:
+                reader, writer = pty.openpty() if terminal else os.pipe()
+            except OSError as failure:  # in a folder that chroot has made the root
+                self.skipTest(str(failure))
             subprocess.run(["bash", "-euo", "pipefail", "-c", script, "bash", SOURCE, log], stderr=writer, check=True,
                            input="".join(f"{line}\n" for line in lines), text=True, stdout=subprocess.DEVNULL)
             os.close(writer)

@@ -199,7 +199,8 @@ TEST(FitRecord, WithAnAnswerIsNotDoubted) {
 }
 
 TEST(FitRecord, WithoutConvergenceIsNoSuccess) {
-  const Outcome outcome = fitted({.options = {"-tao_max_it", "0"}});
+  const Outcome outcome =
+      fitted({.options = {"-fit_vary_beam_mass", "1e4,4e4", "-fit_vary_load_speed", "20,60", "-tao_max_it", "1"}});
   EXPECT_EQ(outcome.status, 3) << outcome.out << outcome.err;
   EXPECT_NE(outcome.err.find("has not converged"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("tao_max_it"), std::string::npos) << outcome.err;
