@@ -4,6 +4,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(share ${CMAKE_INSTALL_DATADIR}/traverse)  # where the program looks for scenes that are not in the working directory
 set(examples ${CMAKE_INSTALL_DOCDIR}/examples)
+# Where this is from the program and from the shared library, and for programs that contain the library.
 foreach(part IN ITEMS BIN LIB)
   file(RELATIVE_PATH ${part} ${CMAKE_INSTALL_FULL_${part}DIR} ${CMAKE_INSTALL_FULL_DATADIR}/traverse)
 endforeach()

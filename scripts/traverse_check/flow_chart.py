@@ -82,8 +82,8 @@ def torsion_steps(part, line):
     frequency = num(of_torsion)
     if of_torsion <= value * part.n0:
         return [(clause("torsion"), t("nT = {frequency} Hz is not above {factor} n0 = {bound} Hz: dynamic analysis "
-                                      "with torsion, which runs with an eccentricity of the track include", frequency=frequency,
-                                      factor=factor, bound=bound))]
+                                      "with torsion, which runs with an eccentricity of the track include",
+                                      frequency=frequency, factor=factor, bound=bound))]
     return [(clause("torsion"), t("nT = {frequency} Hz is above {factor} n0 = {bound} Hz: bending modes are sufficient",
                                   frequency=frequency, factor=factor, bound=bound)),
             (clause("tables"), t("v/n0 within tables F.1 and F.2 cannot be decided, because they are not in this "

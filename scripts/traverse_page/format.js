@@ -19,10 +19,11 @@ function said(name, parts = {}) {
 function digits(value) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "";
   const size = Math.abs(value);
-  const exponential = size !== 0 && (size < 1e-4 || size >= 1e7);
-  const text = Number.isSafeInteger(value) ? String(value) : exponential ? value.toExponential(DIGITS - 1).replace(/\.?0+e\+?/, "e") : String(Number(value.toPrecision(DIGITS)));
-  const grouped = text.replace(/^-?\d{5,}/, (whole) => whole.replace(/\B(?=(\d{3})+$)/g, "\u202f"));
-  return grouped.replace(".", data.words.decimal);
+  const exponential = !Number.isSafeInteger(value) && (size < 1e-4 || size >= 1e7);
+  if (exponential) return value.toExponential(DIGITS - 1).replace(/\.?0+e\+?/, "e").replace(".", data.words.decimal);
+  const [whole, part] = String(Number.isSafeInteger(value) ? value : Number(value.toPrecision(DIGITS))).split(".");
+  const thousands = size < 1e4 ? whole : whole.replace(/\B(?=(\d{3})+$)/g, "\u202f"); // in groups from five digits on
+  return part === undefined ? thousands : thousands + data.words.decimal + part;
 }
 
 function withUnit(value, unit) {

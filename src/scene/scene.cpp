@@ -57,7 +57,8 @@ void read_limits(const Options& o, Scene& scene) {
       scene.sweep->refine = -1.0;
     if (scene.limits_quantity("track_twist"))
       scene.notes.emplace_back(
-          "error not estimated: track_twist: compare with more of model_modes, or beam_elements_per_span");
+          "error not estimated: track_twist: trial runs do not compare it; a larger model_modes or "
+          "beam_elements_per_span shows it");
     return;
   }
   if (scene.analysis == Analysis::static_envelope || scene.analysis == Analysis::rail_forces) {
