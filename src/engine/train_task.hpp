@@ -70,10 +70,10 @@ struct SurfacePatch {
 
 /// The coefficients of a stage, scaled to the length of a step, in rows.
 struct alignas(8 * most_lanes) StageRows {
-  double w_in_v[most_lanes], a_in_v[most_kept][most_lanes], a_in_w[most_kept][most_lanes];
-  double rate[most_lanes], displacement[most_lanes];
-  double guess[most_stages + 2]
-              [most_lanes];  // weights of the contact forces at the previous stages and at two starts of steps
+  double w_in_v[most_lanes] = {}, a_in_v[most_kept][most_lanes] = {}, a_in_w[most_kept][most_lanes] = {};
+  double rate[most_lanes] = {}, displacement[most_lanes] = {};
+  // Weights of the contact forces at the previous stages and at two starts of steps.
+  double guess[most_stages + 2][most_lanes] = {};
 };
 
 struct TrainTask {
