@@ -346,6 +346,9 @@ void Recovery::add_beside(const ElementLoad& load, const std::vector<std::size_t
       const std::size_t side = left == from_left ? 1 : 0;
       out[place.section].shear_beside[side] += left ? -by[1] : by[1];
       out[place.section].axial_force_beside[side] += left ? -by[2] : by[2];
+      const RecoverySection& s = sections_[place.section];
+      const double rate = s.twisting ? load.torque * s.twisting->flexibility / s.element.length : 0.0;
+      out[place.section].twist_along_beside[side] += left ? rate : -rate;
     }
   };
   add_at(load.element, load.xi);

@@ -48,8 +48,9 @@ struct Response {
   double moment_rate = 0.0;  // d moment/dt, N m/s; NaN if it is unknown
   /// The parts of jumps behind passing loads that the forces do not contain yet, N; damping b K delays them by b.
   double unrelaxed_shear = 0.0, unrelaxed_axial_force = 0.0;
-  /// If a moving load is at the station: the differences of the forces just before and just after its passage, N.
-  std::array<double, 2> shear_beside{}, axial_force_beside{};
+  /// If a moving load is at the station: the differences of the forces (N) and of the rate of the twist (rad/m) just
+  /// before and just after its passage.
+  std::array<double, 2> shear_beside{}, axial_force_beside{}, twist_along_beside{};
 };
 
 /// The twist of a track of standard gauge over 3 m (EN 1990, A2.4.4.2.2), by its rate along the bridge, m.

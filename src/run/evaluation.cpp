@@ -131,7 +131,7 @@ void Evaluation::sample(const integrate::Instant& instant) {
   if (now_.dampers) now_.dampers->evaluate(time_, now_.motion.beam.v, now_.motion.beam.damped_w);
   record_largest_deflection();
   if (beam_ != nullptr && limit_check_ && scene_.limits_quantity("bearing_uplift")) evaluate_supports();
-  if (limit_check_) limit_check_->sample(instant.time, beam.v, now_.probes, now_.supports);
+  if (limit_check_) limit_check_->sample(instant.time, beam.v, now_.supports);
   axle_passages_.add(instant.time, system_.fleet());
   profiles_.add(system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == train::Drive::free) paths_.add(instant.time, system_.fleet());
@@ -327,7 +327,12 @@ Result Evaluation::finish() {
   if (filtered_wheels_) summary_.filtered_unloading = filtered_wheels_->finish(system_.fleet());
   if (wants_.stored || wants_.limits) summarise_peaks();
   if (wants_.stored) record_once(result);
-  if (limit_check_) result.verdicts = limit_check_->verdicts(summary_, peaks_.largest_of_each(deflection));
+  if (limit_check_) {
+    const Extreme& twist = peaks_.largest(twist_of_track);
+    if (beam_ != nullptr && beam_->model().torsion)
+      limit_check_->twist({std::abs(twist.value), twist.time, twist.place});
+    result.verdicts = limit_check_->verdicts(summary_, peaks_.largest_of_each(deflection));
+  }
   result.filter_unsettled = deck_ && deck_->ends_unsettled();
   result.summary = summary_;
   result.peaks = std::move(peaks_);

@@ -192,12 +192,10 @@ LimitCheck::LimitCheck(const scene::Scene& scene, const train::Fleet& fleet, con
   if (beam != nullptr && beam->model().torsion) torsion_ = &*beam->model().torsion;
 }
 
-void LimitCheck::sample(double t, const double* v, std::span<const recovery::Response> probes,
-                        std::span<const beam::Reaction> supports) {
+void LimitCheck::sample(double t, const double* v, std::span<const beam::Reaction> supports) {
   if (rotations_) rotations_->add(t, v);
   cars_.add(t);
   if (torsion_ == nullptr) return;
-  for (std::size_t p = 0; p < probes.size(); ++p) twist_.raise(std::abs(recovery::track_twist(probes[p])), t, p);
   for (std::size_t end = 0; end < torsion_->bearing_spacing.size() && end < supports.size(); ++end) {
     if (torsion_->held[end] == 0 || torsion_->bearing_spacing[end] == 0.0) continue;
     const auto [left, right] = beam::bearing_forces(*torsion_, end, supports[end]);

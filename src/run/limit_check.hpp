@@ -90,15 +90,15 @@ class LimitCheck {
 
   /// Collective. Evaluates an observed instant; v: this rank's displacements of the structure; supports: the reactions,
   /// which only bearing_uplift needs.
-  void sample(double t, const double* v, std::span<const recovery::Response> probes,
-              std::span<const beam::Reaction> supports);
+  void sample(double t, const double* v, std::span<const beam::Reaction> supports);
   /// Evaluates an instant at which only the rotations at the rotations' unknowns are known, rad.
   void rotations(double t, std::span<const double> slopes) { rotations_->record(t, slopes); }
   /// Evaluates an instant at which only the rates of the twist at the probes are known, rad/m.
   void twist_rates(double t, std::span<const double> rates) {
-    for (std::size_t p = 0; p < rates.size(); ++p) twist_.raise(recovery::track_base * std::abs(rates[p]), t, p);
+    for (std::size_t p = 0; p < rates.size(); ++p) twist({recovery::track_base * std::abs(rates[p]), t, p});
   }
-  /// Records the largest magnitudes that are known: DeckRotations::raise, CarAccelerations::raise.
+  /// Records the largest magnitudes that are known: of the twist, m; DeckRotations::raise, CarAccelerations::raise.
+  void twist(const Extreme& one) { twist_.raise(one.value, one.time, one.place); }
   void rotation(const Extreme& one) { rotations_->raise(one); }
   void car(const Extreme& one) { cars_.raise(one); }
 

@@ -38,14 +38,14 @@ const Extreme* nearest(const std::vector<Extreme>& peaks, const Extreme& to, dou
 
 }  // namespace
 
-ResponseExtremes::ResponseExtremes(std::size_t probes, std::size_t wheels, double lag, bool axial)
+ResponseExtremes::ResponseExtremes(std::size_t probes, std::size_t wheels, double lag, bool axial, bool twists)
     : lag_(lag),
       axial_(axial),
-      forces_(probes, ProbeForces(axial)),
+      forces_(probes, ProbeForces(axial, twists)),
       motions_(probes),
       wheels_(wheels),
       ranges_(probes) {
-  for (std::size_t q = 0; q < quantities; ++q) largest_of_each_[q].resize(q == wheel_force ? wheels : probes);
+  for (std::size_t q = 0; q < evaluated_quantities; ++q) largest_of_each_[q].resize(q == wheel_force ? wheels : probes);
 }
 
 ResponseExtremes ResponseExtremes::of_failure() {
@@ -202,7 +202,8 @@ double difference(const ResponseExtremes& rough, const ResponseExtremes& fine, Q
 }
 
 ResponseExtremes peaks_for(const scene::Scene& scene, std::size_t wheels, double lag) {
-  return {scene.output.probes.size(), wheels, lag, scene.beam && scene.beam->axial};
+  return {scene.output.probes.size(), wheels, lag, scene.beam && scene.beam->axial,
+          scene.beam && scene.beam->torsion.has_value()};
 }
 
 std::vector<results::Recorder::Dataset> envelopes(const ResponseExtremes& peaks, bool forces) {

@@ -23,7 +23,8 @@
 
 namespace traverse::run {
 
-/// The quantities whose peaks are evaluated and whose errors `accuracy` controls.
+/// The quantities whose peaks are evaluated. `accuracy` controls the errors of those before `quantities`; the twist of
+/// a track (m, recovery::track_base) is compared with limits only.
 enum Quantity : std::size_t {
   deflection,
   acceleration,
@@ -33,7 +34,9 @@ enum Quantity : std::size_t {
   shear_force,
   axial_displacement,
   axial_force,
-  quantities
+  quantities,
+  twist_of_track = quantities,
+  evaluated_quantities
 };
 inline constexpr std::array<const char*, quantities> quantity_names = {
     "deflection", "acceleration",       "moment",     "wheel force", "low-passed acceleration",
@@ -50,13 +53,14 @@ inline constexpr bool by_elements_only(std::size_t q) { return q >= shear_force;
 
 /// The extremes of the section forces at a probe. A passage is the instant at which a load passes the probe. At a
 /// passage the moment has a kink over time and the shear jumps (also the axial force, if the load has a component along
-/// x); the values on both sides are extremes. They are known if a step ends at the passage; otherwise they are
-/// extrapolated, where possible, by straight lines from the two instants before and the two after it.
+/// x, and the rate of the twist, if it is beside the shear centre); the values on both sides are extremes. They are
+/// known if a step ends at the passage; otherwise they are extrapolated, where possible, by straight lines from the two
+/// instants before and the two after it.
 class ProbeForces {
  public:
   ProbeForces() = default;
-  /// axial: the beam has an axial force.
-  explicit ProbeForces(bool axial) : has_axial_(axial) {}
+  /// axial: the beam has an axial force; twists: it twists.
+  ProbeForces(bool axial, bool twists) : has_{true, axial, twists} {}
 
   /// Calls record(Quantity, value, time, outward, other) for the extremes of moment, shear and axial force; other: the
   /// shear at a moment's extreme, the moment at a shear's extreme. passages: those since the previous instant,
@@ -66,7 +70,7 @@ class ProbeForces {
            Record&& record) {
     const bool lagging = lag > 0.0 && !std::isnan(r.moment_rate);
     for (const recovery::StationPassage& passage : passages) kinks_.add(passage.time);
-    store({t, r.moment, r.shear, r.axial_force});
+    store({t, r.moment, jumping_of(r)});
     largest_moment_ = std::max(largest_moment_, std::abs(r.moment));
     if (lagging)
       lagging_moment_.add(t, r.moment, r.moment_rate, lag, of_moment(record));
@@ -87,32 +91,38 @@ class ProbeForces {
   static constexpr double moment_tolerance = 0.02;  // relative to the largest moment at the probe
   static constexpr double hinge_arm = 1e-6;  // m: times the shear, a moment that is a rounding error, as at a hinge
 
+  /// The quantities that jump at a passage.
+  static constexpr std::array jumping = {shear_force, axial_force, twist_of_track};
+  using Jumping = std::array<double, jumping.size()>;
+  static Jumping jumping_of(const recovery::Response& r) { return {r.shear, r.axial_force, recovery::track_twist(r)}; }
+
   struct Forces {
-    double time = 0.0, moment = 0.0, shear = 0.0, axial = 0.0;
+    double time = 0.0, moment = 0.0;
+    Jumping jumping{};
+    double shear() const { return jumping[0]; }
     /// Linear interpolation or extrapolation with these forces and the forces at another instant.
     Forces at(double t, const Forces& through) const {
       const double part = (t - time) / (through.time - time);
-      return {t, moment + part * (through.moment - moment), shear + part * (through.shear - shear),
-              axial + part * (through.axial - axial)};
+      Forces there{t, moment + part * (through.moment - moment), jumping};
+      for (std::size_t k = 0; k < jumping.size(); ++k) there.jumping[k] += part * (through.jumping[k] - jumping[k]);
+      return there;
     }
   };
 
   template <class Record>
   auto of_moment(Record& record) {
     return [this, &record](double value, double at, bool outward) {
-      record(moment, value, at, outward, interpolate(at).shear);
+      record(moment, value, at, outward, interpolate(at).shear());
     };
   }
   template <class Record>
-  auto of_shear(Record& record) {
-    return [this, &record](double value, double at, bool outward) {
-      record(shear_force, value, at, outward, interpolate(at).moment);
+  auto of_jumping(std::size_t k, Record& record) {
+    return [this, k, &record](double value, double at, bool outward) {
+      record(jumping[k], value, at, outward, jumping[k] == shear_force ? interpolate(at).moment : 0.0);
     };
   }
-  template <class Record>
-  static auto of_axial(Record& record) {
-    return [&record](double value, double at, bool outward) { record(axial_force, value, at, outward, 0.0); };
-  }
+  /// The twist is known without lag.
+  static double lag_of(std::size_t k, double lag) { return jumping[k] == twist_of_track ? 0.0 : lag; }
 
   /// Whether a straight line through two instants `apart` s apart may be continued for `beyond` s: through two instants
   /// close together, at an event, it has the slope of rounding errors.
@@ -122,9 +132,10 @@ class ProbeForces {
   void add_jumping(double t, const recovery::Response& r, std::span<const recovery::StationPassage> passages,
                    double lag, Record&& record) {
     if (instants_ > 0 && t <= latest_[0].time) return;  // this instant was already added
-    const Forces relaxed = {t, r.moment, r.shear - (lag > 0.0 ? r.unrelaxed_shear : 0.0),
-                            r.axial_force - (lag > 0.0 ? r.unrelaxed_axial_force : 0.0)};
-    const bool ends_there = r.shear_beside != none || r.axial_force_beside != none;
+    Forces relaxed = {t, r.moment, jumping_of(r)};
+    if (lag > 0.0) relaxed.jumping[0] -= r.unrelaxed_shear;
+    if (lag > 0.0) relaxed.jumping[1] -= r.unrelaxed_axial_force;
+    const bool ends_there = r.shear_beside != none || r.axial_force_beside != none || r.twist_along_beside != none;
     const double tolerance = instants_ > 0 ? same_instant * (t - latest_[0].time) : 0.0;
     std::size_t between = 0;
     double passage = 0.0;
@@ -136,8 +147,11 @@ class ProbeForces {
     ended_there_ = ends_there;
     if (ends_there) {
       const auto side_forces = [&](std::size_t side) {
-        return Forces{t, relaxed.moment, relaxed.shear + r.shear_beside[side],
-                      relaxed.axial + r.axial_force_beside[side]};
+        const Jumping& there = relaxed.jumping;
+        return Forces{t,
+                      relaxed.moment,
+                      {there[0] + r.shear_beside[side], there[1] + r.axial_force_beside[side],
+                       there[2] + recovery::track_base * r.twist_along_beside[side]}};
       };
       if (between == 0) add_to_piece(side_forces(0), r, lag, record);
       finish_piece(lag, record);
@@ -159,15 +173,17 @@ class ProbeForces {
   void add_to_piece(const Forces& now, const recovery::Response& r, double lag, Record& record) {
     if (has_before_ && instants_ == 1 && reaches(latest_[0].time - before_passage_.time, now.time - latest_[0].time))
       record_sides(latest_[0].at(before_passage_.time, now), now, lag, record);
-    shear_.add(now.time, now.shear, r.shear - now.shear, lag, of_shear(record));
-    if (has_axial_) axial_.add(now.time, now.axial, r.axial_force - now.axial, lag, of_axial(record));
+    const Jumping all = jumping_of(r);
+    for (std::size_t k = 0; k < jumping.size(); ++k)
+      if (has_[k])
+        curves_[k].add(now.time, now.jumping[k], all[k] - now.jumping[k], lag_of(k, lag), of_jumping(k, record));
     latest_ = {now, latest_[0]};
     ++instants_;
   }
   template <class Record>
   void finish_piece(double lag, Record& record) {
-    if (instants_ > 0) shear_.finish(lag, of_shear(record));
-    if (instants_ > 0 && has_axial_) axial_.finish(lag, of_axial(record));
+    for (std::size_t k = 0; k < jumping.size(); ++k)
+      if (instants_ > 0 && has_[k]) curves_[k].finish(lag_of(k, lag), of_jumping(k, record));
     instants_ = 0;
     has_before_ = false;
   }
@@ -176,21 +192,21 @@ class ProbeForces {
   template <class Record>
   void record_sides(const Forces& after_passage, const Forces& now, double lag, Record& record) {
     has_before_ = false;
-    const double allowed = moment_tolerance * largest_moment_ + hinge_arm * std::abs(after_passage.shear);
+    const double allowed = moment_tolerance * largest_moment_ + hinge_arm * std::abs(after_passage.shear());
     if (std::abs(after_passage.moment - before_passage_.moment) > allowed) return;
     const bool lower = std::abs(before_passage_.moment) < std::abs(after_passage.moment);
     record(moment, lower ? before_passage_.moment : after_passage.moment, before_passage_.time, true,
-           lower ? before_passage_.shear : after_passage.shear);
-    const auto both = [&](Quantity q, double Forces::*force, double other) {
+           lower ? before_passage_.shear() : after_passage.shear());
+    for (std::size_t k = 0; k < jumping.size(); ++k) {
+      if (!has_[k]) continue;
+      const double first = before_passage_.jumping[k], second = after_passage.jumping[k],
+                   duration = now.time - after_passage.time, other = k == 0 ? after_passage.moment : 0.0;
       const JumpExtremum after =
-          extremum_after_jump(before_passage_.*force, after_passage.*force,
-                              (now.*force - after_passage.*force) / (now.time - after_passage.time), lag);
-      record(q, before_passage_.*force, before_passage_.time, true, other);
-      if (after.exists && after.later < now.time - after_passage.time)  // the line reaches no further
-        record(q, after.value, after_passage.time + after.later, true, other);
-    };
-    both(shear_force, &Forces::shear, after_passage.moment);
-    if (has_axial_) both(axial_force, &Forces::axial, 0.0);
+          extremum_after_jump(first, second, (now.jumping[k] - second) / duration, lag_of(k, lag));
+      record(jumping[k], first, before_passage_.time, true, other);
+      if (after.exists && after.later < duration)  // the line reaches no further
+        record(jumping[k], after.value, after_passage.time + after.later, true, other);
+    }
   }
 
   void store(const Forces& now) {
@@ -213,7 +229,8 @@ class ProbeForces {
   ExtremumTracker moment_;
   KinkTimes kinks_;  // of the moment
   LaggedMomentTracker lagging_moment_;
-  JumpingCurve shear_, axial_;
+  std::array<bool, jumping.size()> has_{true};
+  std::array<JumpingCurve, jumping.size()> curves_;
   std::array<Forces, 2> latest_{};  // relaxed forces in the interval between two passages, the latest first
   std::size_t instants_ = 0;        // in this interval between passages
   bool ended_there_ = false;        // the latest instant has both sides
@@ -222,7 +239,6 @@ class ProbeForces {
   std::array<Forces, 8> history_{};
   std::size_t next_ = 0, count_ = 0;
   double largest_moment_ = 0.0;  // N m
-  bool has_axial_ = false;
 };
 
 /// The least and the greatest value of one quantity at one probe, with their times.
@@ -240,8 +256,8 @@ class ResponseExtremes {
  public:
   ResponseExtremes() = default;
   /// lag: lag of the moments, b of Rayleigh damping in s, if responses have rates; axial: the beam has axial
-  /// displacements.
-  ResponseExtremes(std::size_t probes, std::size_t wheels, double lag = 0.0, bool axial = false);
+  /// displacements; twists: it twists.
+  ResponseExtremes(std::size_t probes, std::size_t wheels, double lag = 0.0, bool axial = false, bool twists = false);
 
   /// The values of places, of which only `which` (ascending) have changed since the previous instant.
   template <class Value>
@@ -281,11 +297,11 @@ class ResponseExtremes {
   std::vector<ProbeForces> forces_;
   std::vector<std::array<ExtremumTracker, motions.size()>> motions_;
   std::vector<ExtremumTracker> wheels_;
-  std::vector<std::array<Range, quantities>> ranges_;
-  std::array<std::vector<Extreme>, quantities> peaks_;
-  std::array<Extreme, quantities> largest_{};
+  std::vector<std::array<Range, evaluated_quantities>> ranges_;
+  std::array<std::vector<Extreme>, evaluated_quantities> peaks_;
+  std::array<Extreme, evaluated_quantities> largest_{};
   bool failed_ = false;
-  std::array<std::vector<Extreme>, quantities> largest_of_each_;
+  std::array<std::vector<Extreme>, evaluated_quantities> largest_of_each_;
 };
 
 /// The least magnitude of the sample next to the largest extreme of a series, relative to its largest sample.
