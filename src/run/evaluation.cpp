@@ -327,12 +327,7 @@ Result Evaluation::finish() {
   if (filtered_wheels_) summary_.filtered_unloading = filtered_wheels_->finish(system_.fleet());
   if (wants_.stored || wants_.limits) summarise_peaks();
   if (wants_.stored) record_once(result);
-  if (limit_check_) {
-    const Extreme& twist = peaks_.largest(twist_of_track);
-    if (beam_ != nullptr && beam_->model().torsion)
-      limit_check_->twist({std::abs(twist.value), twist.time, twist.place});
-    result.verdicts = limit_check_->verdicts(summary_, peaks_.largest_of_each(deflection));
-  }
+  if (limit_check_) result.verdicts = limit_check_->verdicts(summary_, peaks_);
   result.filter_unsettled = deck_ && deck_->ends_unsettled();
   result.summary = summary_;
   result.peaks = std::move(peaks_);

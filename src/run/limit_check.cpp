@@ -203,6 +203,12 @@ void LimitCheck::sample(double t, const double* v, std::span<const beam::Reactio
   }
 }
 
+std::vector<results::Verdict> LimitCheck::verdicts(const results::Summary& summary, const ResponseExtremes& peaks) {
+  const Extreme& twist = peaks.largest(twist_of_track);
+  if (torsion_ != nullptr) twist_.raise(std::abs(twist.value), twist.time, twist.place);
+  return verdicts(summary, peaks.largest_of_each(deflection));
+}
+
 std::vector<results::Verdict> LimitCheck::verdicts(const results::Summary& summary,
                                                    std::span<const Extreme> deflections) const {
   const Quantities quantities{*this, summary, deflections};

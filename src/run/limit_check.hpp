@@ -95,15 +95,14 @@ class LimitCheck {
   void rotations(double t, std::span<const double> slopes) { rotations_->record(t, slopes); }
   /// Evaluates an instant at which only the rates of the twist at the probes are known, rad/m.
   void twist_rates(double t, std::span<const double> rates) {
-    for (std::size_t p = 0; p < rates.size(); ++p) twist({recovery::track_base * std::abs(rates[p]), t, p});
+    for (std::size_t p = 0; p < rates.size(); ++p) twist_.raise(recovery::track_base * std::abs(rates[p]), t, p);
   }
-  /// Records the largest magnitudes that are known: of the twist, m; DeckRotations::raise, CarAccelerations::raise.
-  void twist(const Extreme& one) { twist_.raise(one.value, one.time, one.place); }
+  /// Records the largest magnitudes that are known: DeckRotations::raise, CarAccelerations::raise.
   void rotation(const Extreme& one) { rotations_->raise(one); }
   void car(const Extreme& one) { cars_.raise(one); }
 
-  /// The verdicts, after the last instant. deflections: the largest deflection at each probe.
-  std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Extreme> deflections) const;
+  /// The verdicts, after the last instant.
+  std::vector<results::Verdict> verdicts(const results::Summary& summary, const ResponseExtremes& peaks);
   /// What is found for each limit, from the peaks and the static deflection (m) at each probe. The summary has no
   /// values at probes but those of filtered series.
   std::vector<results::EvaluatedQuantity> evaluate(results::Summary summary, std::span<const base::ProbePeaks> peaks,
@@ -117,6 +116,8 @@ class LimitCheck {
 
  private:
   friend struct Quantities;
+  /// deflections: the largest deflection at each probe.
+  std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Extreme> deflections) const;
 
   const scene::Scene& scene_;
   const train::Fleet& fleet_;
