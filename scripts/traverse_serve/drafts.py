@@ -87,8 +87,8 @@ class Drafts:
             except inputs.InputError as error:
                 tell(answer, error.field, str(error))
             except CheckError as error:
-                words = re.findall(r"^([\w-]+) |--([\w-]+)", str(error))
-                tell(answer, named(form, [first or other for first, other in words]), str(error))
+                words = re.findall(r"^(\w[\w-]*) |--([\w-]+)", str(error))
+                tell(answer, named(form, [first or other for first, other in words]), str(error).replace("--", ""))
             except Failed as error:
                 option = options.named_in(str(error), [field.option for field in form.fields])
                 field = "text" if form.name == "scene" else named(form, [option])
