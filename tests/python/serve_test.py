@@ -121,7 +121,10 @@ class Requests(Served):
                                     ("sweep", {"beam_EI": "-1"}, "beam_EI"),
                                     ("sweep", {"sweep_speed.from": "900"}, "sweep_speed.from"),
                                     ("find", {"find_between.from": "600"}, "find_between.from"),
+                                    ("sweep", {"sweep_speed.step": "0"}, "sweep_speed.step"),
                                     ("crane", {"train_speed_file.way": "1"}, "train_speed_file.way"),
+                                    ("crane", {"train_speed_file.way": "17"}, "train_speed_file.way"),
+                                    ("crane", {"train_positions": "0"}, "train_positions"),
                                     ("check", {"span": "5"}, "hslm-b"), ("check", {"frequency": "4"}, "EI"),
                                     ("rough", {"beam_mass": "x"}, "beam_mass"),
                                     ("rough", {"study_vary_track_seed": "1.5"}, "study_vary_track_seed"),
@@ -253,6 +256,13 @@ class Tables(unittest.TestCase):
             with self.assertRaises(inputs.InputError) as caught:
                 fields.read(form, {"beam_EI": wrong})
             self.assertEqual(caught.exception.field, "beam_EI")
+
+    def test_the_highest_speed_is_computed(self):
+        form = forms.forms()["find"].fields
+        for last, step, count in (("276", "10", 18), ("300", "5", 40), ("100", "5", 0)):
+            given = fields.read(form, {"sweep_speed.from": "100", "sweep_speed.to": last, "sweep_speed.step": step})
+            first, last, step = map(float, scenes.speeds(given)[0].partition("[")[2].strip("]").split(","))
+            self.assertAlmostEqual((last - first) / step, count, places=9)
 
     def test_commas(self):
         form = forms.forms()["check"].fields
