@@ -54,9 +54,9 @@ def bridge(spans="28", stiffness="260", mass="19", searched=False):
         flag("beam_continuity", "separate simple beams", more=True)))
 
 
-def speeds(first, last, step):
+def speeds(first, last, step, hint=""):
     return (Field("sweep_speed.from", "lowest speed", first, SPEED), Field("sweep_speed.to", "highest speed", last, SPEED),
-            Field("sweep_speed.step", "step of the speeds", step, SPEED))
+            Field("sweep_speed.step", "step of the speeds", step, SPEED, hint=hint))
 
 
 def coaches(choices, preset, count="8"):
@@ -123,7 +123,7 @@ def find():
                         chosen("find_keep", "limit", {"deck_acceleration": "vertical acceleration of the deck",
                                                       "deflection_over_span": "deflection over span length",
                                                       "end_rotation": "end rotation", "": "all limits"}, "deck_acceleration"))),
-                    ("train", speeds("100", "300", "5"))), "Find")
+                    ("train", speeds("100", "300", "5", "narrower than a resonance, 2 ζ v: no speeds are added"))), "Find")
 
 
 def rough():
