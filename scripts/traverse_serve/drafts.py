@@ -12,7 +12,7 @@ from traverse_check import flow_chart, question, runs, scene, units
 from traverse_check import main as checking
 from traverse_check.rules import MARKS, CheckError
 from traverse_page import stage
-from traverse_report.language import capital, num, t
+from traverse_report.language import capital, decimal, num, t
 
 from . import fields, inputs, options, scenes
 from .jobs import kept_process
@@ -99,11 +99,12 @@ class Drafts:
         answer["unusual"] = [line for line in runs.unusual_input(printed) if line != "nothing"]
         parts = dict(re.findall(r"^  (\S+(?: \S+)*) {2,}(.*)$", printed, re.MULTILINE))
         if "first frequencies" in parts:
-            answer["facts"].append([capital(t("natural frequencies")), parts["first frequencies"]])
+            answer["facts"].append([capital(t("natural frequencies")), decimal(parts["first frequencies"].replace(",", ";"))])
         if "deflection" in parts:
-            answer["facts"].append([capital(t("greatest static deflection")), parts["deflection"].split(",")[0]])
+            value, place = parts["deflection"].split(",")[0].split(" at ")
+            answer["facts"].append([capital(t("static deflection under the moving loads")), decimal(f"{value}; {place}")])
         if "time" in parts:
-            answer["cost"] = t("expected: {time}", time=parts["time"].split(" on ")[0])
+            answer["cost"] = t("expected: {time}", time=decimal(parts["time"].split(" on ")[0].removeprefix("about ")))
         answer["described"] = printed if whole else ""
 
     def examine_check(self, form, values, language, answer):
