@@ -6,6 +6,7 @@ import re
 from typing import NamedTuple
 
 import engineering_units
+from traverse_report.language import t
 
 from .inputs import InputError
 
@@ -68,8 +69,8 @@ def number(field, word):
     except ValueError:
         value = float("nan")
     if not re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?", word) or abs(value) == float("inf"):
-        raise InputError(f"{word}: allowed: a number of digits and one decimal sign" +
-                         ("; its unit is beside the field" if field.units else ""), field.name)
+        raise InputError(f"{word}: " + t("allowed: a number of digits and one decimal sign, its unit is beside the field"
+                                         if field.units else "allowed: a number of digits and one decimal sign"), field.name)
     return value
 
 
@@ -80,8 +81,8 @@ def separated(field, text):
     if re.search(r";|[^,\s]\s+[^,\s]", text):  # what else than a comma separates them
         text = re.sub(r"(?<=[0-9]),(?=[0-9])", ".", text)
     elif re.search(r"[0-9],[0-9]", text) and (text.count(",") == 1 or re.search(r",\s", text)):
-        raise InputError(f"{text}: is a comma here a decimal sign? Allowed: a semicolon between numbers, or a decimal point and "
-                         "one number", field.name)
+        raise InputError(f"{text}: " + t("is the comma a decimal sign? Allowed: a semicolon between numbers, or a decimal point "
+                                         "and one number"), field.name)
     return [word for word in re.split(r"[,;\s]+", text) if word]
 
 
@@ -89,7 +90,7 @@ def numbers_of(field, values):
     """The numbers of a field as texts."""
     words = separated(field, written(field, values).strip())
     if not words and not field.optional:
-        raise InputError("a number is missing", field.name)
+        raise InputError(t("a number is missing"), field.name)
     for word in words:
         number(field, word)
     return words
