@@ -61,8 +61,8 @@ def collected(results):
     language.choose(asked if asked in language.LANGUAGES else "en")
     limits, verdicts = tables.limits(results), stored(results.file)
     shown = [tables.verdicts(results, limits, verdicts),
-             *(table(results) for table in (tables.search, tables.sensitivity, tables.fit, tables.screen, tables.norm,
-                                            tables.rail, tables.rest, tables.envelope)),
+             *(table(results) for table in (tables.search, tables.statistics, tables.sensitivity, tables.fit,
+                                            tables.screen, tables.norm, tables.rail, tables.rest, tables.envelope)),
              *tables.pairs(results)]
     of_runs = runs.packed_runs(results, limits)
     travels = of_runs is not None and of_runs["speeds"] is not None

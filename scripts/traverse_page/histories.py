@@ -115,9 +115,10 @@ def vehicle_charts(results):
     for name, group in couplers.items():
         data = group.get("force", group.get("fx"))
         if data is not None:
-            yield some(f"Force of the couplers {spaced(name)}, tension positive" if "force" in group else
-                       f"Force along x of the couplers {spaced(name)} on the rear vehicle", "force",
-                       [(f"behind vehicle {int(gap) + 1}", results.over_time(data)[:, i])
+            title = "Force of the couplers {name}, tension positive" if "force" in group else \
+                "Force along x of the couplers {name} on the rear vehicle"
+            yield some(t(title, name=spaced(name)), "force",
+                       [(t("behind vehicle {number}", number=int(gap) + 1), results.over_time(data)[:, i])
                         for i, gap in enumerate(group["gap"][:])])
 
 
@@ -128,9 +129,9 @@ def hanging_charts(results, hanging):
             continue
         title = "Sway: the load relative to the top of its ropes, positive ahead" if ropes else \
             "Angle of the hanging body from the vertical, positive ahead"
-        yield Chart(title, "m" if ropes else "°",
+        yield Chart(t(title), "m" if ropes else "°",
                     [Curve(named(results, one.vehicle, one.body), one.swing) for one in found])
-        yield scaled(f"Force of its {'ropes together' if ropes else 'joint'}", "force",
+        yield scaled(t("Force of its ropes together" if ropes else "Force of its joint"), "force",
                      [(named(results, one.vehicle, one.joint), one.force) for one in found])
 
 
@@ -141,18 +142,18 @@ def mechanism_charts(results):
     for column, title in enumerate(("Centres of the bodies: x", "Centres of the bodies: y", "Angles of the bodies")):
         curves = [(named(results, k, name), values[:, column]) for k, name, values in bodies]
         kept = choose(len(curves), MOST_CURVES, np.array([np.ptp(values) for _, values in curves]))
-        yield Chart(title + part_of(kept, curves), "rad" if column == 2 else "m", [Curve(*curves[i]) for i in kept])
+        yield Chart(t(title) + part_of(kept, curves), "rad" if column == 2 else "m", [Curve(*curves[i]) for i in kept])
     for dataset, title in (("reaction", "Forces of the joints"), ("force", "Forces of the springs, tension positive")):
         found = [(named(results, k, name), results.over_time(vehicle[name][dataset]))
                  for k, vehicle in enumerate(results.vehicles) for name in vehicle if dataset in vehicle[name]]
         if found:
-            yield some(title, "force", [(name, np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values)
+            yield some(t(title), "force", [(name, np.hypot(values[:, 0], values[:, 1]) if values.ndim == 2 else values)
                                         for name, values in found])
 
 
 def output_charts(results):
     for name, data in (results.file["outputs"].items() if "outputs" in results.file else ()):
-        yield Chart(f"Output of the given modes: {spaced(name)}", str(data.attrs.get("unit", "")),
+        yield Chart(t("Output of the given modes: {name}", name=spaced(name)), str(data.attrs.get("unit", "")),
                     [Curve(spaced(name), results.over_time(data))])
 
 

@@ -4,6 +4,7 @@ import numpy as np
 from animate import DRAWN, MARGIN, WIDEST, rounded
 from picture_model import MOST_SYMBOLS, Model, vertical_reach
 from picture_motion import HOLDS_HEIGHT, Body, Motion
+from traverse_report.language import t
 
 from .packing import packed
 from .vehicles import attached, is_free, numbers, parts_of
@@ -213,10 +214,10 @@ def still(results, travels=False):
     forces = [{"name": name, "sizes": packed(rows[:, 1]), "x": packed(np.tile(
         rows[:, 0] + (0.0 if stays else middle - rows[[0, -1], 0].mean()), frames))}
               for name, rows in model.forces.items()]
-    placed = "" if at_rest or not (bodies or forces) else f" {TRAVELS}" if travels else \
-        " For the picture, the train is in the middle of the bridge."
+    placed = "" if at_rest or not (bodies or forces) else t(TRAVELS) if travels else \
+        t("For the picture, the load is in the middle of the bridge.")
     return {"low": low, "high": high, "factor": 1.0, "line": None, **symbols(model),
-            "view": view_of(low, high, bottom, top), "words": f"The model to scale, undeflected.{placed}",
+            "view": view_of(low, high, bottom, top), "words": f"{t('The model to scale, undeflected.')} {placed}".strip(),
             "travels": travels, "frames": frames, "of": frames, "time": packed(np.arange(frames)),
             "middles": packed(np.full(frames, middle)), "types": types, "vehicles": vehicles,
             "rail": "rail" in results.file or "rail_forces" in results.file, "ground": True, "forces": forces}

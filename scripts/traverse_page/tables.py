@@ -1,5 +1,5 @@
-"""Tables of the page: verdicts, EN 1991-2 6.4.6.5, rail and bridge, forces at rest, envelopes, searches, sensitivity
-analyses, fits, screens, summary, options."""
+"""Tables of the page: verdicts, EN 1991-2 6.4.6.5, rail and bridge, forces at rest, envelopes, searches, statistics,
+sensitivity analyses, fits, screens, summary, options."""
 
 import re
 
@@ -7,6 +7,7 @@ import numpy as np
 from engineering_units import shown
 from picture_vehicles import wheels_of
 from traverse_report import find_sheet, fit_sheet, screen_sheet, sensitivity_sheet
+from traverse_report import statistics as of_runs
 from traverse_report.language import capital, known, num, percent, t
 from traverse_report.language import number as in_digits
 from traverse_report.limits import factors_of
@@ -152,6 +153,14 @@ def search(results):
     words = find_sheet.Words(Source(results.file.filename))
     return {"title": t("Search for values"), "first": True, "head": [capital(name) for name in find_sheet.head()],
             "rows": words.rows(), "note": capital(words.question())}
+
+
+def statistics(results):
+    """Mean, deviation and quantiles of a study; None for another file."""
+    source = Source(results.file.filename) if "study/statistics" in results.file else None
+    rows = of_runs.statistic_rows(source) if source else []
+    return {"title": t("Statistics"), "first": True, "head": [capital(name) for name in of_runs.head(rows)],
+            "rows": of_runs.cells(rows), "note": of_runs.explanation(source)} if rows else None
 
 
 def sensitivity(results):

@@ -60,32 +60,42 @@ def bound(value):
     return "?" if np.isnan(value) else num(value)
 
 
+def explanation(source):
+    over = ", ".join(source.runs.words(name)[0] for name in source.runs.over) or t("all runs")
+    return t("Over {names}; each value at the station where the mean is largest. Brackets: distribution-free "
+             "confidence interval of the quantile, {level}; ?: too few runs for a bound on this side.", names=over,
+             level=percent(source.file["study/statistics"].attrs.get("confidence", 0.95)))
+
+
+def head(rows):
+    return [t("case"), t("quantity"), t("runs"), t("mean"), t("standard deviation"),
+            *(percent(level) for level, *_ in rows[0][6])]
+
+
+def cells(rows):
+    """The table of statistic_rows as texts."""
+    made, before = [], None
+    for words, said, unit, samples, mean, deviation, quantiles in rows:
+        made.append([words if words != before else "", f"{said} ({unit})" if unit else said, str(samples), num(mean),
+                     num(deviation, ".3g")]
+                    + [f"{num(value)} [{bound(low)}; {bound(high)}]" for _, value, low, high in quantiles])
+        before = words
+    return made
+
+
 def sheet(report, source):
     rows = statistic_rows(source)
     if not rows:
         return
     page = report.page(t("Statistics"))
-    confidence = source.file["study/statistics"].attrs.get("confidence", 0.95)
-    over = ", ".join(source.runs.words(name)[0] for name in source.runs.over) or t("all runs")
-    page.text(LEFT, t("Over {names}; each value at the station where the mean is largest. Brackets: distribution-free "
-                      "confidence interval of the quantile, {level}; ?: too few runs for a bound on this side.",
-                      names=over,
-                      level=percent(confidence)), size=8, colour=GREY)
+    page.text(LEFT, explanation(source), size=8, colour=GREY)
     page.y -= 0.08
     if len(np.unique([row[0] for row in rows])) == 1:
         distributions(page, source)
-    levels = [quantile[0] for quantile in rows[0][6]]
-    width = 2.5 / max(len(levels), 1)
-    columns = [(t("case"), 1.05, "left"), (t("quantity"), 1.45, "left"), (t("runs"), 0.45, "right"),
-               (t("mean"), 0.65, "right"),
-               (t("standard deviation"), 0.7, "right")] + [(percent(level), width, "right") for level in levels]
-    cells, before = [], None
-    for words, said, unit, samples, mean, deviation, quantiles in rows:
-        cells.append([words if words != before else "", f"{said} ({unit})" if unit else said, str(samples), num(mean),
-                      num(deviation, ".3g")]
-                     + [f"{num(value)} [{bound(low)}; {bound(high)}]" for _, value, low, high in quantiles])
-        before = words
-    table(report, page, columns, cells, size=7)
+    names = head(rows)
+    widths = [1.05, 1.45, 0.45, 0.65, 0.7] + [2.5 / max(len(names) - 5, 1)] * (len(names) - 5)
+    sides = ["left"] * 2 + ["right"] * (len(names) - 2)
+    table(report, page, list(zip(names, widths, sides)), cells(rows), size=7)
 
 
 def distributions(page, source):

@@ -12,7 +12,7 @@ from traverse_check import flow_chart, question, runs, scene, units
 from traverse_check import main as checking
 from traverse_check.rules import MARKS, CheckError
 from traverse_page import stage
-from traverse_report.language import capital, num, t
+from traverse_report.language import capital, decimal, num, t
 
 from . import fields, inputs, options, scenes
 from .jobs import kept_process
@@ -82,29 +82,32 @@ class Drafts:
                     drawn = self.examine_check(form, values, language, answer)
                 else:
                     files, drawn = scene_of(form, values, language)
-                    self.add_description(self.described(files), answer, form.name == "scene")
+                    self.add_description(self.described(files), answer, form.name)
                 answer["stage"] = self.drawing(drawn) if draw else None
             except inputs.InputError as error:
                 tell(answer, error.field, str(error))
             except CheckError as error:
-                words = re.findall(r"^([\w-]+) |--([\w-]+)", str(error))
-                tell(answer, named(form, [first or other for first, other in words]), str(error))
+                words = re.findall(r"^(\w[\w-]*) |--([\w-]+)", str(error))
+                tell(answer, named(form, [first or other for first, other in words]), str(error).replace("--", ""))
             except Failed as error:
                 option = options.named_in(str(error), [field.option for field in form.fields])
                 field = "text" if form.name == "scene" else named(form, [option])
                 tell(answer, field, re.sub(r" \(scene\.yml:\d+\)", "", str(error)) if field != "text" else str(error))
         return answer
 
-    def add_description(self, printed, answer, whole):
+    def add_description(self, printed, answer, form):
         answer["unusual"] = [line for line in runs.unusual_input(printed) if line != "nothing"]
         parts = dict(re.findall(r"^  (\S+(?: \S+)*) {2,}(.*)$", printed, re.MULTILINE))
+        case = f" ({t('least EI of the search')})" if form == "find" else ""
         if "first frequencies" in parts:
-            answer["facts"].append([capital(t("natural frequencies")), parts["first frequencies"]])
+            value = decimal(parts["first frequencies"].replace(",", ";"))
+            answer["facts"].append([capital(t("natural frequencies")) + case, value])
         if "deflection" in parts:
-            answer["facts"].append([capital(t("greatest static deflection")), parts["deflection"].split(",")[0]])
+            value = decimal(parts["deflection"].split(",")[0].replace(" at", ";"))
+            answer["facts"].append([capital(t("static deflection under the moving loads")) + case, value])
         if "time" in parts:
-            answer["cost"] = t("expected: {time}", time=parts["time"].split(" on ")[0])
-        answer["described"] = printed if whole else ""
+            answer["cost"] = t("expected: {time}", time=decimal(parts["time"].split(" on ")[0].removeprefix("about ")))
+        answer["described"] = printed if form == "scene" else ""
 
     def examine_check(self, form, values, language, answer):
         """Adds the need for a dynamic analysis of the first combination of bounds. Returns the files of the drawing."""
@@ -121,7 +124,7 @@ class Drafts:
             found = flow_chart.answer(part, asked)
             needed |= found.needed
             for clause, sentence in found.steps:
-                answer["facts"].append([clause, sentence])
+                answer["facts"].append([clause.replace("figure", t("figure")), sentence])
         if any(clause.endswith(MARKS) for clause, _ in answer["facts"]):
             answer["facts"].append([" ".join(MARKS), t("{one}: one public source confirms the number of the clause; {none}: no "
                                                        "public source confirms it. Such numbers must be checked with the "

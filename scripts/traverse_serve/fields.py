@@ -6,6 +6,7 @@ import re
 from typing import NamedTuple
 
 import engineering_units
+from traverse_report.language import t
 
 from .inputs import InputError
 
@@ -68,22 +69,38 @@ def number(field, word):
     except ValueError:
         value = float("nan")
     if not re.fullmatch(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?", word) or abs(value) == float("inf"):
-        raise InputError(f"{word}: allowed: a number, with a decimal point", field.name)
+        raise InputError(f"{word}: " + t("allowed: a number of digits and one decimal sign, its unit is beside the field"
+                                         if field.units else "allowed: a number of digits and one decimal sign"), field.name)
     return value
+
+
+def separated(field, text):
+    """The numbers of a field as they are written, with decimal points."""
+    if not field.many:
+        return [text.replace(",", ".")] if text else []
+    if re.search(r";|[^,\s]\s+[^,\s]", text):  # what else than a comma separates them
+        text = re.sub(r"(?<=[0-9]),(?=[0-9])", ".", text)
+    elif re.search(r"[0-9],[0-9]", text) and (text.count(",") == 1 or re.search(r",\s", text)):
+        raise InputError(f"{text}: " + t("is the comma a decimal sign? Allowed: a semicolon between numbers, or a decimal point "
+                                         "and one number"), field.name)
+    return [word for word in re.split(r"[,;\s]+", text) if word]
+
+
+def numbers_of(field, values):
+    """The numbers of a field as texts."""
+    words = separated(field, written(field, values).strip())
+    if not words and not field.optional:
+        raise InputError(t("a number is missing"), field.name)
+    for word in words:
+        number(field, word)
+    return words
 
 
 def in_si(field, values):
     """The numbers of a field in SI units."""
-    words = re.split(r"[,;\s]+" if field.many else r"\s+", written(field, values).strip())
-    if len(words) > 1 and not field.many:
-        raise InputError("allowed: one number", field.name)
-    if words == [""]:
-        if field.optional:
-            return []
-        raise InputError("a number is missing", field.name)
     factor = factors()[unit_of(field, values)] if field.units else 1.0
     # Divides by a whole number rather than multiply by its inverse: 250 km/h are 250/3.6 m/s.
-    return [float(f"{number(field, word) * factor:.12g}") for word in words]
+    return [float(f"{float(word) * factor:.12g}") for word in numbers_of(field, values)]
 
 
 def written(field, values):
@@ -95,8 +112,7 @@ def written(field, values):
         raise InputError(f"{found}: allowed: {', '.join(field.choices)}", field.name)
     if field.kind == "flag" and found not in ("", "true"):
         raise InputError("allowed: true, or nothing", field.name)
-    # In a field of one number a comma can only be its decimal sign; elsewhere it separates numbers.
-    return found.replace(",", ".") if field.kind == "number" and not field.many else found
+    return found
 
 
 def read(fields, values, numbers=True):
@@ -107,12 +123,13 @@ def read(fields, values, numbers=True):
         raise InputError(f"{min(unknown)[:80]}: there is no such field")
     found = {}
     for field in fields:
-        text = written(field, values)
         if field.kind == "number" and numbers:
             some = in_si(field, values)
             found[field.name] = some if field.many else some[0] if some else None
         elif field.kind == "number":
-            found[field.name] = f"{text} {unit_of(field, values)}".strip() if text.strip() else ""
+            some = ", ".join(numbers_of(field, values))
+            found[field.name] = f"{some} {unit_of(field, values)}".strip() if some else ""
         else:
+            text = written(field, values)
             found[field.name] = text == "true" if field.kind == "flag" else text
     return found

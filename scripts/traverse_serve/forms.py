@@ -10,6 +10,7 @@ EI, MASS, SPEED = ("GN m2", "MN m2", "kN m2"), ("t/m", "kg/m"), ("km/h", "m/s")
 KINDS = {"prestressed": "prestressed concrete", "composite": "composite", "steel": "steel", "reinforced": "reinforced concrete",
          "filler_beam": "filler beams"}
 HSLM = "hslm_a"
+DEFECTS = " The factor for track defects, EN 1991-2 6.4.6.4, is part of the check only."
 
 
 class Form(NamedTuple):
@@ -54,9 +55,9 @@ def bridge(spans="28", stiffness="260", mass="19", searched=False):
         flag("beam_continuity", "separate simple beams", more=True)))
 
 
-def speeds(first, last, step):
+def speeds(first, last, step, hint=""):
     return (Field("sweep_speed.from", "lowest speed", first, SPEED), Field("sweep_speed.to", "highest speed", last, SPEED),
-            Field("sweep_speed.step", "step of the speeds", step, SPEED))
+            Field("sweep_speed.step", "step of the speeds", step, SPEED, hint=hint))
 
 
 def coaches(choices, preset, count="8"):
@@ -109,13 +110,13 @@ def check():
 def sweep():
     trains = {HSLM: "trains A1 to A10 of HSLM", **vehicles()}
     return Form("sweep", "Speeds", "Computes a train at many speeds: the curves over the speed show resonance, and are "
-                "compared with the limits of EN 1990.", (
+                "compared with the limits of EN 1990." + DEFECTS, (
                     bridge(), ("train", (*coaches(trains, HSLM), *speeds("150", "300", "5")))), "Compute")
 
 
 def find():
     return Form("find", "Least stiffness", "Finds the least bending stiffness with which the bridge keeps a limit under the "
-                "trains HSLM.", (
+                "trains HSLM." + DEFECTS, (
                     bridge(searched=True),
                     ("search", (
                         Field("find_between.from", "least EI of the search", "100", EI),
@@ -123,7 +124,7 @@ def find():
                         chosen("find_keep", "limit", {"deck_acceleration": "vertical acceleration of the deck",
                                                       "deflection_over_span": "deflection over span length",
                                                       "end_rotation": "end rotation", "": "all limits"}, "deck_acceleration"))),
-                    ("train", speeds("100", "300", "5"))), "Find")
+                    ("train", speeds("100", "300", "5", "narrower than a resonance, 2 ζ v: no speeds are added"))), "Find")
 
 
 def rough():

@@ -5,7 +5,7 @@ import pathlib
 import re
 from html import escape
 
-from traverse_report.language import LANGUAGES, capital, known, t
+from traverse_report.language import LANGUAGES, capital, known, num, t
 
 from .forms import examples, forms
 
@@ -210,7 +210,7 @@ def runs_page(root, language, jobs):
     rows = "".join(
         f'<tr><td><a href="{root}{language}/run/{job.number}">{job.number}</a></td><td>{said(forms()[job.form].title)}</td>'
         f'<td>{said(STATES[job.state])}{f" ({escape(t(job.verdict))})" if job.verdict else ""}</td>'
-        f'<td class="number">{job.seconds():.1f} s</td></tr>' for job in jobs)
+        f'<td class="number">{num(job.seconds(), ".1f")} s</td></tr>' for job in jobs)
     head = "".join(f"<th>{said(name)}</th>" for name in ("run", "computation", "result", "time"))
     content = f"<h1>{said('runs')}</h1>" + (
         f'<div class="table"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>' if rows else

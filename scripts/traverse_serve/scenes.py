@@ -28,6 +28,7 @@ TROLLEY = """    length: 2.8                    # m
     front_wheel: {{body: front_axle, radius: 0.1575, law: hertz, stiffness: 1.35e11}}
     rear_wheel:  {{body: rear_axle, radius: 0.1575, law: hertz, stiffness: 1.35e11}}
 """
+AXLE = 1.0  # m from the middle of the trolley to its axles
 STEEL = 1.75e6 * 8.0  # N, EA of a fall of overhead_crane.yml
 
 
@@ -52,7 +53,15 @@ def bridge(given, stiffness):
 
 
 def speeds(given):
-    return f"speed: {listed(given['sweep_speed.' + part] for part in ('from', 'to', 'step'))}", "m/s: from, to, step"
+    """The speeds at equal steps that are at most the given one, so that the highest speed is one of them."""
+    first, last, step = (given[f"sweep_speed.{part}"] for part in ("from", "to", "step"))
+    if step <= 0.0:
+        raise inputs.InputError("allowed: above 0", "sweep_speed.step")
+    if first > last:
+        raise inputs.InputError("allowed: at most the highest speed", "sweep_speed.from")
+    if first < last < first + 1e6 * step:
+        step = (last - first) / math.ceil((last - first) / step - 1e-6)
+    return f"speed: {listed((first, last, step))}", "m/s: from, to, step"
 
 
 def limits(files):
@@ -117,6 +126,11 @@ def rough(given, files):
 
 def crane(given, files):
     """The crane of options/scenes/overhead_crane.yml with other values."""
+    start, stop = given["train_positions"], given["train_positions"] + given["train_speed_file.way"]
+    for place, name in ((start, "train_positions"), (stop, "train_speed_file.way")):
+        if not AXLE <= place <= given["beam_spans"] - AXLE:
+            raise inputs.InputError(f"the middle of the trolley would be at {place:.4g} m; allowed: from {AXLE:g} m to "
+                                    f"{given['beam_spans'] - AXLE:.6g} m, with all wheels on the girder", name)
     load, rope, height = (given[f"vehicle_trolley_{name}"] for name in ("load_mass", "front_fall", "front_fall_winding_table"))
     if rope <= 0.0 or height >= rope:
         raise inputs.InputError("allowed: above 0, and longer than the height of hoisting", "vehicle_trolley_front_fall")

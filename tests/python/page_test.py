@@ -59,6 +59,7 @@ class PageTest(Computed):
     def prepare(cls):
         cls.compute("forces", CROSSING)
         cls.compute("study", STUDY, *LIMITS)
+        cls.compute("statistics", STUDY, "-study_statistics_over", "foundation_vertical_k")
         cls.compute("sweep", SWEEP, *LIMITS)
         cls.compute("rail", RAIL, "-limits", str(SOURCE / "options/limits/uic774.yml"))
         for name, scene, *words in (
@@ -71,7 +72,7 @@ class PageTest(Computed):
             if run.returncode != 0:
                 raise AssertionError(run.stdout + run.stderr)
         with_language(cls.folder / "sweep.h5", cls.folder / "german.h5", "de")
-        for name in (*OVER_TIME, "study", "sweep", "rail", "screen", "german"):
+        for name in (*OVER_TIME, "study", "statistics", "sweep", "rail", "screen", "german"):
             page.write(cls.folder / f"{name}.h5", cls.folder / f"{name}.html")
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.close)
@@ -301,6 +302,13 @@ class PageTest(Computed):
         self.assertIn(f"stiffness of the vertical springs {1e-6 * stiffness:.0f} MN/m", said)
         self.assertIn(f"{3.6 * speed:.4g} km/h", said)
         self.assertNotIn("load_speed", said)
+
+    def test_statistics_are_those_of_the_file(self):
+        self.open("statistics")
+        rows = [row for row in self.js("data.tables.find((one) => one.title === 'Statistics').rows")
+                if row[1] == "greatest deflection (mm)"]
+        means = 1e3 * self.results("statistics")["study/statistics/peak_deflection_mean"][:].max(axis=1)
+        self.assertEqual([float(row[3]) for row in rows], [float(f"{mean:.4g}") for mean in means])
 
     def test_rail_stresses_are_those_of_the_file(self):
         self.open("rail")

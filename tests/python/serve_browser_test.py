@@ -63,7 +63,7 @@ class InABrowser(Served):
         self.wait("view.stage.stage.high === 20")
         self.tab_to("EI")
         self.browser.type("80 x")
-        self.wait("byId('error-EI').textContent.includes('not known')")
+        self.wait("byId('error-EI').textContent.includes('allowed: a number')")
         self.assertEqual(self.js("byId('EI').getAttribute('aria-invalid')"), "true")
         self.js("byId('EI').select()")
         self.browser.type("80")

@@ -107,19 +107,24 @@ class Requests(Served):
                              ("sweep", {"output_file": "/var/x.h5"}), ("sweep", {"train_vehicles": "../x"})):
             status, answer = self.post(f"en/{form}/run", values)
             self.assertEqual(status, 422, answer)
-        values = {"span": "--program", "report-project": '"}, limits: x'}
-        written = scenes.check_file(fields.read(forms.forms()["check"].fields, values, numbers=False), "en")
-        self.assertIn('span: "--program m"\n', written)
+        form = forms.forms()["check"].fields
+        with self.assertRaises(inputs.InputError):
+            fields.read(form, {"span": "--program"}, numbers=False)
+        written = scenes.check_file(fields.read(form, {"report-project": '"}, limits: x'}, numbers=False), "en")
         self.assertIn('report-project: "\\"}, limits: x"\n', written)
         self.assertEqual(self.post("en/check/run", {"report-project": "a\nlimits: /etc/passwd"})[0], 422)
 
     def test_messages_are_beside_their_fields(self):
-        for form, values, field in (("check", {"span": "28 x"}, "span"), ("check", {"mass": "1", "mass:unit": "kg/m"}, "mass"),
+        for form, values, field in (("check", {"span": "28 x"}, "span"), ("check", {"span": ""}, "span"),
+                                    ("check", {"mass": "14,25"}, "mass"), ("check", {"mass": "1", "mass:unit": "kg/m"}, "mass"),
                                     ("check", {"EI": "", "frequency": "4, x"}, "frequency"),
                                     ("sweep", {"beam_EI": "-1"}, "beam_EI"),
                                     ("sweep", {"sweep_speed.from": "900"}, "sweep_speed.from"),
                                     ("find", {"find_between.from": "600"}, "find_between.from"),
+                                    ("sweep", {"sweep_speed.step": "0"}, "sweep_speed.step"),
                                     ("crane", {"train_speed_file.way": "1"}, "train_speed_file.way"),
+                                    ("crane", {"train_speed_file.way": "17"}, "train_speed_file.way"),
+                                    ("crane", {"train_positions": "0"}, "train_positions"),
                                     ("check", {"span": "5"}, "hslm-b"), ("check", {"frequency": "4"}, "EI"),
                                     ("rough", {"beam_mass": "x"}, "beam_mass"),
                                     ("rough", {"study_vary_track_seed": "1.5"}, "study_vary_track_seed"),
@@ -251,6 +256,22 @@ class Tables(unittest.TestCase):
             with self.assertRaises(inputs.InputError) as caught:
                 fields.read(form, {"beam_EI": wrong})
             self.assertEqual(caught.exception.field, "beam_EI")
+
+    def test_the_highest_speed_is_computed(self):
+        form = forms.forms()["find"].fields
+        for last, step, count in (("276", "10", 18), ("300", "5", 40), ("100", "5", 0)):
+            given = fields.read(form, {"sweep_speed.from": "100", "sweep_speed.to": last, "sweep_speed.step": step})
+            first, last, step = map(float, scenes.speeds(given)[0].partition("[")[2].strip("]").split(","))
+            self.assertAlmostEqual((last - first) / step, count, places=9)
+
+    def test_commas(self):
+        form = forms.forms()["check"].fields
+        for written, read in (("28.5", "28.5"), ("28, 35, 28", "28, 35, 28"), ("25,30,25", "25, 30, 25"), ("28;35", "28, 35"),
+                              ("28,5; 35,5", "28.5, 35.5"), ("28,5 35,5 28", "28.5, 35.5, 28"), ("28.5 , 35", "28.5, 35")):
+            self.assertEqual(fields.read(form, {"span": written}, numbers=False)["span"], f"{read} m")
+        for wrong in ("28,5", "1.500,5", "28, 35,28", "28 m", "28,5, 35,5"):
+            with self.subTest(wrong), self.assertRaises(inputs.InputError):
+                fields.read(form, {"span": wrong}, numbers=False)
 
     def test_scenes_of_the_library_are_complete_in_one_folder(self):
         complete = 0
