@@ -32,7 +32,8 @@ def study(scene, vary=None, *, folder=None, ranks=1, output=None, **options):
     scene: that of a study, or any scene with vary={"train_speed": {"from": 40, "to": 80, "step": 5}, "beam_EI": [7e9,
     8e9]}, with values as in `study: vary:` of a scene file.
     """
-    return _computed([scene] if vary is None else [scene, {"study": {"vary": vary}}], folder, ranks, output, options)
+    scenes = [scene] if vary is None else [scene, {"study": {"vary": vary}}]
+    return _computed(scenes, folder, ranks, output, options, ["study"])
 
 
 def find(scene, option, between, keep="limits", quantity=None, equals=None, *, folder=None, ranks=1, output=None,
@@ -95,7 +96,7 @@ def fit(scene, vary=None, to=None, *, folder=None, ranks=1, output=None, **optio
     computed values: series_NAME_measured, series_NAME_computed, frequencies_measured, frequencies_computed.
     """
     given = {key: value for key, value in (("vary", vary), ("to", to)) if value is not None}
-    return _computed([scene, {"fit": given}] if given else [scene], folder, ranks, output, options)
+    return _computed([scene, {"fit": given}] if given else [scene], folder, ranks, output, options, ["fit"])
 
 
 def screen(stock, fleet, limits, speeds=None, *, folder=None, ranks=1, output=None, **options):
@@ -135,11 +136,12 @@ def _version_of(path):
     return found.st_ino, found.st_size, found.st_mtime_ns
 
 
-def _computed(scenes, folder, ranks, output, options):
+def _computed(scenes, folder, ranks, output, options, verb=()):
+    """verb: the word before the scene, with which the program refuses a scene that asks for something else."""
     ranks = number_of_ranks(ranks)
     with words.of_scenes(*scenes) as (files, scratch):
         kept = pathlib.Path(folder or ".", output) if output is not None else pathlib.Path(scratch, "results.h5")
-        asked = [places.program(), *files, *words.of_options(options), "-output_quiet", "true",
+        asked = [places.program(), *verb, *files, *words.of_options(options), "-output_quiet", "true",
                  "-skip_petscrc"]
         if ranks != 1:
             asked = ["mpirun", "-n", str(ranks), *asked]

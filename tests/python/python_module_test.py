@@ -99,6 +99,13 @@ class Runs(InFolder):
         self.assertEqual(results["load_speed"].dims, ("row",))
         self.assertEqual(results["probes_x"].values[:, 0].tolist(), [10.0, 12.5])
 
+    def test_a_scene_that_is_no_study_and_no_fit(self):
+        for vary in (None, {}):
+            with self.assertRaisesRegex(traverse.Error, "is not a study or a sweep"):
+                traverse.study(FORCES, vary)
+        with self.assertRaisesRegex(traverse.Error, "is not a fit"):
+            traverse.fit(FORCES)
+
     def test_a_search_with_an_answer_for_each_stiffness(self):
         scene, bound = FORCES | {"model": {"modes": 1}}, 1.7e-3  # m
         results = traverse.find(scene, "load_speed", [20.0, 60.0], quantity="peak_deflection", equals=bound, find_points=9,
