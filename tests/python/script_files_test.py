@@ -138,6 +138,9 @@ class Written(Scripts):
                 self.assertFalse(any((self.folder / name).exists() for name in outputs))
         self.assertEqual(list(self.folder.glob(".traverse_*.*")), [])
 
+    def test_a_page_has_the_ending_of_a_page(self):
+        self.refused("p.png: allowed: .html, .htm", "page.py", "r.h5", "p.png")
+
     def test_no_link_is_followed(self):
         users, path, words = self.folder / "users", self.folder / "a.png", ("picture.py", "r.h5", "a.png")
         path.symlink_to("users")
