@@ -3,6 +3,7 @@
 import operator
 import os
 import pathlib
+import signal
 import subprocess
 import warnings
 
@@ -10,6 +11,8 @@ from . import places, words
 from .dataset import open_results
 
 MOST_RANKS = 1024
+LAST_SECONDS = 10.0  # in which an interrupted program ends its results file
+
 
 def run(scene, *, folder=None, ranks=1, output=None, **options):
     """Computes a scene and returns its results, an xarray.Dataset like that of `open`.
@@ -146,8 +149,7 @@ def _computed(scenes, folder, ranks, output, options, verb=()):
         if ranks != 1:
             asked = ["mpirun", "-n", str(ranks), *asked]
         earlier = _version_of(kept)
-        ended = subprocess.run([*asked, "-output_file", str(kept.resolve())], cwd=folder, capture_output=True,
-                               text=True, errors="replace", env=environment(), stdin=subprocess.DEVNULL)
+        ended = _ended([*asked, "-output_file", str(kept.resolve())], folder)
         for line in words.unusual_input(ended.stdout):
             warnings.warn(line, places.UnusualInput, stacklevel=3)
         if ended.returncode != 0:
@@ -156,6 +158,23 @@ def _computed(scenes, folder, ranks, output, options, verb=()):
             raise places.Error("the program has ended without results: with options such as check, help or version it "
                                "computes nothing; leave them out, or give them to the program in a terminal", 2)
         return open_results(kept)
+
+
+def _ended(asked, folder):
+    """The ended process of a command. If an exception, such as KeyboardInterrupt, ends the wait for it, the program first
+    ends its results file."""
+    with subprocess.Popen(asked, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, errors="replace", env=environment()) as process:
+        try:
+            printed = process.communicate()
+        except BaseException:
+            process.send_signal(signal.SIGINT)
+            try:
+                process.communicate(timeout=LAST_SECONDS)
+            except subprocess.TimeoutExpired:
+                process.kill()
+            raise
+    return subprocess.CompletedProcess(asked, process.returncode, *printed)
 
 
 def environment():
