@@ -139,17 +139,24 @@ def decrement_of(values, interval, frequency, noise=0.0):
                      value / np.sqrt(4.0 * np.pi**2 + value**2))
 
 
+def is_number(word):
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
 def read(path, column, first, last):
-    """(values, interval) of a column of a table between two times."""
+    """(values, interval) of a column of a table between two times. A line of names may be above the numbers."""
     lines = [line.partition("#")[0].replace(",", " ").replace(";", " ").split()
              for line in text_of(path, LARGEST_TABLE).splitlines()]
     rows = [line for line in lines if line]
+    if rows and not is_number(rows[0][0]):
+        del rows[0]
     if not rows or column < 2 or min(map(len, rows)) < column:
         raise ValueError(f"has no column {column} in every line")
-    try:
-        table = np.array([[float(row[0]), float(row[column - 1])] for row in rows])
-    except ValueError as error:
-        raise ValueError(f"{error}; a line of column names must begin with #") from None
+    table = np.array([[float(row[0]), float(row[column - 1])] for row in rows])
     table = table[(table[:, 0] >= first) & (table[:, 0] <= last)]
     if len(table) < FEWEST or not np.all(np.isfinite(table)):
         raise ValueError(f"has {len(table)} finite rows between these times; allowed: at least {FEWEST}")
@@ -161,7 +168,7 @@ def read(path, column, first, last):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("series", help="a table of times (s) and values")
+    parser.add_argument("series", help="a table of times (s) and values, with decimal points")
     parser.add_argument("--from", dest="first", type=float, default=-np.inf, help="time at which the loads have left (s)")
     parser.add_argument("--to", dest="last", type=float, default=np.inf, help="last time that is used (s)")
     parser.add_argument("--column", type=int, default=2, help="column of the values (default: 2)")

@@ -1,6 +1,7 @@
 """XDMF of a run for ParaView: the bridge as a polyline and the bodies of vehicles as points, over time."""
 
 import contextlib
+import io
 import pathlib
 import re
 import xml.etree.ElementTree as tree
@@ -105,12 +106,14 @@ def domain_of(root):
 
 @contextlib.contextmanager
 def files(root, path):
-    """Gives the HDF5 file of the data; writes it and the tree. Their names are those in the tree."""
-    with output_files.written(data_file(path), "exported") as temporary:
-        with h5py.File(temporary, "w") as out:
+    """Gives the HDF5 file of the data; writes it and the tree. Their names are those in the tree. The file is made in
+    memory, because h5py may end with a segmentation fault if a disk becomes full."""
+    with output_files.written(data_file(path), "exported") as temporary, io.BytesIO() as content:
+        with h5py.File(content, "w") as out:
             out.attrs["program"], out.attrs["name"] = output_files.RESULTS["exported"], data_file(path).name
             out.attrs["version"] = checked_results.VERSION
             yield out
+        temporary.write_bytes(content.getbuffer())
     tree.indent(root)
     with output_files.written(path, "xdmf") as temporary:
         tree.ElementTree(root).write(temporary, encoding="utf-8", xml_declaration=True)

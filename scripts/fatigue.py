@@ -198,7 +198,8 @@ def main():
               f"{given.line.slope:g}, for the passages of one day")
     print("\n".join(table(days, given.line, given.cycles)))
     if given.csv:
-        output_files.write_table(given.csv, HEAD, ([name, *cycle] for name, cycles in days.items() for cycle in cycles))
+        output_files.write_table_or_exit("fatigue.py", given.csv, HEAD,
+                                         ([name, *cycle] for name, cycles in days.items() for cycle in cycles))
 
 
 if __name__ == "__main__":

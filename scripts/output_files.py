@@ -41,6 +41,7 @@ CONTENTS = {
 FAULT = f"Fault report, written by {WRITER}"  # the comment of a ZIP file
 # Kinds of HDF5 files, and the program that they name.
 RESULTS = {"results": "traverse", "exported": "traverse export"}
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # errors of a file for which there is no room
 TAKEN = ("is there already, without the mark that Traverse leaves in such a file: it is another program's, was changed since, "
          "or is of a version without marks; remove or rename it, or name another file or folder")
 
@@ -157,21 +158,36 @@ def put_in_place(temporary, path, before):
 
 
 @contextlib.contextmanager
+def with_room(path):
+    """Raises OutputError instead of any exception that follows from a full disk or quota."""
+    try:
+        yield
+    except Exception as error:
+        cause = error
+        while cause is not None and not (isinstance(cause, OSError) and cause.errno in FULL):
+            cause = cause.__cause__ or cause.__context__
+        if cause is None:
+            raise
+        raise OutputError(f"{path}: {os.strerror(cause.errno)}") from None
+
+
+@contextlib.contextmanager
 def written(path, kind, inputs=(), head=None):
     """Gives the name of a new file in the same folder, which becomes `path` after the block has ended without an
     error."""
     check(path, kind, inputs, head)
     before = identity(path)
     mode = stat.S_IMODE(os.stat(path).st_mode) if before else 0o666 & ~current_umask()
-    handle, temporary = tempfile.mkstemp(f".{kind}", ".traverse_", pathlib.Path(path).parent)
-    os.close(handle)
-    try:
-        yield pathlib.Path(temporary)
-        os.chmod(temporary, mode)
-        put_in_place(temporary, path, before)
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(temporary)
+    with with_room(path):
+        handle, temporary = tempfile.mkstemp(f".{kind}", ".traverse_", pathlib.Path(path).parent)
+        os.close(handle)
+        try:
+            yield pathlib.Path(temporary)
+            os.chmod(temporary, mode)
+            put_in_place(temporary, path, before)
+        finally:
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(temporary)
 
 
 def current_umask():
@@ -202,6 +218,14 @@ def write_table(path, head, rows, inputs=()):
         table = csv.writer(file)
         table.writerow(map(plain_cell, head))
         table.writerows([plain_cell(value) for value in row] for row in rows)
+
+
+def write_table_or_exit(script, *words):
+    """Like write_table(), for a script that ends with the message."""
+    try:
+        write_table(*words)
+    except OutputError as error:
+        sys.exit(f"{script}: {error}")
 
 
 def save_figure(figure, path, inputs=(), **how):

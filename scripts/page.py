@@ -65,6 +65,7 @@ def page(data):
 def write(results, out):
     sys.path.insert(0, str(here))
     from traverse_page.data import collect  # imported here because it takes a second
+    output_files.kind_of(out, ("html", "htm"))
     output_files.check(out, "html", [results])
     text = page(collect(results)).encode("utf-8", "replace")
     if len(text) > LARGEST:

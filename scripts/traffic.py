@@ -90,7 +90,7 @@ def table(name, shares, line, repeated):
 
 
 def write(path, found):
-    output_files.write_table(path, HEAD, (
+    output_files.write_table_or_exit("traffic.py", path, HEAD, (
         [name, s.passage.name, s.passage.speed, s.passage.count, s.damage, max((c.range for c in s.cycles), default=0.0)]
         for name, shares in found.items() for s in shares))
 

@@ -3,6 +3,7 @@
 import operator
 import os
 import pathlib
+import signal
 import subprocess
 import warnings
 
@@ -10,6 +11,8 @@ from . import places, words
 from .dataset import open_results
 
 MOST_RANKS = 1024
+LAST_SECONDS = 10.0  # in which an interrupted program ends its results file
+
 
 def run(scene, *, folder=None, ranks=1, output=None, **options):
     """Computes a scene and returns its results, an xarray.Dataset like that of `open`.
@@ -32,7 +35,8 @@ def study(scene, vary=None, *, folder=None, ranks=1, output=None, **options):
     scene: that of a study, or any scene with vary={"train_speed": {"from": 40, "to": 80, "step": 5}, "beam_EI": [7e9,
     8e9]}, with values as in `study: vary:` of a scene file.
     """
-    return _computed([scene] if vary is None else [scene, {"study": {"vary": vary}}], folder, ranks, output, options)
+    scenes = [scene] if vary is None else [scene, {"study": {"vary": vary}}]
+    return _computed(scenes, folder, ranks, output, options, ["study"])
 
 
 def find(scene, option, between, keep="limits", quantity=None, equals=None, *, folder=None, ranks=1, output=None,
@@ -95,7 +99,7 @@ def fit(scene, vary=None, to=None, *, folder=None, ranks=1, output=None, **optio
     computed values: series_NAME_measured, series_NAME_computed, frequencies_measured, frequencies_computed.
     """
     given = {key: value for key, value in (("vary", vary), ("to", to)) if value is not None}
-    return _computed([scene, {"fit": given}] if given else [scene], folder, ranks, output, options)
+    return _computed([scene, {"fit": given}] if given else [scene], folder, ranks, output, options, ["fit"])
 
 
 def screen(stock, fleet, limits, speeds=None, *, folder=None, ranks=1, output=None, **options):
@@ -135,17 +139,17 @@ def _version_of(path):
     return found.st_ino, found.st_size, found.st_mtime_ns
 
 
-def _computed(scenes, folder, ranks, output, options):
+def _computed(scenes, folder, ranks, output, options, verb=()):
+    """verb: the word before the scene, with which the program refuses a scene that asks for something else."""
     ranks = number_of_ranks(ranks)
     with words.of_scenes(*scenes) as (files, scratch):
         kept = pathlib.Path(folder or ".", output) if output is not None else pathlib.Path(scratch, "results.h5")
-        asked = [places.program(), *files, *words.of_options(options), "-output_quiet", "true",
+        asked = [places.program(), *verb, *files, *words.of_options(options), "-output_quiet", "true",
                  "-skip_petscrc"]
         if ranks != 1:
             asked = ["mpirun", "-n", str(ranks), *asked]
         earlier = _version_of(kept)
-        ended = subprocess.run([*asked, "-output_file", str(kept.resolve())], cwd=folder, capture_output=True,
-                               text=True, errors="replace", env=environment(), stdin=subprocess.DEVNULL)
+        ended = _ended([*asked, "-output_file", str(kept.resolve())], folder)
         for line in words.unusual_input(ended.stdout):
             warnings.warn(line, places.UnusualInput, stacklevel=3)
         if ended.returncode != 0:
@@ -154,6 +158,23 @@ def _computed(scenes, folder, ranks, output, options):
             raise places.Error("the program has ended without results: with options such as check, help or version it "
                                "computes nothing; leave them out, or give them to the program in a terminal", 2)
         return open_results(kept)
+
+
+def _ended(asked, folder):
+    """The ended process of a command. If an exception, such as KeyboardInterrupt, ends the wait for it, the program first
+    ends its results file."""
+    with subprocess.Popen(asked, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, errors="replace", env=environment()) as process:
+        try:
+            printed = process.communicate()
+        except BaseException:
+            process.send_signal(signal.SIGINT)
+            try:
+                process.communicate(timeout=LAST_SECONDS)
+            except subprocess.TimeoutExpired:
+                process.kill()
+            raise
+    return subprocess.CompletedProcess(asked, process.returncode, *printed)
 
 
 def environment():

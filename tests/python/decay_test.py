@@ -71,15 +71,17 @@ class Program(unittest.TestCase):
 
     def test_table(self):
         rows = "".join(f"{t:.4f}; {5.0 if t < 1.0 else v:.12g}\n" for t, v in zip(TIME, free(MODES[0])))
-        done = self.run_on("# t; v\n" + rows, "--from", "1.0")
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        self.assertIn("1.69966", done.stdout)
-        self.assertRegex(done.stdout, r"logarithmic decrement 0\.1257 of \d+ maxima: damping ratio 0\.02,")
+        for head in ("", "# t; v\n", "time (s),probes/deflection at 12.5 m (m)\n", "time [s];v\n"):
+            with self.subTest(head):
+                done = self.run_on(head + rows, "--from", "1.0")
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                self.assertIn("1.69966", done.stdout)
+                self.assertRegex(done.stdout, r"logarithmic decrement 0\.1257 of \d+ maxima: damping ratio 0\.02,")
 
     def test_refusals(self):
         rows = "".join(f"{t:.4f} {v:.12g}\n" for t, v in zip(TIME, free(MODES[0])))
         for text, words, part in ((rows, ["--column", "3"], "no column 3"), (rows, ["--from", "7.95"], "5 finite rows"),
-                                  (rows, ["--modes", "0"], "allowed: 1 to 10"), ("t v\n" + rows, [], "begin with #"),
+                                  (rows, ["--modes", "0"], "allowed: 1 to 10"), ("t v\nunits\n" + rows, [], "no column 2"), ("0 x\n" + rows, [], "'x'"),
                                   ("0 1\n" + rows.replace("0.0000 ", "0.005 "), [], "equal intervals"),
                                   ("".join(f"{t} 1\n" for t in TIME), [], "0 oscillations"), ("", [], "no column 2")):
             with self.subTest(part):

@@ -2,8 +2,10 @@
 
 import os
 import pathlib
+import signal
 import subprocess
 import sys
+import time
 import unittest
 
 import h5py
@@ -98,6 +100,26 @@ class Runs(InFolder):
         self.assertEqual(results["peak_deflection"].dims, ("row", "probe"))
         self.assertEqual(results["load_speed"].dims, ("row",))
         self.assertEqual(results["probes_x"].values[:, 0].tolist(), [10.0, 12.5])
+
+    def test_an_interrupted_run_has_results(self):
+        path = self.folder / "slow.h5"
+        code = (f"import traverse\ntry: traverse.run({FORCES!r}, ts_dt=1e-8, output={str(path)!r})\n"
+                "except KeyboardInterrupt: print('interrupted')")
+        run = subprocess.Popen([sys.executable, "-B", "-c", code], stdout=subprocess.PIPE, text=True,
+                               env=os.environ | {"PYTHONPATH": str(SOURCE / "python")})
+        while run.poll() is None and not (path.exists() and path.stat().st_size > 0):
+            time.sleep(0.1)
+        run.send_signal(signal.SIGINT)
+        self.assertEqual((run.wait(300), run.stdout.read()), (0, "interrupted\n"))
+        run.stdout.close()
+        self.assertEqual(traverse.open(path).attrs["summary_ended"], "ended by signal 2")
+
+    def test_a_scene_that_is_no_study_and_no_fit(self):
+        for vary in (None, {}):
+            with self.assertRaisesRegex(traverse.Error, "is not a study or a sweep"):
+                traverse.study(FORCES, vary)
+        with self.assertRaisesRegex(traverse.Error, "is not a fit"):
+            traverse.fit(FORCES)
 
     def test_a_search_with_an_answer_for_each_stiffness(self):
         scene, bound = FORCES | {"model": {"modes": 1}}, 1.7e-3  # m

@@ -6,6 +6,7 @@ import importlib
 import io
 import os
 import pathlib
+import resource
 import sys
 import tempfile
 import unittest
@@ -122,6 +123,23 @@ class Written(Scripts):
                     self.refused(f"{name} is there already", *words)
                     self.assertEqual((self.folder / name).read_bytes(), MINE)
                     (self.folder / name).unlink()
+
+    def test_a_disk_without_room_is_named(self):
+        usual = resource.getrlimit(resource.RLIMIT_FSIZE)
+        for words, outputs in COMMANDS.items():
+            with self.subTest(words=words):
+                resource.setrlimit(resource.RLIMIT_FSIZE, (20, usual[1]))
+                try:
+                    status, _, error = self.script(*words)
+                finally:
+                    resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+                self.assertIn(status, range(1, 127))
+                self.assertRegex(error, rf"\A[\w.-]+: ({'|'.join(outputs)}): File too large\n\Z")
+                self.assertFalse(any((self.folder / name).exists() for name in outputs))
+        self.assertEqual(list(self.folder.glob(".traverse_*.*")), [])
+
+    def test_a_page_has_the_ending_of_a_page(self):
+        self.refused("p.png: allowed: .html, .htm", "page.py", "r.h5", "p.png")
 
     def test_no_link_is_followed(self):
         users, path, words = self.folder / "users", self.folder / "a.png", ("picture.py", "r.h5", "a.png")
