@@ -278,6 +278,8 @@ int run_check(MPI_Comm comm, const scene::Scene& given) {
   StaticResponse response;
   if (run.scene.beam) response = static_response(rest, true);
   std::vector<std::string> unusual = run.whole.unusual;
+  for (const std::string& line : given.unusual)  // of all scenes of a study
+    if (std::find(unusual.begin(), unusual.end(), line) == unusual.end()) unusual.push_back(line);
   for (const std::string& note : run.whole.notes)
     if (note.find(" has no effect") != std::string::npos) unusual.push_back(note);
   for (std::string& line : unusual_in(given, rest, axles, response)) unusual.push_back(std::move(line));

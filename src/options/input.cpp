@@ -29,12 +29,16 @@ namespace {
 Entries last_put;
 std::vector<std::string> last_notes;
 
-/// The entries of the command line. A first word without a dash is probably an options file without -options_file.
+/// The entries of the command line. A first word without a dash is probably an options file without -options_file, or
+/// a verb with an error of spelling.
 std::vector<Entry> command_line(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   if (!words.empty() && words.front().find_first_not_of('-') == 0) {
-    throw InputError(fmt::format("command line: '{}' is not the value of an option; did you mean -options_file {}?",
-                                 words.front(), words.front()));
+    const bool is_file = words.front().find_first_of("./") != std::string::npos;
+    throw InputError(fmt::format("command line: '{}' is {}", words.front(),
+                                 is_file
+                                     ? "not the value of an option; did you mean -options_file " + words.front() + "?"
+                                     : "no verb and no option; traverse run SCENE.yml computes a scene"));
   }
   return parse_words(words, "command line", 0);
 }

@@ -226,8 +226,9 @@ void record_coarse_speeds(Scene& scene) {
     if (!(width > 0.0) || v[i] - v[i - 1] <= width * v[i - 1]) continue;
     scene.unusual.push_back(fmt::format(
         "{}: the step from {:g} to {:g} km/h is larger than the half-power width of a resonance there, 2 zeta v = "
-        "{:.3g} km/h, so a limit may be exceeded between these speeds; use steps of {:.2g} km/h, or study_refine 1e-2",
-        speeds->name(), 3.6 * v[i - 1], 3.6 * v[i], 3.6 * width * v[i - 1], 3.6 * 0.25 * width * v[i - 1]));
+        "{:.3g} km/h, so a limit may be exceeded between these speeds; use steps of {:.2g} km/h{}",
+        speeds->name(), 3.6 * v[i - 1], 3.6 * v[i], 3.6 * width * v[i - 1], 3.6 * 0.25 * width * v[i - 1],
+        study.find ? "" : ", or study_refine 1e-2"));
     scene.notes.push_back(scene.unusual.back());
     return;
   }

@@ -157,6 +157,17 @@ TEST(Quantities, SpeedsInKilometresAnHour) {
 
 // --- values that break a line ----------------------------------------------------------------------------------------
 
+// Between two speeds a limit may be exceeded; a search adds no speeds.
+TEST(Quantities, SpeedsFartherApartThanAResonance) {
+  const Workplace workplace(forces_only("beam_damping_ratios: 0.01\nlimits: " + source_folder() +
+                                        "/options/limits/en1990.yml\nstudy_vary_load_speed: [20, 30, 40]\n"));
+  expect_notes(workplace,
+               {{{"-describe"}, {"load_speed: the step from 108 to 144 km/h", "2.16 km/h", "study_refine"}}});
+  const Outcome search = workplace.run({"-describe", "-find_option", "beam_EI", "-find_between", "1e9,1e11"});
+  EXPECT_NE(line_with(search, "the step from 108 to 144 km/h"), "") << search.out;
+  EXPECT_EQ(line_with(search, "study_refine"), "");
+}
+
 TEST(OneLine, WhateverTheValueHolds) {
   const Workplace workplace(small_scene());
   workplace.write("folded.yml", "train_speed: |\n  4\n  x\n");

@@ -127,6 +127,7 @@ TEST(CommandLine, PetscSeesWhatItOwnsOutOfFilesToo) {
 
 TEST(CommandLine, RefusesWhatBelongsToNothing) {
   EXPECT_PRED2(contains, message_of([] { input_of({"scene.yml"}); }), "-options_file scene.yml");
+  EXPECT_PRED2(contains, message_of([] { input_of({"runn", "scene.yml"}); }), "traverse run SCENE.yml");
   EXPECT_PRED2(contains, message_of([] {
                  input_of({"-beam_spans", "25,", "30"});
                }),

@@ -53,6 +53,8 @@ TEST(TextFiles, HoldNoControlCharactersAndNoOtherEncoding) {
     EXPECT_PRED2(contains, refused(with("\x1b")), kind.name + ":2: contains the control character 0x1b");
     EXPECT_PRED2(contains, refused(with("\xe4")), kind.name + ":2: byte 0xe4 is not valid UTF-8");
   }
+  const std::string results = folder.write("r.h5", "\x89HDF\r\n\x1a\n");
+  EXPECT_PRED2(contains, message_of([&] { read_options_file(results); }), "r.h5: is a results file");
 }
 
 TEST(TextFiles, AreNoPipesFoldersOrDevices) {
