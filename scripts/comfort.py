@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import checked_results
 import numpy as np
+import output_files
 from picture_data import Results, car_body
 
 WINDOW = 5.0  # s
@@ -123,4 +124,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    output_files.run(main)

@@ -13,6 +13,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import numpy as np  # noqa: E402
+import output_files  # noqa: E402
 import picture_page  # noqa: E402
 from checked_results import in_one_line  # noqa: E402
 from compare_data import abscissa, differing, opened_cases, peaks, runs_over_x, shown_option, station_curves  # noqa: E402
@@ -233,4 +234,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    output_files.run(main)

@@ -242,4 +242,4 @@ def main(words=None):
 
 if __name__ == "__main__":
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # ends without a message if the reader of a pipe ends, such as head
-    sys.exit(main())
+    output_files.run(main)

@@ -11,6 +11,7 @@ import sys
 from typing import NamedTuple
 
 import numpy as np
+import output_files
 from input_files import LARGEST_TABLE, InputError, text_of
 
 FEWEST = 20             # values
@@ -195,4 +196,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    output_files.run(main)

@@ -14,6 +14,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import checked_results  # noqa: E402
+import output_files  # noqa: E402
 import picture_find  # noqa: E402
 import picture_fit  # noqa: E402
 import picture_page  # noqa: E402
@@ -111,4 +112,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    output_files.run(main)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import checked_results
 import numpy as np
+import output_files
 from input_files import LARGEST_TABLE, InputError, text_of
 
 FEWEST = 20          # rows
@@ -242,4 +243,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    output_files.run(main)

@@ -139,4 +139,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    output_files.run(main)

@@ -7,8 +7,11 @@ import io
 import os
 import pathlib
 import resource
+import signal
+import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import zipfile
 from unittest import mock
@@ -137,6 +140,17 @@ class Written(Scripts):
                 self.assertRegex(error, rf"\A[\w.-]+: ({'|'.join(outputs)}): File too large\n\Z")
                 self.assertFalse(any((self.folder / name).exists() for name in outputs))
         self.assertEqual(list(self.folder.glob(".traverse_*.*")), [])
+
+    def test_a_signal_leaves_no_unfinished_file(self):
+        words = [sys.executable, "-B", str(SCRIPTS / "animate.py"), "r.h5", "-o", "long.gif", "--frames", "2000"]
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(number=number), subprocess.Popen(words, cwd=self.folder, stderr=subprocess.PIPE) as process:
+                while process.poll() is None and not list(self.folder.glob(".traverse_*.gif")):
+                    time.sleep(0.01)
+                process.send_signal(number)
+                self.assertEqual((process.stderr.read(), process.wait()), (b"", 128 + number))
+                self.assertEqual(list(self.folder.glob(".traverse_*")), [])
+                self.assertFalse((self.folder / "long.gif").exists())
 
     def test_a_page_has_the_ending_of_a_page(self):
         self.refused("p.png: allowed: .html, .htm", "page.py", "r.h5", "p.png")
