@@ -35,6 +35,20 @@ class Problem:
         other.options = self.options | other._flat(options)
         return other
 
+    def _content(self):
+        tables = tuple((name, table.shape, table.tobytes()) for name, table in sorted(self.tables.items()))
+        return self.folder, self.file, tuple(sorted(self.options.items())), tables
+
+    def __eq__(self, other):
+        return isinstance(other, Problem) and self._content() == other._content()
+
+    def __hash__(self):
+        return hash(self._content())
+
+    def __repr__(self):
+        options = "".join(f", {name}={value!r}" for name, value in self.options.items())
+        return f"Problem({self.file!r}, folder={self.folder!r}{options})"
+
     def _flat(self, block, prefix=""):
         """The options of nested blocks by their names; tables are kept by the names of their options."""
         found = {}

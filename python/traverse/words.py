@@ -8,6 +8,8 @@ import tempfile
 import numpy as np
 import yaml
 
+from . import places
+
 
 def plain(value):
     """The value in types of YAML: arrays as lists, numbers of numpy as those of Python, paths as texts."""
@@ -19,7 +21,12 @@ def plain(value):
         return value.item()
     if isinstance(value, (list, tuple, range)):
         return [plain(inner) for inner in value]
-    return os.fspath(value) if isinstance(value, os.PathLike) else value
+    if value is None or isinstance(value, (str, bool, int, float)):
+        return value
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise places.Error(f"{value!r} of a scene is of the type {type(value).__name__}; allowed: numbers, texts, booleans, paths, "
+                       "lists, arrays and dictionaries", 2)
 
 
 def text(value):

@@ -1,6 +1,7 @@
 """traverse.simulate: problems as values, their results against those of the program, observers, tables, ranks, stops."""
 
 import os
+import pickle
 import pathlib
 import signal
 import subprocess
@@ -98,8 +99,17 @@ class Simulate(InFolder):
         self.refused(2, "a problem is one run", traverse.simulate, good.with_options(sweep_speed=[20.0, 30.0, 5.0]))
         self.refused(2, "finite", traverse.simulate, good.with_options(load_table=np.array([[0.0, 1.0], [1.0, np.nan]])))
         self.refused(2, "ranks", traverse.simulate, good, ranks=0)
+        self.refused(2, "1j of a scene is of the type complex", traverse.Problem, FORCES, beam_EI=1j)
         self.refused(2, "no problem", traverse.simulate, [])
         self.refused(2, "5 is not a problem", traverse.simulate, [good, 5])
+
+    def test_a_problem_is_a_value(self):
+        load = {"speed": 30.0, "table": np.array([[0.0, 1e5], [3.0, 1e5]])}
+        one = traverse.Problem(OPEN, load=load)
+        self.assertEqual(one, pickle.loads(pickle.dumps(one)))
+        self.assertEqual(len({one, traverse.Problem(OPEN, load=load), one.with_options(load_speed=31.0)}), 2)
+        self.assertNotEqual(one, traverse.Problem(OPEN, load=load | {"table": 2.0 * load["table"]}))
+        self.assertIn("load_speed='30.0'", repr(one))
 
     def test_the_other_results_of_a_failed_run(self):
         steps = {"ts_dt": 0.02, "ts_type": "rk", "beam": BRIDGE}  # unstable, but for the softest beam
