@@ -21,13 +21,19 @@ from .site import Site
 LOCK = ".traverse_serve.lock"
 
 
+def port(text):
+    if not 0 <= int(text) <= 65535:
+        raise ValueError
+    return int(text)
+
+
 def arguments_of(given):
     parser = argparse.ArgumentParser(
         prog="traverse serve", description="A page on this machine: fill in a bridge and a train, compute, and look at the "
         "results. It ends with Ctrl+C.")
     parser.add_argument("--folder", default="results/serve", metavar="FOLDER",
                         help="the only folder that is read and written; default: results/serve")
-    parser.add_argument("--port", type=int, default=0, help="default: a free one")
+    parser.add_argument("--port", type=port, default=0, help="up to 65535; default: a free one")
     parser.add_argument("--browser", action="store_true", help="opens the page in the browser")
     parser.add_argument("--program", metavar="FILE", help="the program traverse; default: the one beside this command")
     return parser.parse_args(given)
@@ -36,7 +42,10 @@ def arguments_of(given):
 def prepared(folder):
     """(folder, a new one in it for temporary files): of this user alone, and of this server alone until it ends."""
     folder = pathlib.Path(folder)
-    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    try:
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    except FileExistsError:
+        raise CheckError(f"--folder {folder}: is a file; allowed: a folder of your own", 4) from None
     folder = folder.resolve()
     if folder.stat().st_mode & 0o022:
         raise CheckError(f"--folder {folder}: other users may write in it; allowed: a folder of your own", 4)
@@ -69,7 +78,10 @@ def run(words):
 
 def serve(site, given):
     """Answers until a signal ends it."""
-    server = Server(site, given.port)
+    try:
+        server = Server(site, given.port)
+    except OSError as error:
+        raise CheckError(f"--port {given.port}: {error.strerror}", 4) from None
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda *_: threading.Thread(target=server.shutdown).start())
     print(f"Open this address in a browser on this machine: {server.address}\nFiles: {site.folder}\nCtrl+C ends it.", flush=True)
@@ -91,8 +103,7 @@ def main():
     except subprocess.SubprocessError:
         print("traverse serve: the program traverse does not answer to -help", file=sys.stderr)
         return 4
-    except (OSError, OverflowError) as error:
-        print(f"traverse serve: {printable(getattr(error, 'filename', None) or 'start')}: "
-              f"{printable(getattr(error, 'strerror', None) or error)}", file=sys.stderr)
+    except OSError as error:
+        print(f"traverse serve: {printable(error.filename or 'start')}: {printable(error.strerror or error)}", file=sys.stderr)
         return 4
     return 0

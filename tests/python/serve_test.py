@@ -185,7 +185,7 @@ class Runs(Served):
         shared.mkdir()
         shared.chmod(0o777)
         file.write_text("")
-        for folder, why in ((self.folder, "another traverse serve"), (shared, "other users"), (file, "exists")):
+        for folder, why in ((self.folder, "another traverse serve"), (shared, "other users"), (file, "is a file")):
             ended = subprocess.run([sys.executable, "-B", SERVE, "--folder", folder, "--program", BINARY], timeout=300,
                                    capture_output=True, text=True)
             self.assertEqual((ended.returncode, len(ended.stderr.splitlines())), (4, 1))
