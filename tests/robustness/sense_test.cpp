@@ -1,6 +1,7 @@
 // What runs without an error but cannot be meant is refused; what is possible but unusual is noted.
 #include <gtest/gtest.h>
 
+#include "support/folders.hpp"
 #include "support/program.hpp"
 
 namespace traverse::test {
