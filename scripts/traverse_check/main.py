@@ -2,12 +2,14 @@
 
 import concurrent.futures
 import contextlib
+import functools
 import io
 import os
 import pathlib
 import signal
 import sys
 import textwrap
+import threading
 
 import output_files
 from output_files import write_text as write
@@ -17,6 +19,7 @@ from .rules import MARKS, CheckError, clause, printable, rule
 
 MODES = 8    # natural modes for each span that are searched
 WIDTH = 120  # of the terminal, for sentences
+CLEARED = "\r\033[K"  # the line of a terminal
 
 
 def first_frequency(file):
@@ -118,8 +121,26 @@ def check_outputs(asked, cases, words):
 
 
 def tell(text):
-    """Tells what the check is doing, which does not belong in its summary."""
-    print(f"  {text}", file=sys.stderr, flush=True)
+    """Tells what the check is doing, which does not belong in its summary; in place of the progress on a terminal."""
+    print(f"{CLEARED if sys.stderr.isatty() else ''}  {text}", file=sys.stderr, flush=True)
+
+
+class Progress:
+    """Tells the progress of several runs as the program does: on a terminal in a line that is rewritten, otherwise in a
+    line for each tenth."""
+
+    def __init__(self, names):
+        self.percents, self.shown, self.lock = dict.fromkeys(names, 0), 0, threading.Lock()
+
+    def update(self, name, percent):
+        with self.lock:
+            self.percents[name] = percent
+            mean = sum(self.percents.values()) / len(self.percents)
+            if sys.stderr.isatty():
+                print(f"{CLEARED}{mean:3.0f} %   of the runs", end="", file=sys.stderr, flush=True)
+            elif mean // 10 > self.shown:
+                self.shown = mean // 10
+                print(f"{mean:3.0f} %   of the runs", file=sys.stderr, flush=True)
 
 
 def run_all(asked, cases, factor, needed, traverse):
@@ -137,10 +158,14 @@ def run_all(asked, cases, factor, needed, traverse):
             write(asked.folder / f"{names[-1]}.yml", text)
             words = ", ".join(filter(None, [case.words, f"HSLM-{train}" if train else "load models with Φ"]))
             done.append((f"{names[-1]}.h5", words, case))
+    progress = Progress(names)
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         def compute(name):
             tell(f"{name}.yml is being computed")
-            return runs.compute(traverse, asked.folder, f"{name}.yml", f"{name}.h5")
+            printed = runs.compute(traverse, asked.folder, f"{name}.yml", f"{name}.h5",
+                                   progress=functools.partial(progress.update, name))
+            progress.percents[name] = 100
+            return printed
 
         printed = pool.map(compute, names)
         said = []
