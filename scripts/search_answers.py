@@ -6,6 +6,7 @@ import re
 from typing import NamedTuple, Optional
 
 import numpy as np
+import yaml
 
 
 class Governing(NamedTuple):
@@ -44,6 +45,7 @@ class Search:
         self.kept = options.get("find_keep", "limits")
         self.also = [name.strip() for name in options.get("find_also", "").split(",") if name.strip()]
         limited = file["criterion"].asstr()[:] if "criterion" in file else []
+        self.factors = factors_of(file, options.get("limits"))
         self._tables = group["ratio"][:], group["run"][:].astype(int), group["limit"][:].astype(int)
         self._limited = list(limited)
         rows = list(zip(group["interval_answer"][:].astype(int), group["interval"][:], group["interval_at_end"][:]))
@@ -77,6 +79,13 @@ class Search:
             least = int(np.nanargmin(ratio))
             closest = self.value[least], self.governing(number, least)
         return Answer(parts, ratio, intervals, closest)
+
+
+def factors_of(file, limits):
+    """{quantity: factor of neglected effects} of the file of limits, a copy of which the results file has."""
+    text = dict(file["input/files"].asstr()[:]).get(limits, "") if "input/files" in file else ""
+    rows = yaml.safe_load(text) or []
+    return {row["quantity"]: float(row["factor"]) for row in rows if "factor" in row}
 
 
 def parts_of(name):

@@ -35,23 +35,24 @@ def stiffnesses_of(asked, traverse):
     return [trial.EI * (frequency / n0) ** 2 for frequency in asked.frequencies]
 
 
-def check_frequency(n0, length):
-    """CheckError for a frequency of no bridge of this length: EI, mass and span do not belong together."""
-    upper = rule("frequencies")["upper"]
-    usual = upper["c"] * length ** upper["e"]
-    if not usual / 100.0 <= n0 <= 10.0 * usual:
-        raise CheckError(f"the first frequency of {n0:.3g} Hz is that of no bridge with L = {length:g} m, whose upper limit is "
-                         f"{usual:.3g} Hz (figure 6.10): check EI, mass and span with their units")
-
-
 def parts_of(asked, case, traverse):
     """The parts that the flow chart judges: the bridge, or its simply supported spans of different lengths."""
     different = [[span] for span in sorted(set(asked.spans))] if asked.separate else [asked.spans]
     found = []
     for spans in different:
         n0, length = runs.scratch_run(traverse, scene.bare_static_scene(asked, case, spans), first_frequency)
-        check_frequency(n0, length)
         found.append(flow_chart.Part(length, n0, asked.separate))
+    return found
+
+
+def parts_of_a_bridge(asked, case, traverse):
+    """The same; CheckError for a frequency of no bridge of this length: EI, mass and span do not belong together."""
+    found, upper = parts_of(asked, case, traverse), rule("frequencies")["upper"]
+    for part in found:
+        usual = upper["c"] * part.length ** upper["e"]
+        if not usual / 100.0 <= part.n0 <= 10.0 * usual:
+            raise CheckError(f"the first frequency of {part.n0:.3g} Hz is that of no bridge with L = {part.length:g} m, whose "
+                             f"upper limit is {usual:.3g} Hz (figure 6.10): check EI, mass and span with their units")
     return found
 
 
@@ -70,7 +71,7 @@ def need(asked, cases, traverse):
     print("Need for a dynamic analysis")
     needed, several, parts = False, asked.separate and len(set(asked.spans)) > 1, []
     for case in cases:
-        for part in parts_of(asked, case, traverse):
+        for part in parts_of_a_bridge(asked, case, traverse):
             parts.append(part)
             found = flow_chart.answer(part, asked)
             needed |= found.needed

@@ -10,7 +10,7 @@ import h5py
 from picture_data import Results
 from traverse_check import flow_chart, question, runs, scene, units
 from traverse_check import main as checking
-from traverse_check.rules import MARKS, CheckError
+from traverse_check.rules import MARKS, CheckError, clause
 from traverse_page import stage
 from traverse_report.language import capital, decimal, num, t
 
@@ -83,6 +83,7 @@ class Drafts:
                 else:
                     files, drawn = scene_of(form, values, language)
                     self.add_description(self.described(files), answer, form.name)
+                    self.add_factor(form, values, answer)
                 answer["stage"] = self.drawing(drawn) if draw else None
             except inputs.InputError as error:
                 tell(answer, error.field, str(error))
@@ -109,6 +110,13 @@ class Drafts:
             answer["cost"] = t("expected: {time}", time=decimal(parts["time"].split(" on ")[0].removeprefix("about ")))
         answer["described"] = printed if form == "scene" else ""
 
+    def add_factor(self, form, values, answer):
+        if (factor := factor_of(form, values, self.program)) is not None:
+            speed = num(3.6 * fields.read(form.fields, values)["sweep_speed.to"])
+            words = "{factor} at {speed} km/h and the greatest EI of the search" if form.name == "find" else \
+                "{factor} at {speed} km/h"
+            answer["facts"].append([f"1 + φ″, {clause('track_defects')}", t(words, factor=num(factor), speed=speed)])
+
     def examine_check(self, form, values, language, answer):
         """Adds the need for a dynamic analysis of the first combination of bounds. Returns the files of the drawing."""
         with self.written({}) as folder:
@@ -120,7 +128,7 @@ class Drafts:
                 raise CheckError(str(error).replace(f"{file}: ", "")) from None
         case = scene.cases(asked, checking.stiffnesses_of(asked, self.program))[0]
         needed = False
-        for part in checking.parts_of(asked, case, self.program):
+        for part in checking.parts_of_a_bridge(asked, case, self.program):
             found = flow_chart.answer(part, asked)
             needed |= found.needed
             for clause, sentence in found.steps:
@@ -155,11 +163,17 @@ def tell(answer, field, message):
         answer["general"] = message
 
 
-def scene_of(form, values, language):
-    """(files of the run, files of the drawing)"""
+def factor_of(form, values, program):
+    """The factor for track defects of the limits of a form; None for a form without them."""
+    return scenes.factor_for_track(fields.read(form.fields, values), program) if form.name in ("sweep", "find") else None
+
+
+def scene_of(form, values, language, factor=None):
+    """(files of the run, files of the drawing). factor: for track defects."""
     if form.name != "scene":
         given = fields.read(form.fields, values)
-        return (inputs.checked(scenes.scene_files(form.name, given, language)), scenes.drawn_files(form.name, given))
+        return (inputs.checked(scenes.scene_files(form.name, given, language, factor or 1.0)),
+                scenes.drawn_files(form.name, given))
     text, more = values.get("text", ""), values.get("files", {})
     if not isinstance(text, str) or not isinstance(more, dict) or not all(isinstance(one, str) for one in more.values()):
         raise inputs.InputError("allowed: texts")

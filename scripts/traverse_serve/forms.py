@@ -10,7 +10,6 @@ EI, MASS, SPEED = ("GN m2", "MN m2", "kN m2"), ("t/m", "kg/m"), ("km/h", "m/s")
 KINDS = {"prestressed": "prestressed concrete", "composite": "composite", "steel": "steel", "reinforced": "reinforced concrete",
          "filler_beam": "filler beams"}
 HSLM = "hslm_a"
-DEFECTS = " The factor for track defects, EN 1991-2 6.4.6.4, is part of the check only."
 
 
 class Form(NamedTuple):
@@ -110,13 +109,15 @@ def check():
 def sweep():
     trains = {HSLM: "trains A1 to A10 of HSLM", **vehicles()}
     return Form("sweep", "Speeds", "Computes a train at many speeds: the curves over the speed show resonance, and are "
-                "compared with the limits of EN 1990." + DEFECTS, (
+                "compared with the limits of EN 1990. Deflections, rotations and deck accelerations are judged with the "
+                "factor 1 + φ″ for track defects, EN 1991-2 6.4.6.4, at the highest speed.", (
                     bridge(), ("train", (*coaches(trains, HSLM), *speeds("150", "300", "5")))), "Compute")
 
 
 def find():
     return Form("find", "Least stiffness", "Finds the least bending stiffness with which the bridge keeps a limit under the "
-                "trains HSLM." + DEFECTS, (
+                "trains HSLM. Deflections, rotations and deck accelerations are judged with the factor 1 + φ″ for track "
+                "defects, EN 1991-2 6.4.6.4, at the highest speed and the greatest EI of the search, where it is greatest.", (
                     bridge(searched=True),
                     ("search", (
                         Field("find_between.from", "least EI of the search", "100", EI),

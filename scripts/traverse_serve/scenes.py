@@ -2,7 +2,10 @@
 
 import math
 
-from traverse_check.scene import quoted, rows
+from traverse_check import main as checking
+from traverse_check import track_defects
+from traverse_check.question import Question
+from traverse_check.scene import Case, quoted, read_limits, rows, text_of_limits
 from traverse_report.language import t
 
 from . import inputs
@@ -64,8 +67,19 @@ def speeds(given):
     return f"speed: {listed((first, last, step))}", "m/s: from, to, step"
 
 
-def limits(files):
-    files["limits.yml"] = (inputs.OPTIONS / "limits/en1990.yml").read_text(encoding="utf-8")
+def factor_for_track(given, traverse):
+    """1 + phi'' at the highest speed; of a search at the greatest EI, where the frequency and phi'' are greatest."""
+    stiffness, speed = given.get("beam_EI") or given["find_between.to"], given["sweep_speed.to"]
+    asked = Question(given["beam_spans"], [stiffness], [given["beam_mass"]], given["model_damping_bound"], speed,
+                     simply_supported=given["beam_continuity"])
+    parts = checking.parts_of(asked, Case("", "", stiffness, given["beam_mass"]), traverse)
+    return track_defects.factor(parts, speed, asked.careful)
+
+
+def limits(factor):
+    """The limits of EN 1990 with a factor for the effects of trains."""
+    path = inputs.OPTIONS / "limits/en1990.yml"
+    return text_of_limits("this page", path, track_defects.with_factor(read_limits(path), factor))
 
 
 def coaches(given, speed, files, start=None):
@@ -89,7 +103,6 @@ def stations(given):
 
 
 def sweep(given, files):
-    limits(files)
     sweeping = [speeds(given)]
     if given["train_vehicles"] == HSLM:
         sweeping.append((TRAINS, "EN 1991-2, load model HSLM-A"))
@@ -101,7 +114,6 @@ def sweep(given, files):
 
 
 def find(given, files):
-    limits(files)
     between = [given["find_between.from"], given["find_between.to"]]
     keep = [(f"keep: {given['find_keep']}", "")] if given["find_keep"] else []
     start = float(f"{math.sqrt(abs(between[0] * between[1])):.6g}")
@@ -193,10 +205,12 @@ def text_of(blocks):
                    for name, block in blocks.items())
 
 
-def scene_files(name, given, language):
-    """{file: text} of a form, with scene.yml."""
+def scene_files(name, given, language, factor):
+    """{file: text} of a form, with scene.yml. factor: of the limits of effects of trains."""
     files = {}
     blocks = BLOCKS[name](given, files)
+    if "limits" in blocks:
+        files["limits.yml"] = limits(factor)
     named = [(f"name: {quoted(t(forms()[name].title))}", ""), *blocks.get("scene", ())]
     text = HEAD.format(what=WHAT[name]) + text_of(blocks | {"scene": named, "report": [(f"language: {language}", "")]})
     return {"scene.yml": text} | files
@@ -208,7 +222,6 @@ def drawn_files(name, given):
     blocks = {block: rows for block, rows in BLOCKS[name](given, files).items() if block in MODEL}
     if not {"load", "train"} & set(blocks):
         blocks["load"] = [("hslm_a: 1", ""), ("speed: 50.0", "m/s")]
-    files.pop("limits.yml", None)
     return {"scene.yml": text_of(blocks)} | files
 
 

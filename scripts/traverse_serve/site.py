@@ -119,7 +119,7 @@ class Site:
                 Step([*script, runs.command("traverse-check"), "bridge/bridge.yml", "--folder", ".", "--program", self.program,
                       "--no-report"], "the check is being computed", judged=True),
                 Step([*script, HERE / "documents.py", folder], "the pages of results are being made")]
-        files, _ = drafts.scene_of(form, values, language)
+        files, _ = drafts.scene_of(form, values, language, drafts.factor_of(form, values, self.program))
         return files, lambda folder: [
             Step([self.program, "-options_file", "scene.yml", "-output_file", "results.h5", "-skip_petscrc"],
                  "the scene is being computed", judged=True),

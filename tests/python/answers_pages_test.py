@@ -130,6 +130,14 @@ class Answers(Reported):
                       if one["title"] == "Sensitivity analysis")
             self.assertEqual(len(table["rows"]), 2 * len(self.results(method)["quantity"]))
 
+    def test_the_factor_of_a_limit_is_said(self):
+        (self.folder / "factor.yml").write_text("- {clause: our rules, quantity: deflection_over_span, value: 1/5000, "
+                                                "factor: 1.25, text: ours}\n", encoding="utf-8")
+        self.compute("kept", SEARCH.replace(f"quantity: peak_deflection, equals: {BOUND}", "keep: deflection_over_span"),
+                     "-limits", "factor.yml")
+        table, = (one for one in data.collect(self.folder / "kept.h5")["tables"] if one["title"] == "Search for values")
+        self.assertEqual(table["note"], "Speed that keeps the limit: deflection over span length × 1.25")
+
     def test_the_pages_open_in_a_browser(self):
         browser = Browser()
         self.addCleanup(browser.close)

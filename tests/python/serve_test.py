@@ -10,11 +10,14 @@ import sys
 import tempfile
 import unittest
 
+import yaml
+
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from served import ENDLESS, SERVE, Served, processes_in  # noqa: E402
 from small_runs import BINARY, CROSSING, SOURCE  # noqa: E402
 
 sys.path.insert(0, str(SOURCE / "scripts"))
+from traverse_check import main, question, scene, track_defects  # noqa: E402
 from traverse_serve import fields, forms, inputs, jobs, options, scenes  # noqa: E402
 
 HOSTILE = ("/etc/passwd", "[1, /etc/passwd]", '"\\x2fetc/passwd"', '"a,/etc/passwd"', "../secret.csv", "x/../../secret.csv",
@@ -144,6 +147,22 @@ class Requests(Served):
         self.assertIn(["Need for a dynamic analysis", "no"], facts)
         unusual = self.post("en/sweep/draft", {"beam_mass": "40", "beam_mass:unit": "kg/m"})[1]["unusual"]
         self.assertTrue(any("beam_mass" in line for line in unusual), unusual)
+
+
+    def test_the_factor_for_track_defects_is_that_of_the_check(self):
+        given = fields.read(forms.forms()["sweep"].fields, {"sweep_speed.to": "300"})
+        asked = question.ask("--span 28 --EI 260GN.m2 --mass 19t/m --type prestressed --line-speed 250km/h".split())
+        parts = main.parts_of(asked, scene.cases(asked, asked.EI)[0], BINARY)
+        factor = track_defects.factor(parts, scene.speeds(asked)[1], False)
+        self.assertAlmostEqual(scenes.factor_for_track(given, BINARY), factor, places=12)
+        rows = yaml.safe_load(scenes.scene_files("sweep", given, "en", factor)["limits.yml"])
+        self.assertEqual({row["quantity"]: row.get("factor") for row in rows},
+                         dict.fromkeys(track_defects.QUANTITIES, f"{factor:.6g}") | {"car_acceleration": None})
+        searched = fields.read(forms.forms()["find"].fields, {})
+        self.assertGreater(scenes.factor_for_track(searched, BINARY), factor)
+        facts = dict(self.post("en/sweep/draft", {})[1]["facts"])
+        self.assertEqual(facts["1 + φ″, EN 1991-2 6.4.6.4⁰"], "1.112 at 300 km/h")
+        self.assertNotIn("1 + φ″, EN 1991-2 6.4.6.4⁰", dict(self.post("en/rough/draft", {})[1]["facts"]))
 
 
 class Runs(Served):
