@@ -30,8 +30,18 @@ class Failed(Exception):
 class Drafts:
     """One draft at a time."""
 
-    def __init__(self, program, folder, scratch):
-        self.program, self.folder, self.scratch, self.lock = program, folder, scratch, threading.Lock()
+    def __init__(self, program, folder, scratch, table):
+        self.program, self.folder, self.scratch, self.table, self.lock = program, folder, scratch, table, threading.Lock()
+
+    def check_ranges(self, form, values):
+        """InputError for a number that its field does not allow."""
+        for field in form.fields if form.name != "scene" else ():
+            kind = units.KINDS.get(field.name) if form.name == "check" else None
+            allowed = field.range or ((*kind.of_bridges, False) if kind else None)
+            if not allowed and field.option in self.table and field.kind == "number":
+                allowed = self.table[field.option].range
+            if allowed:
+                fields.check_range(field, values, allowed)
 
     def run(self, folder, *words):
         """What the program prints about scene.yml of a folder."""
@@ -78,6 +88,7 @@ class Drafts:
         answer = {"errors": {}, "general": "", "facts": [], "unusual": [], "stage": None, "cost": "", "described": ""}
         with self.lock:
             try:
+                self.check_ranges(form, values)
                 if form.name == "check":
                     drawn = self.examine_check(form, values, language, answer)
                 else:
@@ -97,7 +108,7 @@ class Drafts:
         return answer
 
     def add_description(self, printed, answer, form):
-        answer["unusual"] = [line for line in runs.unusual_input(printed) if line != "nothing"]
+        answer["unusual"] = list(dict.fromkeys(of_speed(line) for line in runs.unusual_input(printed) if line != "nothing"))
         parts = dict(re.findall(r"^  (\S+(?: \S+)*) {2,}(.*)$", printed, re.MULTILINE))
         case = f" ({t('least EI of the search')})" if form == "find" else ""
         if "first frequencies" in parts:
@@ -144,6 +155,13 @@ class Drafts:
         if asked.frequencies:
             answer["facts"].append([capital(t("bending stiffness EI")), units.in_words("EI", case.EI)])
         return {"scene.yml": scene.beam_text(asked.spans, case, asked) + "load: {hslm_a: 1, speed: 50.0}\n"}
+
+
+def of_speed(line):
+    """A line on unusual input; one on a speed in km/h, without the unit of the option."""
+    found = re.search(r"m/s is (\S+) km/h, faster than any train (in service|has run)", line)
+    return line if not found else t("{speed} km/h is faster than any train in service" if found[2] == "in service" else
+                                    "{speed} km/h is faster than any train has run", speed=num(float(found[1])))
 
 
 def check_text(form, values, language):

@@ -38,7 +38,7 @@ class Site:
         self.program, self.folder = program, folder
         self.table = options.table(program)
         self.queue = Queue(program, folder, scratch)
-        self.drafts = drafts.Drafts(program, folder, scratch)
+        self.drafts = drafts.Drafts(program, folder, scratch, self.table)
         self.root = ""  # the address up to the token, which the server sets
 
     def answer(self, method, parts, query, sent):

@@ -122,7 +122,7 @@ class Requests(Served):
                                     ("check", {"mass": "14,25"}, "mass"), ("check", {"mass": "1", "mass:unit": "kg/m"}, "mass"),
                                     ("check", {"EI": "", "frequency": "4, x"}, "frequency"),
                                     ("sweep", {"beam_EI": "-1"}, "beam_EI"),
-                                    ("sweep", {"sweep_speed.from": "900"}, "sweep_speed.from"),
+                                    ("sweep", {"sweep_speed.from": "400"}, "sweep_speed.from"),
                                     ("find", {"find_between.from": "600"}, "find_between.from"),
                                     ("sweep", {"sweep_speed.step": "0"}, "sweep_speed.step"),
                                     ("crane", {"train_speed_file.way": "1"}, "train_speed_file.way"),
@@ -136,6 +136,20 @@ class Requests(Served):
             with self.subTest(values):
                 answer = self.post(f"en/{form}/draft", values)[1]
                 self.assertEqual((list(answer["errors"]), answer["general"]), ([field], ""))
+
+    def test_messages_have_the_unit_and_the_language_of_the_page(self):
+        for language, form, values, message in (
+                ("en", "sweep", {"beam_EI": "-9"}, "−9 GN m²: allowed: above 0 GN m²"),
+                ("de", "sweep", {"beam_mass": "-3", "beam_mass:unit": "kg/m"}, "−3 kg/m: erlaubt: über 0 kg/m"),
+                ("fr", "sweep", {"sweep_speed.to": "900"}, "900 km/h: admis : plus de 0 km/h, au maximum 720 km/h"),
+                ("de", "check", {"line-speed": "5000"}, "5000 km/h: erlaubt: von 3,6 km/h bis 720 km/h"),
+                ("fr", "crane", {"beam_damping_ratios": "300"}, "300 %: admis : de 0 % à 99,9 %"),
+                ("de", "find", {"find_between.from": "600"}, "erlaubt: unter dem größten EI der Suche")):
+            with self.subTest(message):
+                field = next(name for name in values if ":" not in name)
+                self.assertEqual(self.post(f"{language}/{form}/draft", values)[1]["errors"], {field: message})
+        unusual = self.post("de/sweep/draft", {"sweep_speed.to": "500"})[1]["unusual"]
+        self.assertIn("500 km/h ist schneller als jeder Zug im Betrieb", unusual)
 
     def test_drafts_draw_and_warn(self):
         for form in FORMS:
