@@ -19,6 +19,7 @@ from .server import RESULTS_POLICY, Answer, as_json
 
 HERE, SCRIPTS = pathlib.Path(__file__).resolve().parent, pathlib.Path(__file__).resolve().parents[1]
 ASSETS = {"page.css": "traverse_page", "serve.css": "traverse_serve", "serve.js": "traverse_serve", "form.js": "traverse_serve",
+          "menu.js": "traverse_serve",
           "format.js": "traverse_page", "symbols.js": "traverse_page", "places.js": "traverse_page",
           "stage.js": "traverse_page"}
 KINDS = {".css": "text/css", ".js": "text/javascript", ".html": "text/html", ".pdf": "application/pdf", ".png": "image/png",
