@@ -149,9 +149,10 @@ class Drafts:
                                                        "public source confirms it. Such numbers must be checked with the "
                                                        "norm.", one=MARKS[1], none=MARKS[0])])
         first, last, _ = scene.speeds(asked)
-        speeds = [num(value * 3.6, ".4g") for value in (first, last)] if needed or asked.always else None
-        answer["facts"].insert(0, [capital(t("need for a dynamic analysis")), t("yes: {first} to {last} km/h", first=speeds[0],
-                                                                                last=speeds[1]) if speeds else t("no")])
+        words = "yes: {first} to {last} km/h" if needed else "no" if not asked.always else \
+            "no; the analysis runs because it was asked for: {first} to {last} km/h"
+        answer["facts"].insert(0, [capital(t("need for a dynamic analysis")),
+                                   t(words, first=num(3.6 * first), last=num(3.6 * last))])
         if asked.frequencies:
             answer["facts"].append([capital(t("bending stiffness EI")), units.in_words("EI", case.EI)])
         return {"scene.yml": scene.beam_text(asked.spans, case, asked) + "load: {hslm_a: 1, speed: 50.0}\n"}

@@ -159,6 +159,8 @@ class Requests(Served):
                 self.assertGreater(answer["stage"]["high"], 20.0)
         facts = self.post("en/check/draft", {"line-speed": "150"})[1]["facts"]
         self.assertIn(["Need for a dynamic analysis", "no"], facts)
+        facts = self.post("en/check/draft", {"line-speed": "150", "always": "true"})[1]["facts"]
+        self.assertIn(["Need for a dynamic analysis", "no; the analysis runs because it was asked for: 144 to 180 km/h"], facts)
         unusual = self.post("en/sweep/draft", {"beam_mass": "40", "beam_mass:unit": "kg/m"})[1]["unusual"]
         self.assertTrue(any("beam_mass" in line for line in unusual), unusual)
 
