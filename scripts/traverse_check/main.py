@@ -10,6 +10,7 @@ import signal
 import sys
 import textwrap
 import threading
+import time
 
 import output_files
 from output_files import write_text as write
@@ -20,6 +21,7 @@ from .rules import MARKS, CheckError, clause, printable, rule
 MODES = 8    # natural modes for each span that are searched
 WIDTH = 120  # of the terminal, for sentences
 CLEARED = "\r\033[K"  # the line of a terminal
+SILENT_START = 2.0  # s without progress, as in the program
 
 
 def first_frequency(file):
@@ -132,11 +134,14 @@ class Progress:
 
     def __init__(self, names):
         self.percents, self.shown, self.lock = dict.fromkeys(names, 0), 0, threading.Lock()
+        self.begin = time.monotonic()
 
     def update(self, name, percent):
         with self.lock:
             self.percents[name] = percent
             mean = sum(self.percents.values()) / len(self.percents)
+            if mean == 100.0 or time.monotonic() - self.begin < SILENT_START:
+                return
             if sys.stderr.isatty():
                 print(f"{CLEARED}{mean:3.0f} %   of the runs", end="", file=sys.stderr, flush=True)
             elif mean // 10 > self.shown:
@@ -165,7 +170,7 @@ def run_all(asked, cases, factor, needed, traverse):
             tell(f"{name}.yml is being computed")
             printed = runs.compute(traverse, asked.folder, f"{name}.yml", f"{name}.h5",
                                    progress=functools.partial(progress.update, name))
-            progress.percents[name] = 100
+            progress.update(name, 100)
             return printed
 
         printed = pool.map(compute, names)

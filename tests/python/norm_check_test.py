@@ -274,6 +274,7 @@ class Commands(unittest.TestCase):
                            "left'\necho summary\necho a warning >&2\n", encoding="utf-8")
         program.chmod(0o755)
         progress = main.Progress(["first", "second"])
+        progress.begin -= main.SILENT_START
         with contextlib.redirect_stderr(told):
             said = runs.compute(str(program), self.folder, "a.yml", "a.h5",
                                 progress=functools.partial(progress.update, "second"))
