@@ -117,7 +117,8 @@ def check_range(field, values, allowed):
         low, high = (f"{shown(bound / factor)} {printed(unit)}".strip() for bound in (least, most))
         words = ("allowed: above {low}, at most {high}" if without else "allowed: from {low} to {high}") if most < math.inf \
             else "allowed: above {low}" if without else "allowed: at least {low}"
-        raise InputError(f"{shown(float(word))} {printed(unit)}".strip() + ": " + t(words, low=low, high=high), field.name)
+        raise InputError(t("{value} is not possible here; {allowed}", value=f"{shown(float(word))} {printed(unit)}".strip(),
+                           allowed=t(words, low=low, high=high)), field.name)
 
 
 def shown(value):

@@ -139,11 +139,13 @@ class Requests(Served):
 
     def test_messages_have_the_unit_and_the_language_of_the_page(self):
         for language, form, values, message in (
-                ("en", "sweep", {"beam_EI": "-9"}, "−9 GN m²: allowed: above 0 GN m²"),
-                ("de", "sweep", {"beam_mass": "-3", "beam_mass:unit": "kg/m"}, "−3 kg/m: erlaubt: über 0 kg/m"),
-                ("fr", "sweep", {"sweep_speed.to": "900"}, "900 km/h: admis : plus de 0 km/h, au maximum 720 km/h"),
-                ("de", "check", {"line-speed": "5000"}, "5000 km/h: erlaubt: von 3,6 km/h bis 720 km/h"),
-                ("fr", "crane", {"beam_damping_ratios": "300"}, "300 %: admis : de 0 % à 99,9 %"),
+                ("en", "sweep", {"beam_EI": "-9"}, "−9 GN m² is not possible here; allowed: above 0 GN m²"),
+                ("de", "sweep", {"beam_mass": "-3", "beam_mass:unit": "kg/m"},
+                 "−3 kg/m ist hier nicht möglich; erlaubt: über 0 kg/m"),
+                ("fr", "sweep", {"sweep_speed.to": "900"},
+                 "900 km/h n'est pas possible ici ; admis : plus de 0 km/h, au maximum 720 km/h"),
+                ("de", "check", {"line-speed": "5000"}, "5000 km/h ist hier nicht möglich; erlaubt: von 3,6 km/h bis 720 km/h"),
+                ("fr", "crane", {"beam_damping_ratios": "300"}, "300 % n'est pas possible ici ; admis : de 0 % à 99,9 %"),
                 ("de", "find", {"find_between.from": "600"}, "erlaubt: unter dem größten EI der Suche")):
             with self.subTest(message):
                 field = next(name for name in values if ":" not in name)
