@@ -286,6 +286,10 @@ class PageTest(Computed):
             found[name] = self.js("['said', 'drawn'].map((one) => byId(one).textContent)")
         self.assertRegex(found["german"][0], r"^Größte Durchbiegung \d+,\d mm, Feld 2, bei 27,5 m unter Zug A10 bei "
                                              r"288 km/h; das \d,\d\d-Fache der statischen$")
+        self.open("german")
+        labels = self.js("page.all.flatMap((card) => card.chart.scales.y.ticks.map((one) => one.label))")
+        self.assertEqual([one for one in labels if "." in str(one)], [])
+        self.assertTrue(any("," in str(one) for one in labels), labels)
         self.assertRegex(found["cars"][0], r"^Greatest deflection \d+\.\d mm, middle of span 2 \(40 m\); ")
         self.assertRegex(found["cars"][1], r"^Vertical displacements of bridge and vehicles are drawn 100 times too large, ")
         self.assertRegex(found["french"][0], r"^Flèche maximale \d+,\d mm, milieu de la travée 2 \(40 m\) ; ")
