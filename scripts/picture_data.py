@@ -3,6 +3,7 @@
 import re
 
 import numpy as np
+from traverse_report.language import num, span_of, t
 
 MOST_CURVES = 6
 MOST_WHEELS = 4
@@ -38,7 +39,7 @@ class Results:
 
     def beside_axis(self, probe):
         """The eccentricity of a probe's track as text, empty if no tracks have names."""
-        return "" if self.eccentricities is None else f", e = {self.eccentricities[probe]:+.4g} m"
+        return "" if self.eccentricities is None else f", e = {num(self.eccentricities[probe], '+.4g')} m"
 
     def over_time(self, dataset):
         return dataset[: self.rows]
@@ -83,19 +84,15 @@ def ordinal(k, count, noun):
 
 def place_in_words(x, supports):
     """A position as text: 'middle of span 1 (12.5 m)'."""
-    at = f"{x:.6g} m"
-    if supports is None or len(supports) < 2 or not supports[0] <= x <= supports[-1]:
-        return f"at {at}"
-    single = len(supports) == 2
-    span = min(int(np.searchsorted(supports, x, side="right")) - 1, len(supports) - 2)
-    left, right = supports[span], supports[span + 1]
-    part = (x - left) / (right - left)
-    name = "the span" if single else f"span {span + 1}"
+    at, inside = f"{num(x, '.6g')} m", span_of(x, supports)
+    if inside is None or (inside[1] is None and len(supports) == 2):
+        return t("at {value}", value=at)
+    number, part = inside
+    if part is None:
+        return t("span {number}, at {place}", number=number, place=at)
     words = {0.0: "left end", 0.25: "quarter", 0.5: "middle", 0.75: "three quarters", 1.0: "right end"}
-    for value, word in words.items():
-        if abs(part - value) < 0.005:
-            return f"{word} of {name} ({at})"
-    return f"at {at}" if single else f"{name}, at {at}"
+    template = "{part} of the span ({place})" if len(supports) == 2 else "{part} of span {number} ({place})"
+    return t(template, part=t(words[part]), number=number, place=at)
 
 
 def thin(time, values):
@@ -138,8 +135,8 @@ def choose(count, most, weights):
 def choose_probes(results, peaks):
     """Indices of probes; if there are too many, those at midspans."""
     everywhere = np.arange(len(peaks))
-    words = [place_in_words(x, results.supports) for x in results.probes] if len(peaks) > MOST_CURVES else []
-    middles = np.array([i for i, word in enumerate(words) if word.startswith("middle")], dtype=int)
+    inside = [span_of(x, results.supports) for x in results.probes] if len(peaks) > MOST_CURVES else []
+    middles = np.array([i for i, found in enumerate(inside) if found and found[1] == 0.5], dtype=int)
     candidates = middles if len(middles) > 1 else everywhere
     return [int(candidates[i]) for i in choose(len(candidates), MOST_CURVES, peaks[candidates])]
 

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 from picture_model import Model, body_boxes, rods
+from traverse_report.language import num, t
 
 HOLDS_HEIGHT = ("pinned", "roller", "clamped")
 HOLDS_SLOPE = ("clamped", "guided")
@@ -122,13 +123,12 @@ class Motion:
         return max(np.abs(values).max() for values in self.at_tracks)
 
     def in_words(self):
-        many = len(self.stations) > 1
-        said = f"between the {f'{len(self.stations)} stations' if many else 'one station'} and the supports: " \
-            f"{'cubic splines' if many else 'a cubic spline'}"
+        said = [t("between the {count} stations and the supports: cubic splines", count=len(self.stations))
+                if len(self.stations) > 1 else t("between the one station and the supports: a cubic spline")]
         if len(self.tracks) > 1:
-            first, *others = (f"{e:+.4g} m" for e in self.tracks)
-            said += f"; thick: the track at {first}, thin: {', '.join(others)}"
-        return said + ("; spans without a station are not drawn" if np.isnan(self.matrix).any() else "")
+            first, *others = (f"{num(e, '+.4g')} m" for e in self.tracks)
+            said.append(t("thick: the track at {first}, thin: {others}", first=first, others=", ".join(others)))
+        return t("; ").join(said + [t("spans without a station are not drawn")] * bool(np.isnan(self.matrix).any()))
 
     def forces(self, row):
         """[f, 2]: positions of the moving forces and the forces, m and N."""

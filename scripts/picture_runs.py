@@ -5,7 +5,7 @@ from typing import NamedTuple
 import engineering_units
 import numpy as np
 from option_words import option_in_words
-from traverse_report.language import capital
+from traverse_report.language import capital, decimal, known, t
 from traverse_report.quantities import QUANTITIES, words_of
 
 # Limits of quantities with another name in the results.
@@ -27,13 +27,13 @@ def engineering_of_si(unit):
 
 def grouped(value, form):
     """A number with narrow spaces between its thousands; form: a format with a comma."""
-    return format(value, form).replace(",", "\u202f")
+    return decimal(format(value, form))
 
 
 def digits(value):
     """A number with four significant digits, without a power of ten if possible."""
     short = f"{value:.4g}"
-    return grouped(float(short), ",.0f") if "e+" in short and abs(value) < 1e7 else short
+    return grouped(float(short), ",.0f") if "e+" in short and abs(value) < 1e7 else decimal(short)
 
 
 def in_words(value, unit):
@@ -54,7 +54,7 @@ class Axis(NamedTuple):
     @property
     def said(self):
         """The option, or the random ones, in words."""
-        return " and ".join(map(option_in_words, self.name.split(" and ")))
+        return " and ".join(known(option_in_words(name)) for name in self.name.split(" and "))
 
     def label(self):
         name = " with ".join([self.said, *map(option_in_words, self.others)])
@@ -69,7 +69,7 @@ class Axis(NamedTuple):
     def full_words(self, i):
         """The same with the option in words, which a speed does not need; of several random options the draw."""
         if self.random and " and " in self.name:
-            return f"draw {i + 1}"
+            return t("draw {number}", number=i + 1)
         named = self.unit and not self.name.endswith("speed")
         return f"{self.said} {self.words(i)}" if named else self.words(i)
 

@@ -3,17 +3,20 @@
 from engineering_units import shown
 from picture_data import MOST_CURVES, place_in_words, speed_of
 from picture_runs import Runs
+from traverse_report.language import num, t
 
 
 def millimetres(metres):
     unit, factor = shown("deflection")
-    return f"{1e6 * abs(metres):.3g} µm" if 0.0 < abs(metres) < 1e-5 else f"{factor * abs(metres):.3g} {unit}"
+    if 0.0 < abs(metres) < 1e-5:
+        unit, factor = "µm", 1e6
+    return f"{num(factor * abs(metres), '.3g')} {unit}"
 
 
 def speed_in_words(*speeds):
     """A speed in m/s, or a range of speeds, as text."""
     unit, factor = shown("speed")
-    return f"{' to '.join(f'{factor * speed:.4g}' for speed in speeds)} {unit}"
+    return f"{' to '.join(num(factor * speed) for speed in speeds)} {unit}"
 
 
 def from_rest(options):
@@ -26,37 +29,41 @@ def weighs(options):
     return options.get("beam_self_weight", "false").lower() in ("", "true", "yes", "on", "1")
 
 
-def run_in_words(results, name):
-    """Train and speed of a peak in a sweep: ' by train A10 at 344 km/h'; the run of one in a study; otherwise empty."""
-    summary = results.summary
+def with_run(results, name, said):
+    """A text about a peak with train and speed in a sweep: 'by train A10 at 344 km/h'; with the run in a study."""
+    summary, parts = results.summary, [said]
     if f"{name}_run" in summary and "study/finished" in results.file:
         run = Runs(results).run_in_words(int(summary[f"{name}_run"]))
-        return f" in the run with {run}" if run else ""
-    train = f" by train A{summary[f'{name}_train']}" if f"{name}_train" in summary else ""
-    speed = f" at {speed_in_words(summary[f'{name}_speed'])}" if f"{name}_speed" in summary else ""
-    return train + speed
+        return t("{peak} in the run with {run}", peak=said, run=run) if run else said
+    if f"{name}_train" in summary:
+        parts.append(t("by train {train}", train=f"A{summary[f'{name}_train']}"))
+    if f"{name}_speed" in summary:
+        parts.append(t("at {value}", value=speed_in_words(summary[f"{name}_speed"])))
+    return " ".join(parts)
 
 
 def summary_in_words(results):
     """The peaks of /summary as text. The amplification is that of the greatest deflection."""
     summary, said = results.summary, []
     if summary.get("deflection"):
-        probed = "" if "sweep" in results.file or at_worst_place(results) else " at a probe"
-        said.append(f"greatest deflection{probed} {millimetres(summary['deflection'])}, "
-                    f"{place_in_words(summary['deflection_place'], results.supports)}"
-                    f"{run_in_words(results, 'deflection')}"
-                    f"{' relative to the supports' if 'deflection_relative_to' in summary else ''}")
+        words = "greatest deflection {value}, {place}" if "sweep" in results.file or at_worst_place(results) else \
+            "greatest deflection at a probe {value}, {place}"
+        peak = with_run(results, "deflection", t(words, value=millimetres(summary["deflection"]), place=place_in_words(
+            summary["deflection_place"], results.supports)))
+        said.append(t("{peak} relative to the supports", peak=peak) if "deflection_relative_to" in summary else peak)
     if summary.get("amplification") and not from_rest(results.options):
-        weight = ", both with the weight of the bridge" if weighs(results.options) else ""
-        said.append(f"{summary['amplification']:.3g} times the static one{weight}")
+        words = "{factor} times the static one, both with the weight of the bridge" if weighs(results.options) else \
+            "{factor} times the static one"
+        said.append(t(words, factor=num(summary["amplification"], ".3g")))
     if summary.get("least_wheel_force") is not None:
         wheels = "least_wheel" in summary or "least_wheel_force_speed" in summary
-        force = f"least wheel force {shown('force')[1] * summary['least_wheel_force']:.3g} kN"
-        said += [force + run_in_words(results, "least_wheel_force")] if wheels else []
+        unit, factor = shown("force")
+        force = f"{t('least wheel force')} {num(factor * summary['least_wheel_force'], '.3g')} {unit}"
+        said += [with_run(results, "least_wheel_force", force)] if wheels else []
     if "exit/time" in results.file and len(results.file["exit/time"]):
         (time, *_), (velocity, *_) = results.values("exit/time"), results.values("exit/velocity")
-        said.append(f"the vehicle leaves the beam after {time:.4g} s at {abs(velocity[0]):.4g} m/s, turning at "
-                    f"{velocity[2]:.3g} rad/s".replace("-", "−"))
+        said.append(t("the vehicle leaves the beam after {time} s at {speed} m/s, turning at {rate} rad/s", time=num(time),
+                      speed=num(abs(velocity[0])), rate=num(velocity[2], ".3g")))
     return said
 
 

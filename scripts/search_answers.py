@@ -6,6 +6,7 @@ import re
 from typing import NamedTuple, Optional
 
 import numpy as np
+import yaml
 
 
 class Governing(NamedTuple):
@@ -44,6 +45,7 @@ class Search:
         self.kept = options.get("find_keep", "limits")
         self.also = [name.strip() for name in options.get("find_also", "").split(",") if name.strip()]
         limited = file["criterion"].asstr()[:] if "criterion" in file else []
+        self.factors = factors_of(results)
         self._tables = group["ratio"][:], group["run"][:].astype(int), group["limit"][:].astype(int)
         self._limited = list(limited)
         rows = list(zip(group["interval_answer"][:].astype(int), group["interval"][:], group["interval_at_end"][:]))
@@ -65,6 +67,10 @@ class Search:
         within = np.where(ratio <= 1.0, ratio, -np.inf)
         return int(run[within.argmax() if np.isfinite(within).any() else np.nanargmin(ratio)])
 
+    def beyond(self):
+        """What governs next to the ends of the intervals of all runs, outside of them."""
+        return [one for interval in self.answers[-1].intervals for one in interval.beyond if one is not None]
+
     def _answer(self, number, parts, rows):
         intervals = []
         for ends, at_end in rows:
@@ -77,6 +83,13 @@ class Search:
             least = int(np.nanargmin(ratio))
             closest = self.value[least], self.governing(number, least)
         return Answer(parts, ratio, intervals, closest)
+
+
+def factors_of(results):
+    """{quantity: factor of neglected effects} of the file of limits, a copy of which the results file has."""
+    copies = dict(results.file["input/files"].asstr()[:]) if "input/files" in results.file else {}
+    rows = yaml.safe_load(copies.get(results.options.get("limits"), "")) or []
+    return {row["quantity"]: float(row["factor"]) for row in rows if "factor" in row}
 
 
 def parts_of(name):

@@ -2,12 +2,15 @@
 
 import concurrent.futures
 import contextlib
+import functools
 import io
 import os
 import pathlib
 import signal
 import sys
 import textwrap
+import threading
+import time
 
 import output_files
 from output_files import write_text as write
@@ -17,6 +20,8 @@ from .rules import MARKS, CheckError, clause, printable, rule
 
 MODES = 8    # natural modes for each span that are searched
 WIDTH = 120  # of the terminal, for sentences
+CLEARED = "\r\033[K"  # the line of a terminal
+SILENT_START = 2.0  # s without progress, as in the program
 
 
 def first_frequency(file):
@@ -32,23 +37,24 @@ def stiffnesses_of(asked, traverse):
     return [trial.EI * (frequency / n0) ** 2 for frequency in asked.frequencies]
 
 
-def check_frequency(n0, length):
-    """CheckError for a frequency of no bridge of this length: EI, mass and span do not belong together."""
-    upper = rule("frequencies")["upper"]
-    usual = upper["c"] * length ** upper["e"]
-    if not usual / 100.0 <= n0 <= 10.0 * usual:
-        raise CheckError(f"the first frequency of {n0:.3g} Hz is that of no bridge with L = {length:g} m, whose upper limit is "
-                         f"{usual:.3g} Hz (figure 6.10): check EI, mass and span with their units")
-
-
 def parts_of(asked, case, traverse):
     """The parts that the flow chart judges: the bridge, or its simply supported spans of different lengths."""
     different = [[span] for span in sorted(set(asked.spans))] if asked.separate else [asked.spans]
     found = []
     for spans in different:
         n0, length = runs.scratch_run(traverse, scene.bare_static_scene(asked, case, spans), first_frequency)
-        check_frequency(n0, length)
         found.append(flow_chart.Part(length, n0, asked.separate))
+    return found
+
+
+def parts_of_a_bridge(asked, case, traverse):
+    """The same; CheckError for a frequency of no bridge of this length: EI, mass and span do not belong together."""
+    found, upper = parts_of(asked, case, traverse), rule("frequencies")["upper"]
+    for part in found:
+        usual = upper["c"] * part.length ** upper["e"]
+        if not usual / 100.0 <= part.n0 <= 10.0 * usual:
+            raise CheckError(f"the first frequency of {part.n0:.3g} Hz is that of no bridge with L = {part.length:g} m, whose "
+                             f"upper limit is {usual:.3g} Hz (figure 6.10): check EI, mass and span with their units")
     return found
 
 
@@ -67,7 +73,7 @@ def need(asked, cases, traverse):
     print("Need for a dynamic analysis")
     needed, several, parts = False, asked.separate and len(set(asked.spans)) > 1, []
     for case in cases:
-        for part in parts_of(asked, case, traverse):
+        for part in parts_of_a_bridge(asked, case, traverse):
             parts.append(part)
             found = flow_chart.answer(part, asked)
             needed |= found.needed
@@ -118,8 +124,29 @@ def check_outputs(asked, cases, words):
 
 
 def tell(text):
-    """Tells what the check is doing, which does not belong in its summary."""
-    print(f"  {text}", file=sys.stderr, flush=True)
+    """Tells what the check is doing, which does not belong in its summary; in place of the progress on a terminal."""
+    print(f"{CLEARED if sys.stderr.isatty() else ''}  {text}", file=sys.stderr, flush=True)
+
+
+class Progress:
+    """Tells the progress of several runs as the program does: on a terminal in a line that is rewritten, otherwise in a
+    line for each tenth."""
+
+    def __init__(self, names):
+        self.percents, self.shown, self.lock = dict.fromkeys(names, 0), 0, threading.Lock()
+        self.begin = time.monotonic()
+
+    def update(self, name, percent):
+        with self.lock:
+            self.percents[name] = percent
+            mean = sum(self.percents.values()) / len(self.percents)
+            if mean == 100.0 or time.monotonic() - self.begin < SILENT_START:
+                return
+            if sys.stderr.isatty():
+                print(f"{CLEARED}{mean:3.0f} %   of the runs", end="", file=sys.stderr, flush=True)
+            elif mean // 10 > self.shown:
+                self.shown = mean // 10
+                print(f"{mean:3.0f} %   of the runs", file=sys.stderr, flush=True)
 
 
 def run_all(asked, cases, factor, needed, traverse):
@@ -137,10 +164,14 @@ def run_all(asked, cases, factor, needed, traverse):
             write(asked.folder / f"{names[-1]}.yml", text)
             words = ", ".join(filter(None, [case.words, f"HSLM-{train}" if train else "load models with Φ"]))
             done.append((f"{names[-1]}.h5", words, case))
+    progress = Progress(names)
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         def compute(name):
             tell(f"{name}.yml is being computed")
-            return runs.compute(traverse, asked.folder, f"{name}.yml", f"{name}.h5")
+            printed = runs.compute(traverse, asked.folder, f"{name}.yml", f"{name}.h5",
+                                   progress=functools.partial(progress.update, name))
+            progress.update(name, 100)
+            return printed
 
         printed = pool.map(compute, names)
         said = []

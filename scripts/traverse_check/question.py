@@ -47,29 +47,29 @@ TITLE = ("project", "structure", "line", "author", "checker", "revision", "date"
 class Question(NamedTuple):
     spans: list
     EI: list                  # N m2; empty with frequencies
-    frequencies: list         # Hz; empty with EI
     masses: list              # kg/m
     type: str                 # word of the option model_damping_bound
     line_speed: float         # m/s
-    track: str
-    alpha: float
-    torsional_frequency: Optional[float]  # Hz
-    GJ: Optional[float]                   # N m2
-    polar_inertia: Optional[float]        # kg m
-    eccentricity: Optional[float]         # m; None: the bridge does not twist
-    tracks: int
-    hslm_b: Optional[tuple]   # N, d in m
-    load_spread: Optional[float]
-    limits: Optional[str]     # a file
-    folder: pathlib.Path
-    simply_supported: bool
-    complex: bool
-    careful: bool
-    additional_damping: bool
-    always: bool
-    report: bool
-    title: dict               # options report_...
-    program: Optional[str]
+    frequencies: tuple = ()   # Hz; empty with EI
+    track: str = "ballast"
+    alpha: float = 1.0
+    torsional_frequency: Optional[float] = None  # Hz
+    GJ: Optional[float] = None                   # N m2
+    polar_inertia: Optional[float] = None        # kg m
+    eccentricity: Optional[float] = None         # m; None: the bridge does not twist
+    tracks: int = 1
+    hslm_b: Optional[tuple] = None   # N, d in m
+    load_spread: Optional[float] = None
+    limits: Optional[str] = None     # a file
+    folder: pathlib.Path = pathlib.Path()
+    simply_supported: bool = False
+    complex: bool = False
+    careful: bool = False
+    additional_damping: bool = False
+    always: bool = False
+    report: bool = True
+    title: dict = {}                 # options report_...
+    program: Optional[str] = None
 
     @property
     def torsional_wave_speed(self):

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import checked_results
 from .rules import CheckError
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[1]  # also the folder of the installed scripts
+PERCENT = re.compile(r"^\s*(\d{1,3}) %   ")  # how a line of the program on its progress begins
 
 
 def program(given):
@@ -31,9 +33,9 @@ def data_file(*names):
     return SCRIPTS.parent.joinpath("options", *names)
 
 
-def last_line(ended):
+def last_line(printed):
     """The message of a failed process."""
-    lines = [line for line in (ended.stderr or ended.stdout).splitlines() if line.strip()]
+    lines = [line for line in printed.splitlines() if line.strip()]
     return lines[-1].removeprefix("traverse: ") if lines else "it ended without a message"
 
 
@@ -48,17 +50,30 @@ def unusual_input(printed):
     return found
 
 
-def compute(traverse, folder, scene, results, *words):
-    """Runs a scene file of a folder; all names are relative to it. Returns what the program prints."""
-    asked = [traverse, "-options_file", scene, "-output_file", results, "-output_quiet", "true", "-skip_petscrc",
-             *words]
+def compute(traverse, folder, scene, results, *words, progress=lambda percent: None):
+    """Runs a scene file of a folder; all names are relative to it. Returns what the program prints, without the lines on
+    its progress, which `progress` takes."""
+    asked = [traverse, "-options_file", scene, "-output_file", results, "-skip_petscrc", *words]
     own = {name: value for name, value in os.environ.items() if not name.startswith("PETSC_OPTIONS")}
-    ended = subprocess.run(asked, cwd=folder, capture_output=True, text=True, errors="replace", env=own,
-                           stdin=subprocess.DEVNULL)
-    if ended.returncode != 0:
-        status = ended.returncode if ended.returncode in (2, 3, 4) else 3
-        raise CheckError(f"the run of {scene} failed: {last_line(ended)}", status)
-    return ended.stdout + ended.stderr
+    printed = ""
+    with tempfile.TemporaryFile("w+", errors="replace") as errors, \
+            subprocess.Popen(asked, cwd=folder, stdout=subprocess.PIPE, stderr=errors, text=True, errors="replace", env=own,
+                             stdin=subprocess.DEVNULL) as process:
+        try:
+            for line in process.stdout:
+                if found := PERCENT.match(line):
+                    progress(int(found[1]))
+                else:
+                    printed += line
+            status = process.wait()
+        except KeyboardInterrupt:
+            process.kill()
+            raise
+        errors.seek(0)
+        complaint = errors.read()
+    if status != 0:
+        raise CheckError(f"the run of {scene} failed: {last_line(complaint or printed)}", status if status in (2, 3, 4) else 3)
+    return printed + complaint
 
 
 def scratch_run(traverse, text, read, *words):

@@ -194,21 +194,24 @@ def twist_row(line_speed):
 
 def with_rules_for_trains(found, factor):
     """Limits with those of the trains: of deflection and rotation as under LM71, and of 6.4.6.5, which holds for the
-    twist too, each unless there is one; and with the factor of 6.4.6.4 for the effects of trains, unless a row has its own."""
-    own, more = rule("limit_states"), {} if factor == 1.0 else {"factor": f"{factor:.6g}"}
+    twist too, each unless there is one; and with the factor of 6.4.6.4 for the effects of trains."""
+    own = rule("limit_states")
     added = [row | {"quantity": row["quantity"].removeprefix("lm71_"), "text": "under the trains"} for row in found
              if row["quantity"].startswith("lm71_") and row["quantity"] != "lm71_track_twist"]
     added.append({"clause": own["clause"], "quantity": "train_over_lm71", "value": str(own["value"]),
                   "text": own["text"]})
     given = {row["quantity"] for row in found}
-    found = found + [row for row in added if row["quantity"] not in given]
-    return [more | row if row["quantity"] in track_defects.QUANTITIES else row for row in found]
+    return track_defects.with_factor(found + [row for row in added if row["quantity"] not in given], factor)
 
 
 def limits_text(question, limits_file, factor):
-    lines = ["- {" + ", ".join(f"{name}: {quoted(text)}" for name, text in row.items()) + "}\n"
-             for row in limit_rows(question, limits_file, factor)]
-    return ("# What: limits of this check; values are numbers in SI units, or fractions. To change and to run again.\n"
+    return text_of_limits("this check", limits_file, limit_rows(question, limits_file, factor))
+
+
+def text_of_limits(what, limits_file, found):
+    """Rows of limits as a file, which an engineer can change."""
+    lines = ["- {" + ", ".join(f"{name}: {quoted(text)}" for name, text in row.items()) + "}\n" for row in found]
+    return (f"# What: limits of {what}; values are numbers in SI units, or fractions. To change and to run again.\n"
             f"# Source: {quoted(limits_file.name)}; national annexes may change recommended values.\n"
             f"# factor: 1 + phi'', or 1 + phi''/2 on carefully maintained track, by {clause('track_defects')}.\n"
             "# Expected: no figure.\n" + "".join(lines))

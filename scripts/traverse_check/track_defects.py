@@ -21,3 +21,9 @@ def factor(parts, speed, careful):
     """1 + phi'', or 1 + phi''/2 of a carefully maintained track: the largest one of all parts of the bridge."""
     share = 0.5 if careful else 1.0
     return 1.0 + share * max(phi_of_track(part.length, part.n0, speed) for part in parts)
+
+
+def with_factor(limits, value):
+    """Rows of limits with this factor for the effects of trains, unless a row has its own."""
+    more = {} if value == 1.0 else {"factor": f"{value:.6g}"}
+    return [more | row if row["quantity"] in QUANTITIES else row for row in limits]

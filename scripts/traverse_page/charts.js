@@ -3,6 +3,13 @@
 const DASHES = [[], [7, 4], [2, 3]];
 const NAMES = ["", "dashed", "dotted"];
 const FAR = 2.5; // times the greatest value: limits above it are named at the edge
+// Ticks with narrow spaces between thousands, as all numbers of the page.
+const GROUPED = {
+  format: { useGrouping: false },
+  callback(value, ...more) {
+    return Math.abs(value) < 1e4 ? Chart.Ticks.formatters.numeric.call(this, value, ...more) : digits(value);
+  },
+};
 
 // The points under the pointer: of each visible curve the one with the nearest x.
 Chart.Interaction.modes.nearestX = (chart, event) => {
@@ -100,7 +107,7 @@ class ChartCard {
   // The values of deflections over the span are written at the axis as L/600.
   ticks() {
     const overSpan = ofQuantity(this.spec.quantity, 1, "").startsWith("L/");
-    return { maxTicksLimit: 7, ...(overSpan && { callback: (value) => ofQuantity(this.spec.quantity, value, "") }) };
+    return { maxTicksLimit: 7, ...GROUPED, ...(overSpan && { callback: (value) => ofQuantity(this.spec.quantity, value, "") }) };
   }
 
   config() {
@@ -116,7 +123,7 @@ class ChartCard {
         scales: {
           x: {
             type: "linear", min: this.ends[0], max: this.ends[1],
-            ticks: { maxRotation: 0, autoSkipPadding: 16, includeBounds: false },
+            ticks: { maxRotation: 0, autoSkipPadding: 16, includeBounds: false, ...GROUPED },
             title: { display: true, text: spec.xUnit ? `${spec.xName} (${spec.xUnit})` : spec.xName, padding: 0 },
           },
           y: { grace: "4%", ticks: this.ticks(), beginAtZero: Boolean(spec.fromZero) },

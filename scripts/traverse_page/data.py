@@ -7,7 +7,7 @@ from picture_model import Model
 from picture_words import speed_in_words, summary_in_words
 from traverse_report import language
 from traverse_report.front_sheet import outcome
-from traverse_report.language import decimal, num, t
+from traverse_report.language import num, t
 from traverse_report.limits import stored
 from traverse_report.source import ReportError, Source
 
@@ -26,7 +26,7 @@ def kind_in_words(results):
         return t("{count} natural modes", count=len(results.values("modes/frequency")))
     if results.rows > 1:
         speed = results.speed()
-        run = t("one run at {speed}", speed=decimal(speed_in_words(speed))) if speed else t("one run")
+        run = t("one run at {speed}", speed=speed_in_words(speed)) if speed else t("one run")
         return t("{run}, {time} s, {count} samples", run=run, time=num(results.time[-1], ".5g"), count=results.rows)
     return {"static": t("at rest"), "envelope": t("largest static effects")}.get(analysis, t("one run"))
 
@@ -36,7 +36,8 @@ def about(results):
     said.append(f"{attrs.get('program', 'traverse')} {attrs.get('version', '')}".strip())
     for what in ("steps", "runs"):
         if attrs.get(what) and "wall_seconds" in attrs:
-            said.append(f"{attrs[what]} {what} in {attrs['wall_seconds']:.3g} s")
+            said.append(t("{count} steps in {time} s" if what == "steps" else "{count} runs in {time} s", count=attrs[what],
+                          time=num(attrs["wall_seconds"], ".3g")))
     return ", ".join(said)
 
 
@@ -67,7 +68,7 @@ def collected(results):
     of_runs = runs.packed_runs(results, limits)
     travels = of_runs is not None and of_runs["speeds"] is not None
     return {"title": results.scene(), "kind": kind_in_words(results), "about": about(results),
-            "said": unfinished(results) or "; ".join(summary_in_words(results)), "verdict": overall(verdicts),
+            "said": unfinished(results) or t("; ").join(summary_in_words(results)), "verdict": overall(verdicts),
             "words": words(along.heading(results)), "heat": heat.heat(results),
             "stage": stage.moving(results) if results.rows > 1 else stage.still(results, travels),
             "charts": packed_charts(histories.charts(results), results.time),
@@ -79,7 +80,7 @@ def collected(results):
 def unfinished(results):
     if results.summary or not results.rows:
         return ""
-    return f"the run did not reach its end; shown up to {results.time[-1]:.4g} s"
+    return t("the run did not reach its end; shown up to {time} s", time=num(results.time[-1]))
 
 
 def overall(verdicts):

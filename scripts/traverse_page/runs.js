@@ -7,13 +7,14 @@ class Runs {
     byId("runs").hidden = false;
     const parts = [said("ended", { count: runs.finished, all: runs.count }), said("choose")];
     if (runs.lines.length > 1 && runs.lineNames) parts.push(said("differ", { names: runs.lineNames }));
-    if (runs.kept < runs.count) parts.push(said("someRuns", { count: runs.kept, all: runs.count }));
+    if (runs.lineNote) parts.push(runs.lineNote);
+    if (runs.kept < runs.drawn) parts.push(said("someRuns", { count: runs.kept, all: runs.drawn }));
     byId("runs-note").textContent = parts.join(" ");
     this.charts = runs.quantities.map((quantity) => this.chartOf(quantity));
     this.profiles = runs.profiles.map((profile) => this.profileOf(profile));
     byId("run-back").addEventListener("click", () => this.step(-1));
     byId("run-forth").addEventListener("click", () => this.step(1));
-    this.select(this.worst());
+    this.select(runs.first < 0 ? this.worst() : runs.first);
   }
 
   get cards() {

@@ -2,6 +2,8 @@
 
 import numpy as np
 from picture_model import Model
+from picture_runs import sign_of
+from search_answers import Search
 from traverse_report.language import t
 from traverse_report.quantities import QUANTITIES, unit_of, words_of
 from traverse_report.source import Source
@@ -10,6 +12,7 @@ from .packing import Curve, kept_rows, number, packed
 from .tables import unit_of_limit
 
 MOST_VALUES = 120_000  # of all runs: about 0.65 MB
+MOST_LINES, CHOSEN = 18, 10  # lines that colours and dashes tell apart; those that are drawn if there are more
 # Options that change what moves or where it moves; the file has the loads and the bridge of the first run only.
 OF_PLACES = ("beam_spans", "load_", "train_", "vehicle_")
 PROFILES = ("peak_deflection", "peak_acceleration", "peak_moment")
@@ -84,6 +87,29 @@ def speeds_of(results, runs):
     return speed if np.all(speed != 0.0) else None
 
 
+def chosen_lines(lines, runs, columns, search):
+    """(indices of the drawn lines, a note): all lines, or of more than MOST_LINES those that matter."""
+    if len(lines) <= MOST_LINES:
+        return list(range(len(lines))), ""
+    line_of = np.empty(runs.count, dtype=int)
+    for i, (_, own) in enumerate(lines):
+        line_of[own] = i
+    greatest = line_of[[int(np.nanargmax(sign_of(name) * column)) for name, column in columns.items()]]
+    if not search or not columns:
+        wanted = [*greatest, *np.linspace(0, len(lines) - 1, CHOSEN).round().astype(int)]
+        chosen = sorted(list(dict.fromkeys(wanted))[:CHOSEN])
+        return chosen, t("Drawn: {count} of {all} curves, those with the greatest values and others at even distances.",
+                         count=len(chosen), all=len(lines))
+    at_bound, beyond = search.run_at_bound(), search.beyond()
+    searched = runs.parameters[search.option if search.option in runs.parameters else "hslm_a"]
+    judged = next((columns[one.quantity] for one in beyond if one.quantity in columns), next(iter(columns.values())))
+    there = np.flatnonzero(searched == searched[at_bound])
+    wanted = [line_of[at_bound], *(line_of[one.run] for one in beyond), *greatest, *line_of[there[np.argsort(-judged[there])]]]
+    chosen = sorted(list(dict.fromkeys(wanted))[:CHOSEN])
+    return chosen, t("Drawn: {count} of {all} curves, those that govern at the answer and beyond it, those with the greatest "
+                     "values and others at the answer.", count=len(chosen), all=len(lines))
+
+
 def packed_runs(results, limits):
     """All for the page; None for a file of a single run."""
     if "sweep/speed" not in results.file and "study/finished" not in results.file:
@@ -93,18 +119,23 @@ def packed_runs(results, limits):
     values_with_limits = judged(results, limits, runs.count)
     columns = {name: factor * runs.of_run(name) for name, _, _, factor in found}
     width = len(parameters) + 2 * len(found) + len(limits)
-    kept = kept_rows([Curve(name, column) for name, column in columns.items()], MOST_VALUES // width) if found else \
-        np.arange(runs.count)
+    search = Search(results) if "find/ratio" in results.file else None
+    all_lines = runs.lines()
+    chosen, note = chosen_lines(all_lines, runs, columns, search)
+    drawn = np.sort(np.concatenate([all_lines[i][1] for i in chosen]))
+    kept = drawn[kept_rows([Curve(name, column[drawn]) for name, column in columns.items()], MOST_VALUES // width)] if found \
+        else drawn
     order = np.full(runs.count, -1)
     order[kept] = np.arange(len(kept))
     speeds = speeds_of(results, runs)
     x, label = runs.x() if runs.x_name else (np.arange(1.0, runs.count + 1.0), "number of the run")
     lines = [{"name": name, "runs": [int(order[run]) for run in line if order[run] >= 0]}
-             for name, line in runs.lines()]
+             for name, line in (all_lines[i] for i in chosen)]
     return {
-        "count": runs.count, "finished": int(runs.finished.sum()), "kept": len(kept), "x": packed(x[kept]),
-        "xLabel": label, "lines": lines, "lineNames": runs.lines_in_words(),
-        "points": not runs.x_name or any(len(np.unique(x[line])) < len(line) for _, line in runs.lines()),
+        "count": runs.count, "finished": int(runs.finished.sum()), "kept": len(kept), "drawn": len(drawn), "x": packed(x[kept]),
+        "xLabel": label, "lines": lines, "lineNames": runs.lines_in_words(), "lineNote": note,
+        "first": -1 if search is None else int(order[search.run_at_bound()]),
+        "points": not runs.x_name or any(len(np.unique(x[line])) < len(line) for _, line in all_lines),
         "parameters": [{**one, "values": [number(value) for value in one["values"][kept]]} for one in parameters],
         "quantities": [{"name": name, "words": words, "unit": unit, "values": packed(columns[name][kept]),
                         "places": packed(places(runs, name)[kept])} for name, words, unit, _ in found],

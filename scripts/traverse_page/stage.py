@@ -4,7 +4,7 @@ import numpy as np
 from animate import DRAWN, MARGIN, WIDEST, rounded
 from picture_model import MOST_SYMBOLS, Model, vertical_reach
 from picture_motion import HOLDS_HEIGHT, Body, Motion
-from traverse_report.language import t
+from traverse_report.language import number, t
 
 from .packing import packed
 from .vehicles import attached, is_free, numbers, parts_of
@@ -149,7 +149,7 @@ def moving(results):
     forces = np.array([model.forces_at(results.time[row], results.options)[:, 0] for row in rows]) if motion else \
         np.zeros((len(rows), 0))
     left, bottom, right, top = extents(results, model, bodies) if bodies else (0.0, 0.0, 0.0, 0.0)
-    stage = {"low": None, "factor": 1.0, "line": None, "words": "Drawn to scale."}
+    stage = {"low": None, "factor": 1.0, "line": None, "words": t("Drawn to scale.")}
     if motion:
         left, right = motion.low, motion.high
         view = view_of(left, right, bottom, top)
@@ -163,8 +163,9 @@ def moving(results):
     middles = middles_of(bodies, forces, rows, view["width"])
     if motion:
         stage.update(low=left, high=right, line=Lines(motion, rows, view, middles).packed(), **symbols(model),
-                     words=exaggeration_in_words(stage["factor"], bodies) + f" The line is drawn {motion.in_words()}." +
-                     ("" if known(motion).all() else " Far from them it is not known."))
+                     words=" ".join([*exaggeration_in_words(stage["factor"], bodies),
+                                     t("The line is drawn {how}.", how=motion.in_words()),
+                                     *([] if known(motion).all() else [t("Far from them it is not known.")])]))
     types, vehicles = packed_vehicles(results, model, bodies, rows, motion is not None)
     sizes = model.forces.get("load", np.zeros((0, 2)))[:, 1]
     return {**stage, "view": view, "frames": len(rows), "of": results.rows, "time": packed(results.time[rows]),
@@ -187,11 +188,11 @@ def exaggeration(motion, bodies, width):
 
 def exaggeration_in_words(factor, bodies):
     if factor == 1.0:
-        return "Drawn to scale."
+        return [t("Drawn to scale.")]
+    words = "Vertical displacements of bridge and vehicles are drawn {factor} times too large, all else to scale." \
+        if bodies else "Vertical displacements are drawn {factor} times too large, all else to scale."
     free = any(is_free(body.position) for body in bodies)
-    whose = " of bridge and vehicles" if bodies else ""
-    return f"Vertical displacements{whose} are drawn {factor:,.6g} times too large, all else to scale." + \
-        (" Bodies with large motions are to scale." if free else "")
+    return [t(words, factor=number(factor)), *([t("Bodies with large motions are to scale.")] if free else [])]
 
 
 def still(results, travels=False):

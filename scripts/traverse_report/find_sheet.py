@@ -7,7 +7,7 @@ from search_answers import Search
 from . import curves
 from .language import capital, num, t
 from .page import GREY, LEFT, RED, table
-from .quantities import shown_value, words_of
+from .quantities import shown_value, with_factor, words_of
 
 MOST_DRAWN = 10
 
@@ -41,7 +41,11 @@ class Words:
                      value=shown_value(search.equals, search.asked))
         if search.kept == "limits":
             return t("{option} that keeps all limits", option=self.option)
-        return t("{option} that keeps the limit: {quantity}", option=self.option, quantity=words_of(search.kept))
+        return t("{option} that keeps the limit: {quantity}", option=self.option, quantity=self.judged(search.kept))
+
+    def judged(self, quantity):
+        """A quantity with the factor of its limit that its judged values contain."""
+        return with_factor(quantity, self.search.factors.get(quantity, 1.0))
 
     def interval(self, interval):
         (first, last), (at_first, at_last) = map(self.value, interval.ends), interval.at_end
@@ -61,7 +65,7 @@ class Words:
         names = [name for name, column in self.runs.parameters.items()
                  if name != self.search.option and len(np.unique(column)) > 1]
         run = ", ".join(self.runs.named_value(name, governing.run) for name in names)
-        return words_of(governing.quantity) + (f" ({run})" if run else "")
+        return self.judged(governing.quantity) + (f" ({run})" if run else "")
 
     def beyond(self, answer):
         """What governs beyond the ends of the intervals."""

@@ -87,14 +87,22 @@ class Ticks(ScalarFormatter):
         return decimal(super().get_offset())
 
 
-def place_in_words(x, supports):
-    """A position as text: 'middle of span 1 (12.5 m)'."""
-    at = f"{num(x, '.6g')} m"
+def span_of(x, supports):
+    """The number of the span of a position and the part of it before it: 0, 0.25, 0.5, 0.75, 1 or None for another one.
+    None for a position in no span."""
     if supports is None or len(supports) < 2 or not supports[0] <= x <= supports[-1]:
-        return f"x = {at}"
+        return None
     span = min(int(np.searchsorted(supports, x, side="right")) - 1, len(supports) - 2)
     part = (x - supports[span]) / (supports[span + 1] - supports[span])
+    return span + 1, next((value for value in (0.0, 0.25, 0.5, 0.75, 1.0) if abs(part - value) < 0.005), None)
+
+
+def place_in_words(x, supports):
+    """A position as text: 'midspan, span 1 (x = 12.5 m)'."""
+    at, inside = f"{num(x, '.6g')} m", span_of(x, supports)
+    if inside is None:
+        return f"x = {at}"
     words = {0.0: "left end", 0.25: "quarter point", 0.5: "midspan", 0.75: "three-quarter point", 1.0: "right end"}
-    said = [t(word) for value, word in words.items() if abs(part - value) < 0.005]
-    said += [t("span {number}", number=span + 1)] if len(supports) > 2 else []
+    said = [] if inside[1] is None else [t(words[inside[1]])]
+    said += [t("span {number}", number=inside[0])] if len(supports) > 2 else []
     return f"{', '.join(said)} (x = {at})" if said else f"x = {at}"

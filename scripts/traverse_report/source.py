@@ -4,6 +4,7 @@ import pathlib
 
 import checked_results
 import numpy as np
+import search_answers
 from engineering_units import printed, shown
 from option_words import WORDS, option_in_words
 from picture_data import Results
@@ -170,10 +171,14 @@ class Source:
     def _judged(self, runs):
         """Adds the values of quantities with limits, one per run."""
         columns, places = runs.values.pop("judged", None), runs.values.pop("judged_x", None)
-        if columns is None or "verdicts/quantity" not in self.file:
-            return runs
-        factors = self.file["verdicts/factor"][:] if "verdicts/factor" in self.file else np.ones(columns.shape[1])
-        for i, (quantity, _) in enumerate(self.file["verdicts/quantity"].asstr()[:]):
+        if "verdicts/quantity" in self.file:
+            names = self.file["verdicts/quantity"].asstr()[:, 0]
+            factors = self.file["verdicts/factor"][:] if "verdicts/factor" in self.file else np.ones(len(names))
+        else:  # of a search
+            names = self.file["criterion"].asstr()[:] if "criterion" in self.file else []
+            given = search_answers.factors_of(self.results)
+            factors = [given.get(name, 1.0) for name in names]
+        for i, quantity in enumerate(names if columns is not None else ()):
             if quantity not in runs.values and not np.isnan(columns[:, i]).all():
                 runs.values[quantity], runs.places[quantity] = columns[:, i], places[:, i]
                 runs.factors[quantity] = float(factors[i])

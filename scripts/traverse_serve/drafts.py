@@ -10,7 +10,7 @@ import h5py
 from picture_data import Results
 from traverse_check import flow_chart, question, runs, scene, units
 from traverse_check import main as checking
-from traverse_check.rules import MARKS, CheckError
+from traverse_check.rules import MARKS, CheckError, clause
 from traverse_page import stage
 from traverse_report.language import capital, decimal, num, t
 
@@ -30,8 +30,18 @@ class Failed(Exception):
 class Drafts:
     """One draft at a time."""
 
-    def __init__(self, program, folder, scratch):
-        self.program, self.folder, self.scratch, self.lock = program, folder, scratch, threading.Lock()
+    def __init__(self, program, folder, scratch, table):
+        self.program, self.folder, self.scratch, self.table, self.lock = program, folder, scratch, table, threading.Lock()
+
+    def check_ranges(self, form, values):
+        """InputError for a number that its field does not allow."""
+        for field in form.fields if form.name != "scene" else ():
+            kind = units.KINDS.get(field.name) if form.name == "check" else None
+            allowed = field.range or ((*kind.of_bridges, False) if kind else None)
+            if not allowed and field.option in self.table and field.kind == "number":
+                allowed = self.table[field.option].range
+            if allowed:
+                fields.check_range(field, values, allowed)
 
     def run(self, folder, *words):
         """What the program prints about scene.yml of a folder."""
@@ -78,11 +88,13 @@ class Drafts:
         answer = {"errors": {}, "general": "", "facts": [], "unusual": [], "stage": None, "cost": "", "described": ""}
         with self.lock:
             try:
+                self.check_ranges(form, values)
                 if form.name == "check":
                     drawn = self.examine_check(form, values, language, answer)
                 else:
                     files, drawn = scene_of(form, values, language)
                     self.add_description(self.described(files), answer, form.name)
+                    self.add_factor(form, values, answer)
                 answer["stage"] = self.drawing(drawn) if draw else None
             except inputs.InputError as error:
                 tell(answer, error.field, str(error))
@@ -96,7 +108,7 @@ class Drafts:
         return answer
 
     def add_description(self, printed, answer, form):
-        answer["unusual"] = [line for line in runs.unusual_input(printed) if line != "nothing"]
+        answer["unusual"] = list(dict.fromkeys(of_speed(line) for line in runs.unusual_input(printed) if line != "nothing"))
         parts = dict(re.findall(r"^  (\S+(?: \S+)*) {2,}(.*)$", printed, re.MULTILINE))
         case = f" ({t('least EI of the search')})" if form == "find" else ""
         if "first frequencies" in parts:
@@ -109,6 +121,13 @@ class Drafts:
             answer["cost"] = t("expected: {time}", time=decimal(parts["time"].split(" on ")[0].removeprefix("about ")))
         answer["described"] = printed if form == "scene" else ""
 
+    def add_factor(self, form, values, answer):
+        if (factor := factor_of(form, values, self.program)) is not None:
+            speed = num(3.6 * fields.read(form.fields, values)["sweep_speed.to"])
+            words = "{factor} at {speed} km/h and the greatest EI of the search" if form.name == "find" else \
+                "{factor} at {speed} km/h"
+            answer["facts"].append([f"1 + φ″, {clause('track_defects')}", t(words, factor=num(factor), speed=speed)])
+
     def examine_check(self, form, values, language, answer):
         """Adds the need for a dynamic analysis of the first combination of bounds. Returns the files of the drawing."""
         with self.written({}) as folder:
@@ -120,7 +139,7 @@ class Drafts:
                 raise CheckError(str(error).replace(f"{file}: ", "")) from None
         case = scene.cases(asked, checking.stiffnesses_of(asked, self.program))[0]
         needed = False
-        for part in checking.parts_of(asked, case, self.program):
+        for part in checking.parts_of_a_bridge(asked, case, self.program):
             found = flow_chart.answer(part, asked)
             needed |= found.needed
             for clause, sentence in found.steps:
@@ -130,12 +149,20 @@ class Drafts:
                                                        "public source confirms it. Such numbers must be checked with the "
                                                        "norm.", one=MARKS[1], none=MARKS[0])])
         first, last, _ = scene.speeds(asked)
-        speeds = [num(value * 3.6, ".4g") for value in (first, last)] if needed or asked.always else None
-        answer["facts"].insert(0, [capital(t("need for a dynamic analysis")), t("yes: {first} to {last} km/h", first=speeds[0],
-                                                                                last=speeds[1]) if speeds else t("no")])
+        words = "yes: {first} to {last} km/h" if needed else "no" if not asked.always else \
+            "no; the analysis runs because it was asked for: {first} to {last} km/h"
+        answer["facts"].insert(0, [capital(t("need for a dynamic analysis")),
+                                   t(words, first=num(3.6 * first), last=num(3.6 * last))])
         if asked.frequencies:
             answer["facts"].append([capital(t("bending stiffness EI")), units.in_words("EI", case.EI)])
         return {"scene.yml": scene.beam_text(asked.spans, case, asked) + "load: {hslm_a: 1, speed: 50.0}\n"}
+
+
+def of_speed(line):
+    """A line on unusual input; one on a speed in km/h, without the unit of the option."""
+    found = re.search(r"m/s is (\S+) km/h, faster than any train (in service|has run)", line)
+    return line if not found else t("{speed} km/h is faster than any train in service" if found[2] == "in service" else
+                                    "{speed} km/h is faster than any train has run", speed=num(float(found[1])))
 
 
 def check_text(form, values, language):
@@ -155,11 +182,17 @@ def tell(answer, field, message):
         answer["general"] = message
 
 
-def scene_of(form, values, language):
-    """(files of the run, files of the drawing)"""
+def factor_of(form, values, program):
+    """The factor for track defects of the limits of a form; None for a form without them."""
+    return scenes.factor_for_track(fields.read(form.fields, values), program) if form.name in ("sweep", "find") else None
+
+
+def scene_of(form, values, language, factor=None):
+    """(files of the run, files of the drawing). factor: for track defects."""
     if form.name != "scene":
         given = fields.read(form.fields, values)
-        return (inputs.checked(scenes.scene_files(form.name, given, language)), scenes.drawn_files(form.name, given))
+        return (inputs.checked(scenes.scene_files(form.name, given, language, factor or 1.0)),
+                scenes.drawn_files(form.name, given))
     text, more = values.get("text", ""), values.get("files", {})
     if not isinstance(text, str) or not isinstance(more, dict) or not all(isinstance(one, str) for one in more.values()):
         raise inputs.InputError("allowed: texts")

@@ -2,10 +2,13 @@
 (options.py), units in engineering_units.csv."""
 
 import functools
+import math
 import re
 from typing import NamedTuple
 
 import engineering_units
+from engineering_units import printed
+from traverse_report.language import number as number_in_words
 from traverse_report.language import t
 
 from .inputs import InputError
@@ -27,6 +30,7 @@ class Field(NamedTuple):
     more: bool = False
     many: bool = False    # several numbers
     optional: bool = False
+    range: tuple = ()     # (least, greatest, whether the least value is excluded) in SI units, instead of that of its option
 
     @property
     def option(self):
@@ -101,6 +105,25 @@ def in_si(field, values):
     factor = factors()[unit_of(field, values)] if field.units else 1.0
     # Divides by a whole number rather than multiply by its inverse: 250 km/h are 250/3.6 m/s.
     return [float(f"{float(word) * factor:.12g}") for word in numbers_of(field, values)]
+
+
+def check_range(field, values, allowed):
+    """InputError in the unit of the field for a number outside of (least, greatest, whether the least one is excluded)."""
+    (least, most, without), unit = allowed, unit_of(field, values)
+    factor = factors()[unit] if unit else 1.0
+    for word, value in zip(numbers_of(field, values), in_si(field, values)):
+        if least < value <= most or (value == least and not without):
+            continue
+        low, high = (f"{shown(bound / factor)} {printed(unit)}".strip() for bound in (least, most))
+        words = ("allowed: above {low}, at most {high}" if without else "allowed: from {low} to {high}") if most < math.inf \
+            else "allowed: above {low}" if without else "allowed: at least {low}"
+        raise InputError(t("{value} is not possible here; {allowed}", value=f"{shown(float(word))} {printed(unit)}".strip(),
+                           allowed=t(words, low=low, high=high)), field.name)
+
+
+def shown(value):
+    """A number in words; one that is 0 for every bridge as 0, an infinite one not at all."""
+    return "" if math.isinf(value) else number_in_words(value if abs(value) >= 1e-6 else 0.0)
 
 
 def written(field, values):

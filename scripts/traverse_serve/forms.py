@@ -1,6 +1,7 @@
 """The forms of the page: what an engineer fills in for each kind of computation."""
 
 import functools
+import math
 from typing import NamedTuple
 
 from . import inputs
@@ -10,7 +11,9 @@ EI, MASS, SPEED = ("GN m2", "MN m2", "kN m2"), ("t/m", "kg/m"), ("km/h", "m/s")
 KINDS = {"prestressed": "prestressed concrete", "composite": "composite", "steel": "steel", "reinforced": "reinforced concrete",
          "filler_beam": "filler beams"}
 HSLM = "hslm_a"
-DEFECTS = " The factor for track defects, EN 1991-2 6.4.6.4, is part of the check only."
+# Ranges in SI units.
+POSITIVE, OF_TRAINS, OF_EI = (0.0, math.inf, True), (0.0, 200.0, True), (0.0, 1e16, True)
+OF_ALPHA, OF_VEHICLES, OF_TRACKS = (0.1, 10.0, False), (1.0, 2000.0, False), (1.0, 1e6, False)
 
 
 class Form(NamedTuple):
@@ -56,13 +59,14 @@ def bridge(spans="28", stiffness="260", mass="19", searched=False):
 
 
 def speeds(first, last, step, hint=""):
-    return (Field("sweep_speed.from", "lowest speed", first, SPEED), Field("sweep_speed.to", "highest speed", last, SPEED),
-            Field("sweep_speed.step", "step of the speeds", step, SPEED, hint=hint))
+    return (Field("sweep_speed.from", "lowest speed", first, SPEED, range=OF_TRAINS),
+            Field("sweep_speed.to", "highest speed", last, SPEED, range=OF_TRAINS),
+            Field("sweep_speed.step", "step of the speeds", step, SPEED, hint=hint, range=POSITIVE))
 
 
 def coaches(choices, preset, count="8"):
     return (chosen("train_vehicles", "train", choices, preset),
-            Field("train_vehicles.count", "number of vehicles", count, hint="of a train of vehicles"))
+            Field("train_vehicles.count", "number of vehicles", count, hint="of a train of vehicles", range=OF_VEHICLES))
 
 
 def check():
@@ -83,7 +87,7 @@ def check():
                     ("line", (
                         Field("line-speed", "line speed", "250", SPEED, hint="trains run at up to 1.2 times this speed"),
                         chosen("track", "track", {"ballast": "ballasted track", "direct": "direct fastening"}, "ballast"),
-                        Field("alpha", "classification factor α", "1", more=True),
+                        Field("alpha", "classification factor α", "1", more=True, range=OF_ALPHA),
                         Field("load-spread", "sleeper spacing", "", ("m",), optional=True, more=True,
                               hint="each axle force acts on three sleepers"),
                         flag("careful", "carefully maintained track", more=True))),
@@ -110,17 +114,19 @@ def check():
 def sweep():
     trains = {HSLM: "trains A1 to A10 of HSLM", **vehicles()}
     return Form("sweep", "Speeds", "Computes a train at many speeds: the curves over the speed show resonance, and are "
-                "compared with the limits of EN 1990." + DEFECTS, (
+                "compared with the limits of EN 1990. Deflections, rotations and deck accelerations are judged with the "
+                "factor 1 + φ″ for track defects, EN 1991-2 6.4.6.4, at the highest speed.", (
                     bridge(), ("train", (*coaches(trains, HSLM), *speeds("150", "300", "5")))), "Compute")
 
 
 def find():
     return Form("find", "Least stiffness", "Finds the least bending stiffness with which the bridge keeps a limit under the "
-                "trains HSLM." + DEFECTS, (
+                "trains HSLM. Deflections, rotations and deck accelerations are judged with the factor 1 + φ″ for track "
+                "defects, EN 1991-2 6.4.6.4, at the highest speed and the greatest EI of the search, where it is greatest.", (
                     bridge(searched=True),
                     ("search", (
-                        Field("find_between.from", "least EI of the search", "100", EI),
-                        Field("find_between.to", "greatest EI of the search", "500", EI),
+                        Field("find_between.from", "least EI of the search", "100", EI, range=OF_EI),
+                        Field("find_between.to", "greatest EI of the search", "500", EI, range=OF_EI),
                         chosen("find_keep", "limit", {"deck_acceleration": "vertical acceleration of the deck",
                                                       "deflection_over_span": "deflection over span length",
                                                       "end_rotation": "end rotation", "": "all limits"}, "deck_acceleration"))),
@@ -134,10 +140,10 @@ def rough():
     return Form("rough", "Rough track", "Computes a train on many random tracks: mean and quantiles of deflections, "
                 "accelerations and wheel forces.", (
                     bridge("25", "30", "15"),
-                    ("train", (*coaches(vehicles(), "velaro", "2"), Field("train_speed", "speed", "250", SPEED))),
+                    ("train", (*coaches(vehicles(), "velaro", "2"), Field("train_speed", "speed", "250", SPEED, range=OF_TRAINS))),
                     ("track", (
                         chosen("track_profile", "roughness", spectra, "german_low"),
-                        Field("study_vary_track_seed", "number of random tracks", "20"),
+                        Field("study_vary_track_seed", "number of random tracks", "20", range=OF_TRACKS),
                         Field("track_wavelengths.from", "shortest wave", "", ("m",), optional=True, more=True),
                         Field("track_wavelengths.to", "longest wave", "", ("m",), optional=True, more=True)))), "Compute")
 
@@ -151,18 +157,18 @@ def crane():
                         Field("beam_mass", "mass per length", "700", ("kg/m", "t/m")),
                         Field("beam_damping_ratios", "damping ratio", "1", ("%",)))),
                     ("trolley", (
-                        Field("vehicle_trolley_load_mass", "mass of the load", "10", ("t", "kg")),
+                        Field("vehicle_trolley_load_mass", "mass of the load", "10", ("t", "kg"), range=POSITIVE),
                         Field("vehicle_trolley_trolley_mass", "mass of the trolley", "3", ("t", "kg")),
-                        Field("vehicle_trolley_front_fall", "length of the ropes", "8", ("m",)),
+                        Field("vehicle_trolley_front_fall", "length of the ropes", "8", ("m",), range=POSITIVE),
                         Field("vehicle_trolley_front_fall_winding_table", "height of hoisting", "2", ("m",),
                               hint="0: the load hangs"))),
                     ("travel", (
                         Field("train_positions", "place of the trolley at the start", "5", ("m",),
                               hint="from the left end of the girder"),
                         Field("train_speed_file.way", "way", "11.9", ("m",)),
-                        Field("train_speed_file.speed", "speed", "72", ("m/min", "m/s")),
-                        Field("train_speed_file.time", "time of accelerating and of braking", "4.9", ("s",)),
-                        Field("ts_max_time", "time after the stop", "5", ("s",), more=True)))), "Compute")
+                        Field("train_speed_file.speed", "speed", "72", ("m/min", "m/s"), range=POSITIVE),
+                        Field("train_speed_file.time", "time of accelerating and of braking", "4.9", ("s",), range=POSITIVE),
+                        Field("ts_max_time", "time after the stop", "5", ("s",), more=True, range=POSITIVE)))), "Compute")
 
 
 def own():

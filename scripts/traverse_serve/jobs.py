@@ -4,16 +4,16 @@ import collections
 import contextlib
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import threading
 import time
 from typing import NamedTuple
 
+from traverse_check.runs import PERCENT
+
 MOST_WAITING, MOST_KEPT = 8, 200
 LINES, LONGEST = 400, 2000  # of the output that are kept; characters of one
-PERCENT = re.compile(r"^\s*(\d{1,3}) %   ")
 JUDGED = {0: "", 5: "exceeded", 6: "not evaluated"}  # exit statuses with results
 KEEPER = pathlib.Path(__file__).with_name("keeper.py")
 TAKEN_OVER = ("PATH", "HOME", "LANG", "LC_ALL", "LC_CTYPE", "OMP_NUM_THREADS", "LD_LIBRARY_PATH", "SOURCE_DATE_EPOCH")

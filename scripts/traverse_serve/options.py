@@ -1,5 +1,6 @@
 """What the program says of its options: unit, range and default of each, from its own table by -help."""
 
+import math
 import re
 import subprocess
 from typing import NamedTuple
@@ -16,6 +17,14 @@ class Option(NamedTuple):
     def unit(self):
         found = re.search(r"\[([^\],]+)\]", self.allowed)
         return found[1] if found else ""
+
+    @property
+    def range(self):
+        """(least, greatest) in the unit of the option, and whether the least value itself is excluded; infinite without."""
+        number = r"(-?[0-9.]+(?:e[-+]?[0-9]+)?)"
+        least, most = (re.search(words + number, self.allowed) for words in (r"(above|not below|from) ", r"(at most|to) "))
+        return (float(least[2]) if least else -math.inf, float(most[2]) if most else math.inf,
+                bool(least) and least[1] == "above")
 
 
 def table(program):

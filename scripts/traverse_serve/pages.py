@@ -36,7 +36,7 @@ def page(root, language, here, title, content, data, scripts=("serve.js",)):
              "skip": said("Go to the results") if here.startswith("run") else said("Go to the fields"),
              "menu": said("kinds of computation"), "of_language": said("language"), "content": content,
              "data": json_element(data | {"root": f"{root}{language}/"}), "no_script": said("This page needs JavaScript."),
-             "scripts": "".join(f'<script src="{root}asset/{name}"></script>' for name in scripts)}
+             "scripts": "".join(f'<script src="{root}asset/{name}"></script>' for name in ("menu.js", *scripts))}
     template = (PARTS / "page.html").read_text(encoding="utf-8")
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)
 

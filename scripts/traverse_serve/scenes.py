@@ -2,8 +2,11 @@
 
 import math
 
-from traverse_check.scene import quoted, rows
-from traverse_report.language import t
+from traverse_check import main as checking
+from traverse_check import track_defects
+from traverse_check.question import Question
+from traverse_check.scene import Case, quoted, read_limits, rows, text_of_limits
+from traverse_report.language import num, number, t
 
 from . import inputs
 from .forms import HSLM, forms
@@ -11,6 +14,7 @@ from .forms import HSLM, forms
 TRAINS = "hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]"
 MODEL = ("beam", "model", "vehicle", "train", "load")  # blocks of what is drawn
 HEAD = "# What: {what}.\n# Source: values of the page of traverse serve.\n# Expected: no figure.\n"
+MOST_SPEEDS = 10_000
 STEP = 0.025  # s between rows of tables of a crane
 TROLLEY = """    length: 2.8                    # m
     bodies:  [trolley, front_axle, rear_axle, load]
@@ -34,8 +38,8 @@ STEEL = 1.75e6 * 8.0  # N, EA of a fall of overhead_crane.yml
 
 def whole(given, name):
     """A count."""
-    if given[name] != int(given[name]) or given[name] < 1.0:
-        raise inputs.InputError("allowed: a whole number of at least 1", name)
+    if given[name] != int(given[name]):
+        raise inputs.InputError(t("allowed: a whole number"), name)
     return int(given[name])
 
 
@@ -55,17 +59,28 @@ def bridge(given, stiffness):
 def speeds(given):
     """The speeds at equal steps that are at most the given one, so that the highest speed is one of them."""
     first, last, step = (given[f"sweep_speed.{part}"] for part in ("from", "to", "step"))
-    if step <= 0.0:
-        raise inputs.InputError("allowed: above 0", "sweep_speed.step")
     if first > last:
-        raise inputs.InputError("allowed: at most the highest speed", "sweep_speed.from")
+        raise inputs.InputError(t("allowed: at most the highest speed"), "sweep_speed.from")
+    if last - first > MOST_SPEEDS * step:
+        raise inputs.InputError(t("allowed: a step with at most {count} speeds", count=number(MOST_SPEEDS)), "sweep_speed.step")
     if first < last < first + 1e6 * step:
         step = (last - first) / math.ceil((last - first) / step - 1e-6)
     return f"speed: {listed((first, last, step))}", "m/s: from, to, step"
 
 
-def limits(files):
-    files["limits.yml"] = (inputs.OPTIONS / "limits/en1990.yml").read_text(encoding="utf-8")
+def factor_for_track(given, traverse):
+    """1 + phi'' at the highest speed; of a search at the greatest EI, where the frequency and phi'' are greatest."""
+    stiffness, speed = given.get("beam_EI") or given["find_between.to"], given["sweep_speed.to"]
+    asked = Question(given["beam_spans"], [stiffness], [given["beam_mass"]], given["model_damping_bound"], speed,
+                     simply_supported=given["beam_continuity"])
+    parts = checking.parts_of(asked, Case("", "", stiffness, given["beam_mass"]), traverse)
+    return track_defects.factor(parts, speed, asked.careful)
+
+
+def limits(factor):
+    """The limits of EN 1990 with a factor for the effects of trains."""
+    path = inputs.OPTIONS / "limits/en1990.yml"
+    return text_of_limits("this page", path, track_defects.with_factor(read_limits(path), factor))
 
 
 def coaches(given, speed, files, start=None):
@@ -89,7 +104,6 @@ def stations(given):
 
 
 def sweep(given, files):
-    limits(files)
     sweeping = [speeds(given)]
     if given["train_vehicles"] == HSLM:
         sweeping.append((TRAINS, "EN 1991-2, load model HSLM-A"))
@@ -101,10 +115,11 @@ def sweep(given, files):
 
 
 def find(given, files):
-    limits(files)
     between = [given["find_between.from"], given["find_between.to"]]
+    if between[0] >= between[1]:
+        raise inputs.InputError(t("allowed: below the greatest EI of the search"), "find_between.from")
     keep = [(f"keep: {given['find_keep']}", "")] if given["find_keep"] else []
-    start = float(f"{math.sqrt(abs(between[0] * between[1])):.6g}")
+    start = float(f"{math.sqrt(between[0] * between[1]):.6g}")
     return bridge(given, start) | {
         "sweep": [speeds(given), (TRAINS, "EN 1991-2, load model HSLM-A")], "scene": [("tail: 1.0", "s of free vibration")],
         "output": stations(given), "limits": "limits.yml",
@@ -116,7 +131,9 @@ def rough(given, files):
     track = [(f"profile: {given['track_profile']}", "")]
     if any(wave is not None for wave in waves):
         if None in waves:
-            raise inputs.InputError("allowed: both lengths of waves, or none", "track_wavelengths.from")
+            raise inputs.InputError(t("allowed: both lengths of waves, or none"), "track_wavelengths.from")
+        if waves[0] >= waves[1]:
+            raise inputs.InputError(t("allowed: below the longest wave"), "track_wavelengths.from")
         track.append((f"wavelengths: {listed(waves)}", "m"))
     return bridge(given, given["beam_EI"]) | coaches(given, given["train_speed"], files, -120.0) | {
         "track": track, "output": stations(given),
@@ -129,11 +146,12 @@ def crane(given, files):
     start, stop = given["train_positions"], given["train_positions"] + given["train_speed_file.way"]
     for place, name in ((start, "train_positions"), (stop, "train_speed_file.way")):
         if not AXLE <= place <= given["beam_spans"] - AXLE:
-            raise inputs.InputError(f"the middle of the trolley would be at {place:.4g} m; allowed: from {AXLE:g} m to "
-                                    f"{given['beam_spans'] - AXLE:.6g} m, with all wheels on the girder", name)
+            raise inputs.InputError(t("the middle of the trolley would be at {place} m; allowed: from {low} m to {high} m, with "
+                                      "all wheels on the girder", place=num(place), low=num(AXLE),
+                                      high=num(given["beam_spans"] - AXLE, ".6g")), name)
     load, rope, height = (given[f"vehicle_trolley_{name}"] for name in ("load_mass", "front_fall", "front_fall_winding_table"))
-    if rope <= 0.0 or height >= rope:
-        raise inputs.InputError("allowed: above 0, and longer than the height of hoisting", "vehicle_trolley_front_fall")
+    if height >= rope:
+        raise inputs.InputError(t("allowed: longer than the height of hoisting"), "vehicle_trolley_front_fall")
     stiffness = STEEL / rope
     free = rope - 0.5 * load * 9.81 / stiffness  # so that the load is at rest where it is drawn
     fall = f"stiffness: {stiffness!r}, damping: 3750.0, free_length: {free!r}, side: tension"
@@ -142,7 +160,7 @@ def crane(given, files):
         fall += ", winding_table: hoist.csv"
     frame = given["vehicle_trolley_trolley_mass"] - 400.0  # without both axles
     if frame <= 0.0:
-        raise inputs.InputError("allowed: above 0.4 t, the mass of both axles", "vehicle_trolley_trolley_mass")
+        raise inputs.InputError(t("allowed: above 0.4 t, the mass of both axles"), "vehicle_trolley_trolley_mass")
     trolley = TROLLEY.format(frame=frame, inertia=frame * 1200.0 / 2600.0, load=load, load_inertia=load * 0.6667,
                              low=0.4 - rope, fall=fall)
     files["trolley_speed.csv"], end = speed_table(given)
@@ -169,10 +187,8 @@ def hoist_table(height):
 def speed_table(given):
     """(text, end): the trolley starts after 5 s, s."""
     way, speed, time = (given[f"train_speed_file.{name}"] for name in ("way", "speed", "time"))
-    if speed <= 0.0 or time <= 0.0:
-        raise inputs.InputError("allowed: above 0", f"train_speed_file.{'speed' if speed <= 0.0 else 'time'}")
     if way < speed * time:
-        raise inputs.InputError(f"allowed: at least {speed * time:.4g} m, which accelerating and braking need",
+        raise inputs.InputError(t("allowed: at least {way} m, which accelerating and braking need", way=num(speed * time)),
                                 "train_speed_file.way")
     start, at_speed = 5.0, way / speed - time
     times = [0.0, start, start + time, start + time + at_speed, start + 2.0 * time + at_speed]
@@ -193,10 +209,12 @@ def text_of(blocks):
                    for name, block in blocks.items())
 
 
-def scene_files(name, given, language):
-    """{file: text} of a form, with scene.yml."""
+def scene_files(name, given, language, factor):
+    """{file: text} of a form, with scene.yml. factor: of the limits of effects of trains."""
     files = {}
     blocks = BLOCKS[name](given, files)
+    if "limits" in blocks:
+        files["limits.yml"] = limits(factor)
     named = [(f"name: {quoted(t(forms()[name].title))}", ""), *blocks.get("scene", ())]
     text = HEAD.format(what=WHAT[name]) + text_of(blocks | {"scene": named, "report": [(f"language: {language}", "")]})
     return {"scene.yml": text} | files
@@ -208,7 +226,6 @@ def drawn_files(name, given):
     blocks = {block: rows for block, rows in BLOCKS[name](given, files).items() if block in MODEL}
     if not {"load", "train"} & set(blocks):
         blocks["load"] = [("hslm_a: 1", ""), ("speed: 50.0", "m/s")]
-    files.pop("limits.yml", None)
     return {"scene.yml": text_of(blocks)} | files
 
 

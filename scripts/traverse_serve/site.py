@@ -19,6 +19,7 @@ from .server import RESULTS_POLICY, Answer, as_json
 
 HERE, SCRIPTS = pathlib.Path(__file__).resolve().parent, pathlib.Path(__file__).resolve().parents[1]
 ASSETS = {"page.css": "traverse_page", "serve.css": "traverse_serve", "serve.js": "traverse_serve", "form.js": "traverse_serve",
+          "menu.js": "traverse_serve",
           "format.js": "traverse_page", "symbols.js": "traverse_page", "places.js": "traverse_page",
           "stage.js": "traverse_page"}
 KINDS = {".css": "text/css", ".js": "text/javascript", ".html": "text/html", ".pdf": "application/pdf", ".png": "image/png",
@@ -38,7 +39,7 @@ class Site:
         self.program, self.folder = program, folder
         self.table = options.table(program)
         self.queue = Queue(program, folder, scratch)
-        self.drafts = drafts.Drafts(program, folder, scratch)
+        self.drafts = drafts.Drafts(program, folder, scratch, self.table)
         self.root = ""  # the address up to the token, which the server sets
 
     def answer(self, method, parts, query, sent):
@@ -119,7 +120,7 @@ class Site:
                 Step([*script, runs.command("traverse-check"), "bridge/bridge.yml", "--folder", ".", "--program", self.program,
                       "--no-report"], "the check is being computed", judged=True),
                 Step([*script, HERE / "documents.py", folder], "the pages of results are being made")]
-        files, _ = drafts.scene_of(form, values, language)
+        files, _ = drafts.scene_of(form, values, language, drafts.factor_of(form, values, self.program))
         return files, lambda folder: [
             Step([self.program, "-options_file", "scene.yml", "-output_file", "results.h5", "-skip_petscrc"],
                  "the scene is being computed", judged=True),

@@ -130,6 +130,32 @@ class Answers(Reported):
                       if one["title"] == "Sensitivity analysis")
             self.assertEqual(len(table["rows"]), 2 * len(self.results(method)["quantity"]))
 
+    def test_the_factor_of_a_limit_is_said(self):
+        (self.folder / "factor.yml").write_text("- {clause: our rules, quantity: deflection_over_span, value: 1/5000, "
+                                                "factor: 1.25, text: ours}\n", encoding="utf-8")
+        self.compute("kept", SEARCH.replace(f"quantity: peak_deflection, equals: {BOUND}", "keep: deflection_over_span"),
+                     "-limits", "factor.yml")
+        table, = (one for one in data.collect(self.folder / "kept.h5")["tables"] if one["title"] == "Search for values")
+        self.assertEqual(table["note"], "Speed that keeps the limit: deflection over span length × 1.25")
+
+    def test_of_many_curves_the_page_draws_those_that_matter(self):
+        self.compute("many", CROSSING + f"""
+find: {{option: beam_EI, between: [2.0e10, 6.0e10], quantity: peak_deflection, equals: {BOUND}, points: 12}}
+study: {{vary: {{load_speed: [30.0, 40.0, 50.0], beam_mass: [1.8e4, 2.2e4]}}}}
+""")
+        file, runs = self.results("many"), data.collect(self.folder / "many.h5")["runs"]
+        combinations = {*zip(file["study/beam_EI"][:], file["study/beam_mass"][:])}
+        self.assertTrue(runs["lineNote"].startswith(f"Drawn: 4 of {len(combinations)} curves, "), runs["lineNote"])
+        self.assertEqual(len(runs["lines"]), 4)  # of both masses at the answer, of one beyond it, and the greatest one
+        ratio, run = file["find/ratio"][-1], file["find/run"][-1].astype(int)
+        at_bound = run[np.where(ratio <= 1.0, ratio, 0.0).argmax()]
+        wanted = [file[f"study/{name}"][at_bound] for name in ("beam_EI", "beam_mass", "load_speed")]
+        chosen = [one["values"][runs["first"]] for one in runs["parameters"]]
+        np.testing.assert_allclose(sorted(chosen), sorted([1e-6 * wanted[0], 1e-3 * wanted[1], 3.6 * wanted[2]]), rtol=1e-8)
+        greatest = np.unravel_index(np.abs(file["study/peak_deflection"][:]).argmax(), file["study/peak_deflection"].shape)[0]
+        drawn = np.frombuffer(base64.b64decode(runs["quantities"][0]["values"]["f32"]), dtype="<f4")
+        self.assertAlmostEqual(drawn.max() / (1e3 * np.abs(file["study/peak_deflection"][greatest]).max()), 1.0, places=6)
+
     def test_the_pages_open_in_a_browser(self):
         browser = Browser()
         self.addCleanup(browser.close)

@@ -1,6 +1,7 @@
 """scripts/traverse-check: units, refusals, the scenes it writes, its verdicts and exit status."""
 
 import contextlib
+import functools
 import io
 import os
 import pathlib
@@ -19,7 +20,7 @@ from small_runs import BINARY, SOURCE  # noqa: E402
 
 SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
-from traverse_check import flow_chart, main, outcome, question, rules, scene, track_defects, units  # noqa: E402
+from traverse_check import flow_chart, main, outcome, question, rules, runs, scene, track_defects, units  # noqa: E402
 
 BRIDGE = ("--span", "28", "--EI", "260 GN.m2", "--mass", "19 t/m", "--type", "prestressed", "--line-speed", "250 km/h")
 # A short span under HSLM-B, which is computed in half a second; its deck acceleration is far above the limit.
@@ -266,6 +267,19 @@ class Commands(unittest.TestCase):
                 np.testing.assert_array_equal(np.array(options[name].split(","), dtype=float), value)
             for name in ("sweep/speed", "sweep/peak_deflection", "sweep/judged", "norm/train_over_model"):
                 np.testing.assert_array_equal(one[name][:], other[name][:])
+
+    def test_the_progress_of_all_runs_is_told_and_is_no_part_of_what_they_print(self):
+        program, told = self.folder / "program", io.StringIO()
+        program.write_text("#!/bin/sh\necho modelled\necho ' 10 %   1 of 10 runs   9 s left'\necho ' 60 %   6 of 10 runs   4 s "
+                           "left'\necho summary\necho a warning >&2\n", encoding="utf-8")
+        program.chmod(0o755)
+        progress = main.Progress(["first", "second"])
+        progress.begin -= main.SILENT_START
+        with contextlib.redirect_stderr(told):
+            said = runs.compute(str(program), self.folder, "a.yml", "a.h5",
+                                progress=functools.partial(progress.update, "second"))
+        self.assertEqual(said, "modelled\nsummary\na warning\n")
+        self.assertEqual(told.getvalue(), " 30 %   of the runs\n")
 
     def test_bounds_make_a_file_for_each_combination(self):
         status, said = self.inside(*SHORT, "--EI", "2,2.2 GN.m2", "--mass", "11,12 t/m", "--line-speed", "150 km/h",

@@ -72,7 +72,8 @@ class PageTest(Computed):
             if run.returncode != 0:
                 raise AssertionError(run.stdout + run.stderr)
         with_language(cls.folder / "sweep.h5", cls.folder / "german.h5", "de")
-        for name in (*OVER_TIME, "study", "statistics", "sweep", "rail", "screen", "german"):
+        with_language(cls.folder / "cars.h5", cls.folder / "french.h5", "fr")
+        for name in (*OVER_TIME, "study", "statistics", "sweep", "rail", "screen", "german", "french"):
             page.write(cls.folder / f"{name}.h5", cls.folder / f"{name}.html")
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.close)
@@ -277,6 +278,22 @@ class PageTest(Computed):
             self.assertIn(words[3], self.js("byId('verdicts').innerText"))
             self.assertIn(words[4], self.js("byId('caveat').innerText"))
             self.assertEqual(self.js("document.documentElement.lang"), "en" if name == "sweep" else "de")
+
+    def test_the_headline_and_the_scale_are_in_the_language_of_the_page(self):
+        found = {}
+        for name in ("german", "cars", "french"):
+            self.open(name)
+            found[name] = self.js("['said', 'drawn'].map((one) => byId(one).textContent)")
+        self.assertRegex(found["german"][0], r"^Größte Durchbiegung \d+,\d mm, Feld 2, bei 27,5 m unter Zug A10 bei "
+                                             r"288 km/h; das \d,\d\d-Fache der statischen$")
+        self.open("german")
+        labels = self.js("page.all.flatMap((card) => card.chart.scales.y.ticks.map((one) => one.label))")
+        self.assertEqual([one for one in labels if "." in str(one)], [])
+        self.assertTrue(any("," in str(one) for one in labels), labels)
+        self.assertRegex(found["cars"][0], r"^Greatest deflection \d+\.\d mm, middle of span 2 \(40 m\); ")
+        self.assertRegex(found["cars"][1], r"^Vertical displacements of bridge and vehicles are drawn 100 times too large, ")
+        self.assertRegex(found["french"][0], r"^Flèche maximale \d+,\d mm, milieu de la travée 2 \(40 m\) ; ")
+        self.assertRegex(found["french"][1], r"^Les déplacements verticaux du pont et des véhicules sont amplifiés 100 fois, ")
 
     def test_a_limit_far_above_is_named_at_the_edge(self):
         self.open("sweep")

@@ -20,7 +20,7 @@ from traverse_report import (  # noqa: E402
 
 RAIL = f"options_file: {SCRIPTS.parent}/options/scenes/uic774_e13.yml\nuic774: {{fronts: [0.0, 60.0, 60.0]}}\n"
 SOURCES = [path for folder in ("traverse_report", "traverse_page", "traverse_check", "traverse_serve")
-           for path in (SCRIPTS / folder).glob("*.py")]
+           for path in (SCRIPTS / folder).glob("*.py")] + list(SCRIPTS.glob("picture_*.py"))
 WORD = re.compile(r"[A-Za-zÄÖÜäöüßéèêàç]{4,}")
 # Names and symbols that are the same in every language.
 SAME = set("traverse HSLM Sperling factor line report limits".split())

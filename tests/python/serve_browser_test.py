@@ -127,6 +127,9 @@ class InABrowser(Served):
                     self.browser.scheme("dark")
                     self.fits(390)
                     self.assertEqual(self.js("document.documentElement.lang"), language)
+                    left, right = self.js("(() => { const box = document.querySelector('nav [aria-current]').getBoundingClientRect(); "
+                                          "return [box.left, box.right]; })()")
+                    self.assertTrue(0 <= left < right <= 390, (left, right))
                     unnamed = "[...document.querySelectorAll('input, select, textarea')].filter((one) => !one.labels.length && " \
                               "!one.getAttribute('aria-label')).length"
                     self.assertEqual(self.js(unnamed), 0)

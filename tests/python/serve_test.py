@@ -10,11 +10,14 @@ import sys
 import tempfile
 import unittest
 
+import yaml
+
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from served import ENDLESS, SERVE, Served, processes_in  # noqa: E402
 from small_runs import BINARY, CROSSING, SOURCE  # noqa: E402
 
 sys.path.insert(0, str(SOURCE / "scripts"))
+from traverse_check import main, question, scene, track_defects  # noqa: E402
 from traverse_serve import fields, forms, inputs, jobs, options, scenes  # noqa: E402
 
 HOSTILE = ("/etc/passwd", "[1, /etc/passwd]", '"\\x2fetc/passwd"', '"a,/etc/passwd"', "../secret.csv", "x/../../secret.csv",
@@ -119,7 +122,7 @@ class Requests(Served):
                                     ("check", {"mass": "14,25"}, "mass"), ("check", {"mass": "1", "mass:unit": "kg/m"}, "mass"),
                                     ("check", {"EI": "", "frequency": "4, x"}, "frequency"),
                                     ("sweep", {"beam_EI": "-1"}, "beam_EI"),
-                                    ("sweep", {"sweep_speed.from": "900"}, "sweep_speed.from"),
+                                    ("sweep", {"sweep_speed.from": "400"}, "sweep_speed.from"),
                                     ("find", {"find_between.from": "600"}, "find_between.from"),
                                     ("sweep", {"sweep_speed.step": "0"}, "sweep_speed.step"),
                                     ("crane", {"train_speed_file.way": "1"}, "train_speed_file.way"),
@@ -134,6 +137,22 @@ class Requests(Served):
                 answer = self.post(f"en/{form}/draft", values)[1]
                 self.assertEqual((list(answer["errors"]), answer["general"]), ([field], ""))
 
+    def test_messages_have_the_unit_and_the_language_of_the_page(self):
+        for language, form, values, message in (
+                ("en", "sweep", {"beam_EI": "-9"}, "−9 GN m² is not possible here; allowed: above 0 GN m²"),
+                ("de", "sweep", {"beam_mass": "-3", "beam_mass:unit": "kg/m"},
+                 "−3 kg/m ist hier nicht möglich; erlaubt: über 0 kg/m"),
+                ("fr", "sweep", {"sweep_speed.to": "900"},
+                 "900 km/h n'est pas possible ici ; admis : plus de 0 km/h, au maximum 720 km/h"),
+                ("de", "check", {"line-speed": "5000"}, "5000 km/h ist hier nicht möglich; erlaubt: von 3,6 km/h bis 720 km/h"),
+                ("fr", "crane", {"beam_damping_ratios": "300"}, "300 % n'est pas possible ici ; admis : de 0 % à 99,9 %"),
+                ("de", "find", {"find_between.from": "600"}, "erlaubt: unter dem größten EI der Suche")):
+            with self.subTest(message):
+                field = next(name for name in values if ":" not in name)
+                self.assertEqual(self.post(f"{language}/{form}/draft", values)[1]["errors"], {field: message})
+        unusual = self.post("de/sweep/draft", {"sweep_speed.to": "500"})[1]["unusual"]
+        self.assertIn("500 km/h ist schneller als jeder Zug im Betrieb", unusual)
+
     def test_drafts_draw_and_warn(self):
         for form in FORMS:
             with self.subTest(form):
@@ -142,8 +161,26 @@ class Requests(Served):
                 self.assertGreater(answer["stage"]["high"], 20.0)
         facts = self.post("en/check/draft", {"line-speed": "150"})[1]["facts"]
         self.assertIn(["Need for a dynamic analysis", "no"], facts)
+        facts = self.post("en/check/draft", {"line-speed": "150", "always": "true"})[1]["facts"]
+        self.assertIn(["Need for a dynamic analysis", "no; the analysis runs because it was asked for: 144 to 180 km/h"], facts)
         unusual = self.post("en/sweep/draft", {"beam_mass": "40", "beam_mass:unit": "kg/m"})[1]["unusual"]
         self.assertTrue(any("beam_mass" in line for line in unusual), unusual)
+
+
+    def test_the_factor_for_track_defects_is_that_of_the_check(self):
+        given = fields.read(forms.forms()["sweep"].fields, {"sweep_speed.to": "300"})
+        asked = question.ask("--span 28 --EI 260GN.m2 --mass 19t/m --type prestressed --line-speed 250km/h".split())
+        parts = main.parts_of(asked, scene.cases(asked, asked.EI)[0], BINARY)
+        factor = track_defects.factor(parts, scene.speeds(asked)[1], False)
+        self.assertAlmostEqual(scenes.factor_for_track(given, BINARY), factor, places=12)
+        rows = yaml.safe_load(scenes.scene_files("sweep", given, "en", factor)["limits.yml"])
+        self.assertEqual({row["quantity"]: row.get("factor") for row in rows},
+                         dict.fromkeys(track_defects.QUANTITIES, f"{factor:.6g}") | {"car_acceleration": None})
+        searched = fields.read(forms.forms()["find"].fields, {})
+        self.assertGreater(scenes.factor_for_track(searched, BINARY), factor)
+        facts = dict(self.post("en/sweep/draft", {})[1]["facts"])
+        self.assertEqual(facts["1 + φ″, EN 1991-2 6.4.6.4⁰"], "1.112 at 300 km/h")
+        self.assertNotIn("1 + φ″, EN 1991-2 6.4.6.4⁰", dict(self.post("en/rough/draft", {})[1]["facts"]))
 
 
 class Runs(Served):
