@@ -63,8 +63,8 @@ def speeds(given):
         raise inputs.InputError(t("allowed: at most the highest speed"), "sweep_speed.from")
     if last - first > MOST_SPEEDS * step:
         raise inputs.InputError(t("allowed: a step with at most {count} speeds", count=number(MOST_SPEEDS)), "sweep_speed.step")
-    if first < last < first + 1e6 * step:
-        step = (last - first) / math.ceil((last - first) / step - 1e-6)
+    if first < last:
+        step = (last - first) / max(1, math.ceil((last - first) / step - 1e-6))
     return f"speed: {listed((first, last, step))}", "m/s: from, to, step"
 
 
