@@ -95,6 +95,7 @@ class Drafts:
                     files, drawn = scene_of(form, values, language)
                     self.add_description(self.described(files), answer, form.name)
                     self.add_factor(form, values, answer)
+                explain_marks(answer["facts"])
                 answer["stage"] = self.drawing(drawn) if draw else None
             except inputs.InputError as error:
                 tell(answer, error.field, str(error))
@@ -142,12 +143,8 @@ class Drafts:
         for part in checking.parts_of_a_bridge(asked, case, self.program):
             found = flow_chart.answer(part, asked)
             needed |= found.needed
-            for clause, sentence in found.steps:
-                answer["facts"].append([clause.replace("figure", t("figure")), sentence])
-        if any(clause.endswith(MARKS) for clause, _ in answer["facts"]):
-            answer["facts"].append([" ".join(MARKS), t("{one}: one public source confirms the number of the clause; {none}: no "
-                                                       "public source confirms it. Such numbers must be checked with the "
-                                                       "norm.", one=MARKS[1], none=MARKS[0])])
+            for name, sentence in found.steps:
+                answer["facts"].append([name.replace("figure", t("figure")), sentence])
         first, last, _ = scene.speeds(asked)
         words = "yes: {first} to {last} km/h" if needed else "no" if not asked.always else \
             "no; the analysis runs because it was asked for: {first} to {last} km/h"
@@ -156,6 +153,13 @@ class Drafts:
         if asked.frequencies:
             answer["facts"].append([capital(t("bending stiffness EI")), units.in_words("EI", case.EI)])
         return {"scene.yml": scene.beam_text(asked.spans, case, asked) + "load: {hslm_a: 1, speed: 50.0}\n"}
+
+
+def explain_marks(facts):
+    if any(name.endswith(MARKS) for name, _ in facts):
+        facts.append([" ".join(MARKS), t("{one}: one public source confirms the number of the clause; {none}: no public source "
+                                         "confirms it. Such numbers must be checked with the norm.", one=MARKS[1],
+                                         none=MARKS[0])])
 
 
 def of_speed(line):

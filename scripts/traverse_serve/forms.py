@@ -130,7 +130,7 @@ def find():
                         chosen("find_keep", "limit", {"deck_acceleration": "vertical acceleration of the deck",
                                                       "deflection_over_span": "deflection over span length",
                                                       "end_rotation": "end rotation", "": "all limits"}, "deck_acceleration"))),
-                    ("train", speeds("100", "300", "5", "narrower than a resonance, 2 ζ v: no speeds are added"))), "Find")
+                    ("train", speeds("100", "300", "2", "narrower than a resonance, 2 ζ v: no speeds are added"))), "Find")
 
 
 def rough():
