@@ -10,9 +10,10 @@ function decoded(key, value) {
 
 const data = JSON.parse(document.getElementById("data").textContent, decoded);
 
-// A text of the page in its language; {name} stands for a part of it.
+// A text of the page in its language; {name} stands for a part of it, a text or a number.
 function said(name, parts = {}) {
-  return data.words[name].replace(/\{(\w+)\}/g, (all, part) => parts[part] ?? all);
+  const text = (part) => (typeof part === "number" ? digits(part) : part);
+  return data.words[name].replace(/\{(\w+)\}/g, (all, part) => text(parts[part]) ?? all);
 }
 
 // A number with five significant digits, a whole number with all; an empty text for an unknown one.
@@ -33,7 +34,7 @@ function withUnit(value, unit) {
 // A value of a quantity as text, a deflection over the span as L/600.
 function ofQuantity(name, value, unit) {
   const overSpan = name && name.endsWith("deflection_over_span") && value > 0;
-  return overSpan ? `L/${Math.round(1 / value)}` : withUnit(value, unit);
+  return overSpan ? `L/${digits(Math.round(1 / value))}` : withUnit(value, unit);
 }
 
 function element(name, className, text) {
