@@ -93,7 +93,7 @@ def sheet(report, source):
     if len(np.unique([row[0] for row in rows])) == 1:
         distributions(page, source)
     names = head(rows)
-    widths = [1.05, 1.45, 0.45, 0.65, 0.7] + [2.5 / max(len(names) - 5, 1)] * (len(names) - 5)
+    widths = [0.7, 1.35, 0.5, 0.65, 1.1] + [2.5 / max(len(names) - 5, 1)] * (len(names) - 5)
     sides = ["left"] * 2 + ["right"] * (len(names) - 2)
     table(report, page, list(zip(names, widths, sides)), cells(rows), size=7)
 
