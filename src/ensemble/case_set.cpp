@@ -2,6 +2,7 @@
 #include "ensemble/case_set.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -56,7 +57,8 @@ double CaseSet::seconds_by_modes() const {
 
 double CaseSet::seconds_in_batches() const {
   return run::batch_stage_seconds(scene_, beam_->beam->mesh().elements()) *
-         static_cast<double>(method_of(scene_).stages.size()) / scene_.model.step.value_or(1.0);
+         static_cast<double>(method_of(scene_).stages.size()) /
+         scene_.model.step.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace traverse::ensemble

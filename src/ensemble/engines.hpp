@@ -26,7 +26,8 @@ class Engine {
                                       const std::function<void(double)>& reached) = 0;
   /// Number of runs that are computed together.
   virtual std::size_t width() const { return 1; }
-  /// Computing time for one second of motion, s: estimated from counts, the same on every rank and machine.
+  /// Computing time for one second of motion, s: estimated from counts, the same on every rank and machine. NaN if each
+  /// run chooses its step.
   virtual double cost() const = 0;
   /// Makes the runs compatible with those of another engine of the same row; false if that is not possible.
   virtual bool merge(const Engine& /*other*/) { return false; }

@@ -1,6 +1,8 @@
 // One Simulation for each run.
 #include "ensemble/single_cases.hpp"
 
+#include <limits>
+
 #include "ensemble/case_batch.hpp"
 #include "run/process.hpp"
 #include "run/rank_choice.hpp"
@@ -22,7 +24,8 @@ double SingleEngine::cost() const {
   const scene::Scene& scene = cases_.scene();
   if (scene.exact_in_time()) return cases_.seconds_by_modes();
   if (by_batch_kernel_) return single_run_factor * cases_.seconds_in_batches();
-  return run::step_seconds(scene, scene.model.method) / scene.model.step.value_or(1.0);
+  return run::step_seconds(scene, scene.model.method) /
+         scene.model.step.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 std::vector<CaseResult> SingleEngine::run(std::size_t train, std::span<const Member> members,

@@ -76,7 +76,8 @@ class DocumentStart : public YAML::EventHandler {
 
 void check_characters(std::string_view text, const std::string& name) {
   if (text.starts_with("\x89HDF"))
-    throw InputError(fmt::format("{}: is a results file, not a text; traverse {} repeats its run", name, name));
+    throw InputError(fmt::format(
+        "{}: is an HDF5 file, not a text; if it is a results file, traverse {} repeats its run", name, name));
   int line = 1;
   for (std::size_t i = 0; i < text.size();) {
     const auto byte = static_cast<unsigned char>(text[i]);

@@ -95,6 +95,10 @@ class ProbeForces {
   static constexpr std::array jumping = {shear_force, axial_force, twist_of_track};
   using Jumping = std::array<double, jumping.size()>;
   static Jumping jumping_of(const recovery::Response& r) { return {r.shear, r.axial_force, recovery::track_twist(r)}; }
+  /// Their differences just before (side 0) or just after (1) a passage at this instant.
+  static Jumping beside(const recovery::Response& r, std::size_t side) {
+    return {r.shear_beside[side], r.axial_force_beside[side], recovery::track_base * r.twist_along_beside[side]};
+  }
 
   struct Forces {
     double time = 0.0, moment = 0.0;
@@ -135,7 +139,7 @@ class ProbeForces {
     Forces relaxed = {t, r.moment, jumping_of(r)};
     if (lag > 0.0) relaxed.jumping[0] -= r.unrelaxed_shear;
     if (lag > 0.0) relaxed.jumping[1] -= r.unrelaxed_axial_force;
-    const bool ends_there = r.shear_beside != none || r.axial_force_beside != none || r.twist_along_beside != none;
+    const bool ends_there = beside(r, 0) != Jumping{} || beside(r, 1) != Jumping{};
     const double tolerance = instants_ > 0 ? same_instant * (t - latest_[0].time) : 0.0;
     std::size_t between = 0;
     double passage = 0.0;
@@ -147,11 +151,9 @@ class ProbeForces {
     ended_there_ = ends_there;
     if (ends_there) {
       const auto side_forces = [&](std::size_t side) {
-        const Jumping& there = relaxed.jumping;
-        return Forces{t,
-                      relaxed.moment,
-                      {there[0] + r.shear_beside[side], there[1] + r.axial_force_beside[side],
-                       there[2] + recovery::track_base * r.twist_along_beside[side]}};
+        Forces forces = relaxed;
+        for (std::size_t k = 0; k < jumping.size(); ++k) forces.jumping[k] += beside(r, side)[k];
+        return forces;
       };
       if (between == 0) add_to_piece(side_forces(0), r, lag, record);
       finish_piece(lag, record);
@@ -200,7 +202,8 @@ class ProbeForces {
     for (std::size_t k = 0; k < jumping.size(); ++k) {
       if (!has_[k]) continue;
       const double first = before_passage_.jumping[k], second = after_passage.jumping[k],
-                   duration = now.time - after_passage.time, other = k == 0 ? after_passage.moment : 0.0;
+                   duration = now.time - after_passage.time,
+                   other = jumping[k] == shear_force ? after_passage.moment : 0.0;
       const JumpExtremum after =
           extremum_after_jump(first, second, (now.jumping[k] - second) / duration, lag_of(k, lag));
       record(jumping[k], first, before_passage_.time, true, other);
@@ -225,7 +228,6 @@ class ProbeForces {
     return latest(count_ - 1 < 1 || t >= latest(0).time ? 0 : count_ - 1);
   }
 
-  static constexpr std::array<double, 2> none{};
   ExtremumTracker moment_;
   KinkTimes kinks_;  // of the moment
   LaggedMomentTracker lagging_moment_;

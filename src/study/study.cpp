@@ -117,7 +117,7 @@ void describe(const scene::Scene& scene, StudyScenes& scenes, const results::Run
   const double rows = static_cast<double>(results::rows_of(study).runs());
   const double part = (rows - static_cast<double>(known)) / rows;
   const double seconds = part * first.cost() * motion / ranks;
-  const bool has_cost = scene.exact_in_time() || model.time_step > 0.0;  // otherwise each run chooses its step
+  const bool has_cost = std::isfinite(seconds);
   const bool by_bounds = scenes.only_greatest();
   notes.push_back(fmt::format("the {} is computed {}{}{}{}", study.sweep ? "sweep" : "study", results::method_of(model),
                               has_cost ? "; estimated time " : "", has_cost && by_bounds ? "at most " : "",

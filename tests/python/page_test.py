@@ -17,7 +17,6 @@ from small_runs import BINARY, CROSSING, SOURCE, Computed  # noqa: E402
 SCRIPTS, SCENES = SOURCE / "scripts", SOURCE / "options/scenes"
 sys.path.insert(0, str(SCRIPTS))
 import page  # noqa: E402
-from traverse_page.packing import Curve, kept_rows  # noqa: E402
 
 LIMITS = ("-limits", str(SOURCE / "options/limits/en1990.yml"))
 STUDY = CROSSING + "study: {vary: {foundation_vertical_k: [1.0e9, 4.0e9], load_speed: [30.0, 40.0, 50.0, 60.0]}}\n"
@@ -386,19 +385,6 @@ class PageTest(Computed):
     def test_a_missing_library_is_named(self):
         with self.assertRaisesRegex(ValueError, "libjs-chart.js"):
             page.chart_library(())
-
-
-class PackingTest(unittest.TestCase):
-    def test_fewer_samples_keep_all_extremes(self):
-        time = np.linspace(0.0, 1.0, 50_001)
-        band = np.column_stack([np.cos(9 * time), np.cos(9 * time) + 1.0])
-        curves = [Curve("a", np.sin(40 * time)), Curve("b", band)]
-        curves[0].values[[777, 31_000]] = 9.0, -9.0
-        curves[1].values[44_444, 1] = np.nan
-        rows = kept_rows(curves, 1000)
-        self.assertLessEqual(len(rows), 1002)
-        self.assertTrue({0, 777, 31_000, 50_000} <= set(rows))
-        self.assertTrue(np.all(np.diff(rows) > 0))
 
 
 if __name__ == "__main__":

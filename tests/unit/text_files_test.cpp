@@ -54,7 +54,7 @@ TEST(TextFiles, HoldNoControlCharactersAndNoOtherEncoding) {
     EXPECT_PRED2(contains, refused(with("\xe4")), kind.name + ":2: byte 0xe4 is not valid UTF-8");
   }
   const std::string results = folder.write("r.h5", "\x89HDF\r\n\x1a\n");
-  EXPECT_PRED2(contains, message_of([&] { read_options_file(results); }), "r.h5: is a results file");
+  EXPECT_PRED2(contains, message_of([&] { read_options_file(results); }), "r.h5: is an HDF5 file");
 }
 
 TEST(TextFiles, AreNoPipesFoldersOrDevices) {
