@@ -4,6 +4,8 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/scripts/setup.sh"
 locked set_up_tests
+# At its first use Matplotlib lists the fonts of the machine, and says so if that takes long: no test shall see it.
+/usr/bin/python3 -c 'import matplotlib.font_manager' >>"$setup_log" 2>&1
 
 chosen=()
 if [ "${1:-}" = --quick ]; then

@@ -14,10 +14,10 @@ import mmap
 import os
 import pathlib
 import re
+import secrets
 import signal
 import stat
 import sys
-import tempfile
 import zipfile
 
 import checked_results
@@ -43,6 +43,8 @@ CONTENTS = {
 FAULT = f"Fault report, written by {WRITER}"  # the comment of a ZIP file
 # Kinds of HDF5 files, and the program that they name.
 RESULTS = {"results": "traverse", "exported": "traverse export"}
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+unfinished = set()  # files that are being written under another name
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # errors of a file for which there is no room
 TAKEN = ("is there already, without the mark that Traverse leaves in such a file: it is another program's, was changed since, "
          "or is of a version without marks; remove or rename it, or name another file or folder")
@@ -160,8 +162,8 @@ def put_in_place(temporary, path, before):
 
 
 def run(main):
-    """Runs a script. A signal ends it as an exception does, which removes unfinished files, without a message and with its
-    usual status."""
+    """Runs a script. A signal ends it as an exception does, without a message and with its usual status. It can come at any
+    point, also where no block would remove a file: no unfinished file remains."""
     ended = []
 
     def end(number, frame):
@@ -169,14 +171,24 @@ def run(main):
         sys.stderr = io.StringIO()  # what fails from now on fails because of the signal
         sys.exit()
 
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+    for number in SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, end)
     try:
         sys.exit(main())
     finally:
+        for number in SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+        for temporary in list(unfinished):
+            remove_unfinished(temporary)
         if ended:
             sys.exit(128 + ended[0])
+
+
+def remove_unfinished(temporary):
+    with contextlib.suppress(FileNotFoundError):
+        os.unlink(temporary)
+    unfinished.discard(temporary)
 
 
 @contextlib.contextmanager
@@ -201,15 +213,15 @@ def written(path, kind, inputs=(), head=None):
     before = identity(path)
     mode = stat.S_IMODE(os.stat(path).st_mode) if before else 0o666 & ~current_umask()
     with with_room(path):
-        handle, temporary = tempfile.mkstemp(f".{kind}", ".traverse_", pathlib.Path(path).parent)
-        os.close(handle)
+        temporary = pathlib.Path(path).parent / f".traverse_{secrets.token_hex(8)}.{kind}"  # a name that no file has
+        unfinished.add(temporary)
         try:
-            yield pathlib.Path(temporary)
+            os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))
+            yield temporary
             os.chmod(temporary, mode)
             put_in_place(temporary, path, before)
         finally:
-            with contextlib.suppress(FileNotFoundError):
-                os.unlink(temporary)
+            remove_unfinished(temporary)
 
 
 def current_umask():

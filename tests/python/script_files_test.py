@@ -152,6 +152,36 @@ class Written(Scripts):
                 self.assertEqual(list(self.folder.glob(".traverse_*")), [])
                 self.assertFalse((self.folder / "long.gif").exists())
 
+    def test_a_signal_at_any_point_of_writing_leaves_no_unfinished_file(self):
+        path, before, error = self.folder / "text.txt", {one: signal.getsignal(one) for one in output_files.SIGNALS}, sys.stderr
+        point, passed = 0, None
+
+        def at_one_point(*_):
+            nonlocal passed
+            passed += 1
+            if passed == point:
+                signal.raise_signal(signal.SIGTERM)
+            return at_one_point
+
+        def main():
+            sys.settrace(at_one_point)
+            output_files.write_text(path, "text\n")
+
+        while passed is None or passed >= point:
+            point, passed = point + 1, 0
+            try:
+                with self.assertRaises(SystemExit) as end:
+                    output_files.run(main)
+            finally:
+                sys.settrace(None)
+                sys.stderr = error
+                for number, handler in before.items():
+                    signal.signal(number, handler)
+            self.assertIn(end.exception.code, (None, 128 + signal.SIGTERM))
+            self.assertEqual(list(self.folder.glob(".traverse_*")), [], point)
+            path.unlink(missing_ok=True)
+        self.assertGreater(point, 100)
+
     def test_a_page_has_the_ending_of_a_page(self):
         self.refused("p.png: allowed: .html, .htm", "page.py", "r.h5", "p.png")
 
