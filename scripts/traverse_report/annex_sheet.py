@@ -5,7 +5,7 @@ import subprocess
 
 from .assumptions_sheet import discretisation, noted, origin, uncertainty_of
 from .language import capital, num, t
-from .page import GREY, LEFT, table
+from .page import BEGINNING, GREY, LEFT, table
 
 # Quantities with an error estimate: their names in words, and in the notes of the program.
 ESTIMATED = {"deflection": ("deflection", "deflection"),
@@ -101,7 +101,7 @@ def notes_sheet(report, entries):
     rows = notes_of_all(entries)
     if not rows:
         return
-    page = report.page(t("Notes of the program (in English)"))
+    page = report.page(t("Notes of the program (in English)"), least=BEGINNING)
     if any(source.runs is not None for source, *_ in entries):
         page.text(LEFT, t("The runs of a sweep or study share their model; in notes, numbers that depend on the load "
                           "or the speed are those of the first run."), size=8, colour=GREY)
@@ -140,7 +140,7 @@ def sheet(report, source, governing, program):
         columns = [(t("peak values of"), 2.2, "left"), (t("estimated relative error"), 1.5, "left"),
                    (t("source of the estimate, or why there is none"), 3.1, "left")]
         table(report, page, columns, [(capital(words), *rest) for words, *rest in estimates(source, governing)])
-    page = report.page(t("Options of the computation"))
+    page = report.page(t("Options of the computation"), least=BEGINNING)
     page.text(LEFT, t("Numbers are in the unit of the option; the run of the file has these options and defaults of "
                       "the program for all others."), size=8, colour=GREY)
     page.y -= 0.05

@@ -9,7 +9,7 @@ import yaml
 from .decisions import DECISIONS, need_for_analysis
 from .front_sheet import COLOURS, WORDS
 from .language import capital, t
-from .page import AMBER, GREEN, GREY, INK, LEFT, RED, Reference, table
+from .page import AMBER, BEGINNING, GREEN, GREY, INK, LEFT, RED, Reference, table
 from .quantities import shown_value, speed_in_words
 
 PAGES = {"rail": {"rail_tension", "rail_compression", "deck_displacement", "deck_end_displacement"}}  # others: verdicts
@@ -124,7 +124,7 @@ def steps(report, source):
     found = need_for_analysis(source)
     if found is None:
         return
-    page = report.page(t("Need for a dynamic analysis"))
+    page = report.page(t("Need for a dynamic analysis"), least=BEGINNING)
     report.anchor("need")
     page.text(LEFT, t("Flow chart of EN 1991-2 figure 6.9 for a line speed of {speed}",
                       speed=speed_in_words(source.line.line_speed)))

@@ -17,6 +17,7 @@ plt.rcParams.update({"font.size": 8.5, "axes.titlesize": 10, "axes.titlepad": 6,
 
 WIDTH, HEIGHT = 8.27, 11.69
 LEFT, RIGHT, TOP, BOTTOM = 0.8, 7.6, 10.85, 0.75
+BETWEEN, BEGINNING = 0.25, 2.0  # above the heading of a section within a page; for a heading and the first rows of a table
 INK, GREY, PALE, RED, GREEN, AMBER = "#222222", "#666666", "#C8C8C8", "#B00020", "#00693E", "#8A5A00"
 SIZE = 8.5
 SMALLEST = 0.7  # of the size of a table, for words that are longer than their column
@@ -101,9 +102,9 @@ class Report:
     def annex(self):
         self.count, self.in_annex = 0, True
 
-    def page(self, heading, numbered=True, drop=0.0):
+    def page(self, heading, numbered=True, drop=0.0, least=HEIGHT):
         """Adds a page; of the same heading as the page before, it continues its section. drop: inches above the
-        heading."""
+        heading. least: with as many inches on the page before, the section begins there."""
         before = self.pages[-1] if self.pages else None
         if before is not None and before.heading == heading:
             page = Page(heading, before.number)
@@ -112,7 +113,12 @@ class Report:
         else:
             self.count += numbered
             own = chr(64 + self.count) if self.in_annex else str(self.count)
-            page = Page(heading, self.prefix + own if numbered else "")
+            number = self.prefix + own if numbered else ""
+            if before is not None and before.room() > least:
+                page, drop = self.pages.pop(), BETWEEN
+                page.heading, page.number = heading, number
+            else:
+                page = Page(heading, number)
             page.y -= drop
             page.text(LEFT, f"{page.number}  {heading}".strip(), size=14, weight="bold")
             if self.contents and self.contents[-1][2] is None:
@@ -120,7 +126,7 @@ class Report:
             if numbered:
                 self.contents.append([page.number, heading, page])
         page.y -= 0.12
-        page.foot_note = self.foot_note
+        page.foot_note = page.foot_note or self.foot_note
         self.pages.append(page)
         return page
 
