@@ -223,7 +223,7 @@ class Annex(Computations):
         self.assertGreater(len(own), 0)
         for note in own:
             self.assertIn(("continuous.h5, first run", note), rows)
-        self.assertEqual([one.heading for one in report.pages].count("Notes of the program (in English)"), 1)
+        self.assertEqual([heading for _, heading, _ in report.contents].count("Notes of the program (in English)"), 1)
 
     def test_options_have_units_and_origins(self):
         rows = {name: rest for name, *rest in annex_sheet.option_rows(self.source("simple"), BINARY)}
