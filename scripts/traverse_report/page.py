@@ -38,8 +38,13 @@ class Page:
         self.paper = self.figure.add_axes([0, 0, 1, 1])
         self.paper.set(xlim=(0, WIDTH), ylim=(0, HEIGHT))
         self.paper.axis("off")
-        self.heading, self.number, self.foot_note = heading, number, ""
+        self.headings, self.number, self.foot_note = [heading], number, ""
         self.y = TOP
+
+    @property
+    def heading(self):
+        """Of the section at its end."""
+        return self.headings[-1]
 
     def text(self, x, text, size=SIZE, colour=INK, width=None, **words):
         """Writes lines from y downward."""
@@ -116,7 +121,8 @@ class Report:
             number = self.prefix + own if numbered else ""
             if before is not None and before.room() > least:
                 page, drop = self.pages.pop(), BETWEEN
-                page.heading, page.number = heading, number
+                page.headings.append(heading)
+                page.number = number
             else:
                 page = Page(heading, number)
             page.y -= drop

@@ -62,7 +62,8 @@ class Pages(Reported):
                                 fatigue_sheet.Asked())
         found = {}
         for sheet in report.pages[1:]:
-            found.setdefault(sheet.heading, []).append(sheet)
+            for heading in sheet.headings:
+                found.setdefault(heading, []).append(sheet)
         return found, lines
 
     def words_of(self, sheets):
