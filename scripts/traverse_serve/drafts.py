@@ -130,7 +130,8 @@ class Drafts:
             answer["facts"].append([f"1 + φ″, {clause('track_defects')}", t(words, factor=num(factor), speed=speed)])
 
     def examine_check(self, form, values, language, answer):
-        """Adds the need for a dynamic analysis of the first combination of bounds. Returns the files of the drawing."""
+        """Adds the need for a dynamic analysis, with the steps of the first combination of bounds that needs one. Returns the
+        files of the drawing."""
         with self.written({}) as folder:
             file = folder / "bridge.yml"
             file.write_text(check_text(form, values, language), encoding="utf-8")
@@ -138,20 +139,23 @@ class Drafts:
                 asked = question.ask([str(file), "--folder", str(folder / "results")])
             except CheckError as error:
                 raise CheckError(str(error).replace(f"{file}: ", "")) from None
-        case = scene.cases(asked, checking.stiffnesses_of(asked, self.program))[0]
-        needed = False
-        for part in checking.parts_of_a_bridge(asked, case, self.program):
-            found = flow_chart.answer(part, asked)
-            needed |= found.needed
-            for name, sentence in found.steps:
-                answer["facts"].append([name.replace("figure", t("figure")), sentence])
+        cases = scene.cases(asked, checking.stiffnesses_of(asked, self.program))
+        decided = [(case, [flow_chart.answer(part, asked) for part in checking.parts_of_a_bridge(asked, case, self.program)])
+                   for case in cases]
+        needing = [one for one in decided if any(found.needed for found in one[1])]
+        needed = bool(needing)
+        case, shown = (needing or decided)[0]
+        for name, sentence in [step for found in shown for step in found.steps]:
+            answer["facts"].append([name.replace("figure", t("figure")), sentence])
         first, last, _ = scene.speeds(asked)
         words = "yes: {first} to {last} km/h" if needed else "no" if not asked.always else \
             "no; the analysis runs because it was asked for: {first} to {last} km/h"
         answer["facts"].insert(0, [capital(t("need for a dynamic analysis")),
                                    t(words, first=num(3.6 * first), last=num(3.6 * last))])
-        if asked.frequencies:
+        if asked.frequencies or len(asked.EI) > 1:
             answer["facts"].append([capital(t("bending stiffness EI")), units.in_words("EI", case.EI)])
+        if len(asked.masses) > 1:
+            answer["facts"].append([capital(t("mass per length")), units.in_words("mass", case.mass)])
         return {"scene.yml": scene.beam_text(asked.spans, case, asked) + "load: {hslm_a: 1, speed: 50.0}\n"}
 
 

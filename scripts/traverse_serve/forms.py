@@ -66,7 +66,7 @@ def speeds(first, last, step, hint=""):
 
 def coaches(choices, preset, count="8"):
     return (chosen("train_vehicles", "train", choices, preset),
-            Field("train_vehicles.count", "number of vehicles", count, hint="of a train of vehicles", range=OF_VEHICLES))
+            Field("train_vehicles.count", "number of vehicles", count, hint="of a train of equal vehicles", range=OF_VEHICLES))
 
 
 def check():
@@ -122,7 +122,7 @@ def sweep():
 def find():
     return Form("find", "Least stiffness", "Finds the least bending stiffness with which the bridge keeps a limit under the "
                 "trains HSLM. Deflections, rotations and deck accelerations are judged with the factor 1 + φ″ for track "
-                "defects, EN 1991-2 6.4.6.4, at the highest speed and the greatest EI of the search, where it is greatest.", (
+                "defects, EN 1991-2 6.4.6.4, at the highest speed and the EI that was found.", (
                     bridge(searched=True),
                     ("search", (
                         Field("find_between.from", "least EI of the search", "100", EI, range=OF_EI),
@@ -130,7 +130,7 @@ def find():
                         chosen("find_keep", "limit", {"deck_acceleration": "vertical acceleration of the deck",
                                                       "deflection_over_span": "deflection over span length",
                                                       "end_rotation": "end rotation", "": "all limits"}, "deck_acceleration"))),
-                    ("train", speeds("100", "300", "2", "narrower than a resonance, 2 ζ v: no speeds are added"))), "Find")
+                    ("train", speeds("100", "300", "2", "halved if a peak between two speeds exceeds the limit"))), "Find")
 
 
 def rough():

@@ -69,7 +69,7 @@ def speeds(given):
 
 
 def factor_for_track(given, traverse):
-    """1 + phi'' at the highest speed; of a search at the greatest EI, where the frequency and phi'' are greatest."""
+    """1 + phi'' at the highest speed; of a search at its greatest EI, where the frequency and phi'' are greatest."""
     stiffness, speed = given.get("beam_EI") or given["find_between.to"], given["sweep_speed.to"]
     asked = Question(given["beam_spans"], [stiffness], [given["beam_mass"]], given["model_damping_bound"], speed,
                      simply_supported=given["beam_continuity"])
@@ -77,10 +77,14 @@ def factor_for_track(given, traverse):
     return track_defects.factor(parts, speed, asked.careful)
 
 
-def limits(factor):
-    """The limits of EN 1990 with a factor for the effects of trains."""
+def limits(given, factor):
+    """The limits of EN 1990 for what the scene has, with a factor for the effects of trains."""
     path = inputs.OPTIONS / "limits/en1990.yml"
-    return text_of_limits("this page", path, track_defects.with_factor(read_limits(path), factor))
+    without = set() if given["beam_continuity"] and len(given["beam_spans"]) > 1 else {"joint_rotation"}
+    if given.get("train_vehicles", HSLM) == HSLM:
+        without.add("car_acceleration")
+    rows = [row for row in read_limits(path) if row["quantity"] not in without]
+    return text_of_limits("this page", path, track_defects.with_factor(rows, factor))
 
 
 def coaches(given, speed, files, start=None):
@@ -89,8 +93,8 @@ def coaches(given, speed, files, start=None):
     source = (inputs.OPTIONS / "vehicles" / f"{name}.yml")
     files[source.name] = inputs.with_library(source.read_text(encoding="utf-8"), source.name, files, source.parent)
     count = whole(given, "train_vehicles.count")
-    return {"vehicle": [(f"coach: {{file: {source.name}}}", "")],
-            "train": [(f"vehicles: coach*{count}", "the front one first"), (f"speed: {speed!r}", "m/s"),
+    return {"vehicle": [(f"{name}: {{file: {source.name}}}", "")],
+            "train": [(f"vehicles: {name}*{count}", "all equal"), (f"speed: {speed!r}", "m/s"),
                       *([(f"positions: {start!r}", "m: the roughness has its full height at the bridge")] if start else [])]}
 
 
@@ -215,7 +219,7 @@ def scene_files(name, given, language, factor):
     files = {}
     blocks = BLOCKS[name](given, files)
     if "limits" in blocks:
-        files["limits.yml"] = limits(factor)
+        files["limits.yml"] = limits(given, factor)
     named = [(f"name: {quoted(t(forms()[name].title))}", ""), *blocks.get("scene", ())]
     text = HEAD.format(what=WHAT[name]) + text_of(blocks | {"scene": named, "report": [(f"language: {language}", "")]})
     return {"scene.yml": text} | files

@@ -1,6 +1,7 @@
 """What the server answers: pages, drafts, runs and files."""
 
 import io
+import json
 import os
 import pathlib
 import re
@@ -121,10 +122,11 @@ class Site:
                       "--no-report"], "the check is being computed", judged=True),
                 Step([*script, HERE / "documents.py", folder], "the pages of results are being made")]
         files, _ = drafts.scene_of(form, values, language, drafts.factor_of(form, values, self.program))
+        computing = [*script, HERE / "least.py", self.program, language, json.dumps(values)] if form.name == "find" else \
+            [self.program, "-options_file", "scene.yml", "-output_file", "results.h5", "-skip_petscrc"]
         return files, lambda folder: [
-            Step([self.program, "-options_file", "scene.yml", "-output_file", "results.h5", "-skip_petscrc"],
-                 "the scene is being computed", judged=True),
-            Step([*script, HERE / "documents.py", folder], "the pages of results are being made")]
+            Step(computing, "the scene is being computed"),
+            Step([*script, HERE / "documents.py", folder, "results.h5"], "the pages of results are being made", judged=True)]
 
     def job(self, number):
         job = self.queue.jobs.get(int(number)) if re.fullmatch(r"[0-9]{1,9}", number) else None

@@ -163,6 +163,9 @@ class Requests(Served):
         self.assertIn(["Need for a dynamic analysis", "no"], facts)
         facts = self.post("en/check/draft", {"line-speed": "150", "always": "true"})[1]["facts"]
         self.assertIn(["Need for a dynamic analysis", "no; the analysis runs because it was asked for: 144 to 180 km/h"], facts)
+        facts = dict(self.post("en/check/draft", {"EI": "260; 300", "line-speed": "160"})[1]["facts"])
+        self.assertEqual(facts["Need for a dynamic analysis"], "yes: 144 to 192 km/h")  # only of the greater EI
+        self.assertEqual(facts["Bending stiffness EI"], "300000 MN m²")
         unusual = self.post("en/sweep/draft", {"beam_mass": "40", "beam_mass:unit": "kg/m"})[1]["unusual"]
         self.assertTrue(any("beam_mass" in line for line in unusual), unusual)
 
@@ -175,7 +178,7 @@ class Requests(Served):
         self.assertAlmostEqual(scenes.factor_for_track(given, BINARY), factor, places=12)
         rows = yaml.safe_load(scenes.scene_files("sweep", given, "en", factor)["limits.yml"])
         self.assertEqual({row["quantity"]: row.get("factor") for row in rows},
-                         dict.fromkeys(track_defects.QUANTITIES, f"{factor:.6g}") | {"car_acceleration": None})
+                         dict.fromkeys(("deck_acceleration", "deflection_over_span", "end_rotation"), f"{factor:.6g}"))
         searched = fields.read(forms.forms()["find"].fields, {})
         self.assertGreater(scenes.factor_for_track(searched, BINARY), factor)
         facts = dict(self.post("en/sweep/draft", {})[1]["facts"])
