@@ -21,6 +21,8 @@ beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
 model: {modes: 3, damping_ratios: 0.01}
 scene: {tail: 0.2}
 """
+SEPARATE = SIMPLE.replace("[20.0]", "[20.0, 20.0, 20.0]").replace("1.8e4", "1.8e4, continuity: simply_supported") \
+    .replace("modes: 3", "modes: 9")
 TRAINS = """
 sweep: {speed: [40.0, 80.0, 5.0], hslm_a: [1, 2]}
 norm: {load_models: [lm71]}
@@ -39,6 +41,7 @@ class Computations(Reported):
             return
         (cls.folder / "factor.yml").write_text(FACTOR, encoding="utf-8")
         cls.compute("simple", SIMPLE + TRAINS)
+        cls.compute("separate", SEPARATE + TRAINS)
         cls.compute("continuous", SIMPLE.replace("[20.0]", "[20.0, 20.0]") + TRAINS)
         cls.compute("heavy", SIMPLE.replace("mass: 1.8e4", "mass: 1.8e4, self_weight: true")
                     + "load: {forces: [2.0e5], speed: 40.0}\noutput: {interval: 0.01}\n")
@@ -78,7 +81,7 @@ class Decisions(Computations):
 
     def test_uplift_of_a_simple_bridge(self):
         one = self.source("simple")
-        self.assertAlmostEqual(decisions.permanent_force(one, 20.0), 1.8e4 * 9.81 * 10.0, 3)
+        np.testing.assert_allclose(uplift.permanent_forces(one), 1.8e4 * 9.81 * 10.0, 1e-9)
         self.assertIn("no load lifts a bearing", decisions.uplift(one).words)
         one.governing = self.source("heavy")
         self.assertEqual(decisions.dynamic_uplift(one)[0].value,
@@ -86,7 +89,7 @@ class Decisions(Computations):
 
     def test_the_least_bearing_force_is_that_of_all_runs(self):
         one, repeated = self.source("simple"), []
-        bounds = uplift.inertia_bounds(one)
+        bounds = uplift.inertia_bounds(one).min(axis=(1, 2))
         self.assertEqual(len(bounds), 18)
         order = np.argsort(bounds)
 
@@ -108,6 +111,33 @@ class Decisions(Computations):
             self.assertLessEqual(found.value, min(force.value for force in least.values()))
         one.least_bearing = found
         self.assertEqual(decisions.dynamic_uplift(one), [found])
+
+    def test_uplift_of_separate_spans_is_that_of_one_of_them(self):
+        bounds, forces = {}, {}
+        for name in ("simple", "separate"):
+            one, bounds[name] = self.source(name), uplift.inertia_bounds(self.source(name))
+            run = int(bounds[name].min(axis=(1, 2)).argmin())
+            path, trouble = governing.repeat(one, run, [], BINARY, ".", self.folder, name=f"{name}_{run}")
+            self.assertEqual(trouble, "")
+            forces[name] = uplift.forces_of_deck_ends(source.Source(path)).min(axis=0)
+            one.least_bearing = uplift.least_over_time(source.Source(path), "")
+            self.assertEqual(one.least_bearing.value, forces[name].min())
+            self.assertIn(one.least_bearing.x, one.model.span_ends)
+            np.testing.assert_allclose(uplift.permanent_forces(one), 1.8e4 * 9.81 * 10.0, 1e-9)
+            self.assertEqual(decisions.uplift(one).colour, page.GREEN)
+            one.least_bearing = one.least_bearing._replace(own=-0.9 * one.least_bearing.value)  # of a lighter bridge
+            self.assertEqual(decisions.uplift(one).colour, page.RED)
+            one.least_bearing = one.least_bearing._replace(is_bound=True)
+            self.assertEqual(decisions.uplift(one).colour, page.AMBER)
+        self.assertEqual(forces["separate"].shape, (3, 2))
+        for one in (bounds, forces):  # the instants of the stored values differ between the decks
+            np.testing.assert_allclose(one["separate"], np.broadcast_to(one["simple"], one["separate"].shape), 0.05)
+
+    def test_uplift_of_a_run_needs_a_station_at_each_joint(self):
+        self.compute("crossed", SEPARATE + "load: {forces: [2.0e5], speed: 40.0}\n"
+                                           "output: {interval: 0.01, probes: [10.0, 20.0]}\n")
+        found = decisions.uplift(self.source("crossed"))
+        self.assertEqual((found.colour, "needs a station" in found.words), (page.AMBER, True))
 
     def test_what_is_not_satisfied_without_a_limit_is_on_the_title_page(self):
         for line_speed, colour, count in ((60.0, page.GREEN, 2), (70.0, page.AMBER, 3)):
