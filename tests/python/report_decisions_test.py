@@ -288,6 +288,17 @@ class Annex(Computations):
         self.assertEqual(rows["relative error of the peaks over the speed, achieved"][0],
                          "0.4 % (greatest rotation of the deck ends of A8); 7 speeds added")
 
+    def test_an_error_over_the_speed_is_stated_only_if_it_is_determined(self):
+        for name, added in (("simple", None), ("separate", 2)):
+            one = self.source(name)
+            one.summary.update({"peak_uncertainty": 0.0, "peak_uncertainty_of": "", "speeds_added": added} if added else {})
+            said = "not determined; 2 speeds added near limits" if added else \
+                "not determined between the speeds, which are as given"
+            rows = {words: value for words, value, _ in (*assumptions_sheet.of_accuracy(one), *annex_sheet.model_rows(one))}
+            self.assertEqual(rows["relative error of the peaks over the speed, requested"], "none requested")
+            self.assertEqual(rows["relative error of the peaks over the speed, achieved"], said)
+            self.assertEqual(rows["peaks over the speed, possible excess"], said)
+
     def test_dates_are_those_of_the_language(self):
         for name, expected in (("en", "2026-11-27"), ("de", "27.11.2026"), ("fr", "27/11/2026")):
             language.choose(name)
