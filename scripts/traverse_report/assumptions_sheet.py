@@ -201,7 +201,7 @@ def method_of(source):
 
 
 class Discretisation(NamedTuple):
-    """Modes (0: none), elements and time step as text; empty: unknown."""
+    """Modes (0: none), elements of all spans together and time step as text; empty: unknown."""
     modes: int
     elements: str
     step: str
@@ -213,8 +213,8 @@ def discretisation(source):
     group = file["sweep"] if "sweep" in file else file["study"] if "study" in file else None
     attrs = {} if group is None else dict(group.attrs)
     modes = int(attrs.get("modes", noted(source, r"^the bridge by (\d+) modes")) or 0)
-    stated = noted(source, r"(\d+) elements a span") or noted(source, r"(\d+) elements")
-    elements = attrs.get("elements_per_span", stated)
+    elements = noted(source, r"^beam of .* (\d+) elements,") or noted(source, r"(\d+) elements a span") or \
+        noted(source, r"(\d+) elements") or attrs.get("elements_per_span", "")
     step = attrs.get("time_step", noted(source, r"steps of (?:at most )?([\d.e-]+) s"))
     unit, factor = shown("loss_time")
     return Discretisation(modes, str(elements), f"{num(factor * float(step))} {unit}" if step else "")

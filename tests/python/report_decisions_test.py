@@ -299,6 +299,14 @@ class Annex(Computations):
             self.assertEqual(rows["relative error of the peaks over the speed, achieved"], said)
             self.assertEqual(rows["peaks over the speed, possible excess"], said)
 
+    def test_beam_elements_are_those_of_all_spans(self):
+        for name, spans in (("simple", 1), ("separate", 3), ("continuous", 2)):
+            one = self.source(name)
+            count = str(spans * one.file["sweep"].attrs["elements_per_span"])
+            self.assertIn(f", {count} elements,", " ".join(one.model.notes))
+            self.assertIn(f"{count} beam elements", assumptions_sheet.method_of(one))
+            self.assertIn(("beam elements", count), [row[:2] for row in annex_sheet.model_rows(one)])
+
     def test_dates_are_those_of_the_language(self):
         for name, expected in (("en", "2026-11-27"), ("de", "27.11.2026"), ("fr", "27/11/2026")):
             language.choose(name)
