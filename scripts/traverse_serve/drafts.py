@@ -143,8 +143,7 @@ class Drafts:
         for part in checking.parts_of_a_bridge(asked, case, self.program):
             found = flow_chart.answer(part, asked)
             needed |= found.needed
-            for name, sentence in found.steps:
-                answer["facts"].append([name.replace("figure", t("figure")), sentence])
+            answer["facts"] += [list(step) for step in found.steps]
         first, last, _ = scene.speeds(asked)
         words = "yes: {first} to {last} km/h" if needed else "no" if not asked.always else \
             "no; the analysis runs because it was asked for: {first} to {last} km/h"
