@@ -251,8 +251,8 @@ def of_accuracy(source):
         rows.append((t("relative error of the peaks over the speed, requested"),
                      percent(over_speed) if over_speed else t("none requested"),
                      origin(source, "sweep_refine", "study_refine")))
-        rows += [(t("relative error of the peaks over the speed, achieved"), said, t("computed") if known else t("no accuracy requested"))
-                 for said, known in uncertainty_of(source)]
+        rows += [(t("relative error of the peaks over the speed, achieved"), said,
+                  t("computed") if known else t("no accuracy requested")) for said, known in uncertainty_of(source)]
     return rows
 
 

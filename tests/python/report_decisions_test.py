@@ -59,6 +59,13 @@ class Decisions(Computations):
         hinged = self.source("sweep", flow_chart.Line(60.0))  # neither simple spans nor continuous
         self.assertIsNone(decisions.need_for_analysis(hinged))
 
+    def test_clauses_of_the_need_are_in_the_language(self):
+        for name, word in (("de", "Bild 6.9"), ("fr", "figure 6.9"), ("en", "figure 6.9")):
+            language.choose(name)
+            found = decisions.need_for_analysis(self.source("simple", flow_chart.Line(200.0 / 3.6)))
+            self.assertTrue(found.steps[0][0].startswith(f"EN 1991-2 {word}"), found.steps)
+            self.assertEqual({"figure" in clause for clause, _ in found.steps}, {name != "de"})
+
     def test_the_range_of_speeds(self):
         for line_speed, colour in ((60.0, page.GREEN), (80.0 / 1.2, page.GREEN), (70.0, page.RED)):
             found = decisions.speeds(self.source("simple", flow_chart.Line(line_speed)))
@@ -238,7 +245,15 @@ class Annex(Computations):
         values = governing.source.file["probes/acceleration_lowpass"][:]
         least, greatest = run_sheet.envelope_of(governing.source, "acceleration_lowpass")
         np.testing.assert_array_equal([least, greatest], [values.min(axis=0), values.max(axis=0)])
-        self.assertEqual(run_sheet.deck_limits(rows, "acceleration_lowpass"), [3.5 / 1.25])
+        self.assertEqual(run_sheet.deck_limits(rows, "acceleration_lowpass"),
+                         [(3.5 / 1.25, "limit 3.5 m/s² / 1.25")])
+        self.assertEqual(run_sheet.deck_limits([rows[0]._replace(factor=1.0)], "acceleration_lowpass"),
+                         [(3.5, "limit 3.5 m/s²")])
+        entries, report = self.whole(["simple"])
+        for heading in ("Results along the bridge", "Time histories"):
+            texts = [text.get_text() for one in report.pages if heading in one.headings
+                     for ax in one.figure.axes for text in ax.texts]
+            self.assertIn("limit 3.5 m/s² / 1.25", texts, heading)
         titles = [title for title, *_ in run_sheet.deck_panels(governing.source, rows)]
         self.assertTrue(any("low-pass filtered" in title for title in titles), titles)
 
