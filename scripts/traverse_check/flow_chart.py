@@ -10,8 +10,8 @@ from typing import NamedTuple, Optional
 from traverse_report.language import num, t
 from traverse_report.quantities import speed_in_words
 
-from . import units
-from .rules import CheckError, clause, rule
+from . import rules, units
+from .rules import CheckError, rule
 
 
 class Part(NamedTuple):
@@ -38,6 +38,11 @@ def torsional_wave_speed(GJ, polar_inertia, torsional_frequency):
     if torsional_frequency is not None:
         raise CheckError("torsional-frequency and GJ: allowed: one of them")
     return math.sqrt(GJ / polar_inertia)
+
+
+def clause(name):
+    """The clause of a rule in the language of the output."""
+    return rules.clause(name).replace("figure", t("figure")).replace("annex F", t("annex F"))
 
 
 class Answer(NamedTuple):

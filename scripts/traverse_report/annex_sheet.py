@@ -69,9 +69,10 @@ def model_rows(source):
         rows.append((t("time step"), step, origin(source, "ts_dt", "accuracy") if found.step else t("method")))
     rows.append((t("stations of evaluation"), str(len(source.results.probes)),
                  origin(source, "output_probes", "output_probes_spacing")))
-    if "peak_uncertainty" in source.summary:
-        rows.append((t("peaks over the speed, possible excess"), uncertainty_of(source),
-                     t("curvature of the peaks between the computed speeds")))
+    if source.runs is not None:
+        rows += [(t("peaks over the speed, possible excess"), said,
+                  t("curvature of the peaks between the computed speeds") if known else t("no accuracy requested"))
+                 for said, known in uncertainty_of(source)]
     return rows
 
 

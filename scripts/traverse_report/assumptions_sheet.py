@@ -201,7 +201,7 @@ def method_of(source):
 
 
 class Discretisation(NamedTuple):
-    """Modes (0: none), elements and time step as text; empty: unknown."""
+    """Modes (0: none), elements of all spans together and time step as text; empty: unknown."""
     modes: int
     elements: str
     step: str
@@ -213,8 +213,8 @@ def discretisation(source):
     group = file["sweep"] if "sweep" in file else file["study"] if "study" in file else None
     attrs = {} if group is None else dict(group.attrs)
     modes = int(attrs.get("modes", noted(source, r"^the bridge by (\d+) modes")) or 0)
-    stated = noted(source, r"(\d+) elements a span") or noted(source, r"(\d+) elements")
-    elements = attrs.get("elements_per_span", stated)
+    elements = noted(source, r"^beam of .* (\d+) elements,") or noted(source, r"(\d+) elements a span") or \
+        noted(source, r"(\d+) elements") or attrs.get("elements_per_span", "")
     step = attrs.get("time_step", noted(source, r"steps of (?:at most )?([\d.e-]+) s"))
     unit, factor = shown("loss_time")
     return Discretisation(modes, str(elements), f"{num(factor * float(step))} {unit}" if step else "")
@@ -247,13 +247,18 @@ def of_accuracy(source):
     wanted = percent(float(options["accuracy"])) if "accuracy" in options else t("none requested")
     rows = [(t("relative error of the peaks of a run, requested"), wanted, origin(source, "accuracy"))]
     if source.runs is not None:
-        name = next((name for name in ("sweep_refine", "study_refine") if name in options), None)
+        over_speed = refinement(options)
         rows.append((t("relative error of the peaks over the speed, requested"),
-                     percent(float(options[name])) if name else t("none requested"),
+                     percent(over_speed) if over_speed else t("none requested"),
                      origin(source, "sweep_refine", "study_refine")))
-        if "peak_uncertainty" in source.summary:
-            rows.append((t("relative error of the peaks over the speed, achieved"), uncertainty_of(source), t("computed")))
+        rows += [(t("relative error of the peaks over the speed, achieved"), said,
+                  t("computed") if known else t("no accuracy requested")) for said, known in uncertainty_of(source)]
     return rows
+
+
+def refinement(options):
+    """The relative error of the peaks over the speed that was requested; 0: none."""
+    return next((float(options[name]) for name in ("sweep_refine", "study_refine") if name in options), 0.0)
 
 
 def curve_in_words(name):
@@ -264,11 +269,18 @@ def curve_in_words(name):
 
 
 def uncertainty_of(source):
-    """By how much a peak over the speed may exceed the computed one, in words."""
+    """[(by how much a peak over the speed may exceed the computed one in words, whether the program has determined it)];
+    empty without several speeds. With limits alone the program adds speeds near them, without an error of the peaks."""
+    if not str(source.runs.x_name).endswith("speed"):
+        return []
     summary = source.summary
-    share, curve = float(summary["peak_uncertainty"]), curve_in_words(str(summary["peak_uncertainty_of"]))
-    said = t("{share} ({curve})", share=percent(share), curve=curve) if share > 0.0 else percent(share)
-    return f"{said}; {t('{count} speeds added', count=int(summary['speeds_added']))}"
+    share, added = float(summary.get("peak_uncertainty", 0.0)), int(summary.get("speeds_added", 0))
+    known = refinement(source.options) > 0.0 and share > 0.0
+    if not known:
+        return [(t("not determined; {count} speeds added near limits", count=added) if added else
+                 t("not determined between the speeds, which are as given"), known)]
+    said = t("{share} ({curve})", share=percent(share), curve=curve_in_words(str(summary["peak_uncertainty_of"])))
+    return [(f"{said}; {t('{count} speeds added', count=added)}", known)]
 
 
 def rows_of(source):

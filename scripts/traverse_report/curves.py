@@ -30,6 +30,12 @@ def mark_every(count):
     return max(count // 12, 1)
 
 
+def name_limit(ax, value, words, size, side):
+    """Writes the name of a limit at its line, which is at this side of the text."""
+    ax.text(0.006, value, words, color=RED, fontsize=size, va=side, ha="left", zorder=6,
+            transform=ax.get_yaxis_transform(), bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6})
+
+
 def draw_limits(ax, limits, size=7):
     """Draws limits: (value, text) in the unit of the axes. A limit far above the curves is named, not drawn."""
     low, high = ax.get_ylim()
@@ -38,8 +44,7 @@ def draw_limits(ax, limits, size=7):
         ax.set_ylim(low, max(high, 1.12 * max(value for value, _ in shown)))
     for value, words in shown:
         ax.axhline(value, color=RED, lw=1.2, ls=(0, (6, 2)), zorder=4)
-        ax.text(0.006, value, words, color=RED, fontsize=size, va="bottom", ha="left", zorder=6,
-                transform=ax.get_yaxis_transform(), bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6})
+        name_limit(ax, value, words, size, "bottom")
     beyond = [words for value, words in limits if value > 2.5 * high]
     if beyond:
         ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits="; ".join(beyond)), color=RED, fontsize=size,
@@ -195,11 +200,12 @@ def along_bridge(ax, supports, x, series, unit, marks=True, static=None):
         ax.axvline(support, color=PALE, lw=0.8)
 
 
-def draw_bounds(ax, values):
-    """Draws limits of magnitudes, above and below."""
-    for value in values:
+def draw_bounds(ax, limits):
+    """Draws limits of magnitudes, above and below: (value, text) in the unit of the axes."""
+    for value, words in limits:
         for sign in (-1.0, 1.0):
             ax.axhline(sign * value, color=RED, lw=1.0, ls=(0, (6, 2)))
+        name_limit(ax, value, words, 7, "bottom" if value < 0.7 * ax.get_ylim()[1] else "top")
 
 
 def history(ax, time, curves, title, unit, limits=()):

@@ -11,7 +11,7 @@ from traverse_check.rules import rule
 from .language import num, t
 from .page import AMBER, GREEN, GREY, INK, RED
 from .quantities import speed_in_words, words_of
-from .uplift import Bearing, force_in_words, least_over_time
+from .uplift import Bearing, force_in_words, joints_are, least_over_time, permanent_forces
 
 
 class Decision(NamedTuple):
@@ -24,10 +24,6 @@ def has_equal_spans(source):
     """Whether all spans are equal and separate, or there is only one."""
     lengths = np.unique(np.round(np.diff(source.model.span_ends), 6))
     return len(lengths) == 1 and joints_are(source, "separate")
-
-
-def joints_are(source, kind):
-    return all(joint == kind for _, joint in source.model.supports[1:-1])
 
 
 def need_for_analysis(source):
@@ -108,7 +104,7 @@ def dynamic_uplift(source):
 def has_least_bearing_of_runs(source):
     """Whether the runs of a table have bearing forces of the traffic alone, with a bound from their accelerations."""
     return source.runs is not None and "static/reaction" in source.file and "peak_acceleration" in source.runs.values \
-        and not weighs(source.options) and permanent_force(source, 0.0) is not None
+        and not weighs(source.options) and permanent_forces(source) is not None
 
 
 def factors_of_reactions(source):
@@ -117,22 +113,6 @@ def factors_of_reactions(source):
     phi, alpha = float(group["phi"][:].max()) if "phi" in group else 1.0, source.load_models()
     of_train = float((group["train_dynamic"][:] / group["train_static"][:]).max()) if "train_dynamic" in group else 1.0
     return [phi * alpha[load] if load in alpha else of_train for load in source.static_loads()]
-
-
-def permanent_force(source, at):
-    """The bearing force of the mass of simple spans at a support in N; None of other bridges."""
-    if "mass" not in source.model.group or not joints_are(source, "separate"):
-        return None
-    x, mass = source.model.group["mass"][:].T
-    gravity, total = float(source.options.get("gravity", 9.81)), 0.0
-    for left, right in zip(source.model.span_ends[:-1], source.model.span_ends[1:]):
-        if min(abs(at - left), abs(at - right)) > 1e-6:
-            continue
-        own = np.linspace(left, right, 2001)
-        share = np.abs(own - (right if abs(at - left) < 1e-6 else left)) / (right - left)
-        load = np.interp(own, x, mass) * share
-        total += gravity * float(np.sum(0.5 * (load[1:] + load[:-1]) * np.diff(own)))
-    return total
 
 
 def uplift(source):
@@ -144,19 +124,21 @@ def uplift(source):
         words = "no uplift: least bearing force with the mass of the bridge {force}" if least.value > 0.0 else \
             "uplift: least bearing force with the mass of the bridge {force}"
         return Decision(t(words, force=least.words()), GREEN if least.value > 0.0 else RED)
+    if source.is_run and not dynamic and "supports/reaction" in file:
+        return Decision(t("not decided: each joint between two decks needs a station (output_probes)"), AMBER)
     if "static/reaction" not in file:
         return Decision(t("not decided: the static bearing forces are missing (norm_load_models)"), AMBER)
     traffic = min([traffic_uplift(source), *([] if with_weight else dynamic)], key=lambda one: one.value)
     if traffic.value > -1e-6 * float(np.abs(file["static/reaction"][:]).max()):
         return Decision(t("no uplift: no load lifts a bearing"), GREEN)
-    permanent = permanent_force(source, traffic.x)
-    if permanent is None:
+    if traffic.own is None:
         return Decision(t("not decided: least force of traffic {force}; the bearing force of the permanent loads is "
                           "missing (a run with beam_self_weight contains it)", force=traffic.words()), AMBER)
-    stays = permanent + traffic.value > 0.0
-    words = "no uplift: least force of traffic {force}, of the mass of the bridge {own}" if stays else \
-        "uplift: least force of traffic {force}, of the mass of the bridge {own}"
-    return Decision(t(words, force=traffic.words(), own=force_in_words(permanent)), GREEN if stays else RED)
+    words, colour = ("no uplift: least force of traffic {force}, of the mass of the bridge {own}", GREEN) \
+        if not traffic.lifts() else \
+        ("not decided: bound of the least force of traffic {force}, of the mass of the bridge {own}", AMBER) \
+        if traffic.is_bound else ("uplift: least force of traffic {force}, of the mass of the bridge {own}", RED)
+    return Decision(t(words, force=traffic.words(), own=force_in_words(traffic.own)), colour)
 
 
 # The decisions by their names in clauses.yml. None: the file does not contain what they need.

@@ -6,7 +6,7 @@ from picture_data import MOST_CURVES, choose, natural
 from . import curves
 from .language import num, place_in_words, t
 from .page import GREY, LEFT
-from .quantities import unit_of_si
+from .quantities import shown_value, unit_of_si
 
 EFFECTS = (("deflection", "m", "Deflection, upward positive"), ("moment", "N m", "Bending moment, positive in sagging"),
            ("shear", "N", "Shear force, on both sides of passing loads"),
@@ -33,9 +33,12 @@ def envelope_of(source, name):
     return None
 
 
-def deck_limits(limits, name):
-    """The limits of a deck acceleration without their factor, as its values do not contain it."""
-    return [limit.value / limit.factor for limit in limits if limit.quantity == DECK.get(name)]
+def deck_limits(limits, name, factor=1.0):
+    """(value in a unit, text) of the limits of a deck acceleration without their factor, as its values do not contain it."""
+    found = [limit for limit in limits if limit.quantity == DECK.get(name)]
+    divided = [f" / {num(limit.factor)}" if limit.factor != 1.0 else "" for limit in found]
+    return [(factor * limit.value / limit.factor,
+             t("limit {value}", value=shown_value(limit.value, limit.quantity) + said)) for limit, said in zip(found, divided)]
 
 
 def envelope_sheet(report, source, heading, run, limits):
@@ -72,7 +75,7 @@ def envelope_sheet(report, source, heading, run, limits):
         ax.axhline(0.0, color=curves.PALE, lw=0.8)
         ax.set_title(t("{effect}: least and greatest values", effect=words_of(source, name, words)))
         if name in DECK:
-            curves.draw_bounds(ax, [factor * value for value in deck_limits(limits, name)])
+            curves.draw_bounds(ax, deck_limits(limits, name, factor))
         page.fit(ax)
         if name == "deflection" and "envelope/static_deflection" in file:
             order = np.argsort(x)
@@ -102,7 +105,7 @@ def deck_panels(source, limits):
             worst = int(np.argmax(np.abs(values).max(axis=0)))
             place = place_in_words(results.probes[worst], results.supports)
             panels.append((f"{words_of(source, name, words)}, {place}", unit,
-                           [("", values[:, worst])], [factor * value for value in deck_limits(limits, name)]))
+                           [("", values[:, worst])], deck_limits(limits, name, factor)))
     return panels
 
 

@@ -145,8 +145,7 @@ class Drafts:
         needing = [one for one in decided if any(found.needed for found in one[1])]
         needed = bool(needing)
         case, shown = (needing or decided)[0]
-        for name, sentence in [step for found in shown for step in found.steps]:
-            answer["facts"].append([name.replace("figure", t("figure")), sentence])
+        answer["facts"] += [list(step) for found in shown for step in found.steps]
         first, last, _ = scene.speeds(asked)
         words = "yes: {first} to {last} km/h" if needed else "no" if not asked.always else \
             "no; the analysis runs because it was asked for: {first} to {last} km/h"

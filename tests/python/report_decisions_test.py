@@ -21,6 +21,8 @@ beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
 model: {modes: 3, damping_ratios: 0.01}
 scene: {tail: 0.2}
 """
+SEPARATE = SIMPLE.replace("[20.0]", "[20.0, 20.0, 20.0]").replace("1.8e4", "1.8e4, continuity: simply_supported") \
+    .replace("modes: 3", "modes: 9")
 TRAINS = """
 sweep: {speed: [40.0, 80.0, 5.0], hslm_a: [1, 2]}
 norm: {load_models: [lm71]}
@@ -39,6 +41,7 @@ class Computations(Reported):
             return
         (cls.folder / "factor.yml").write_text(FACTOR, encoding="utf-8")
         cls.compute("simple", SIMPLE + TRAINS)
+        cls.compute("separate", SEPARATE + TRAINS)
         cls.compute("continuous", SIMPLE.replace("[20.0]", "[20.0, 20.0]") + TRAINS)
         cls.compute("heavy", SIMPLE.replace("mass: 1.8e4", "mass: 1.8e4, self_weight: true")
                     + "load: {forces: [2.0e5], speed: 40.0}\noutput: {interval: 0.01}\n")
@@ -55,6 +58,13 @@ class Decisions(Computations):
         self.assertIn("--line-speed", decisions.need(self.source("simple")).words)
         hinged = self.source("sweep", flow_chart.Line(60.0))  # neither simple spans nor continuous
         self.assertIsNone(decisions.need_for_analysis(hinged))
+
+    def test_clauses_of_the_need_are_in_the_language(self):
+        for name, word in (("de", "Bild 6.9"), ("fr", "figure 6.9"), ("en", "figure 6.9")):
+            language.choose(name)
+            found = decisions.need_for_analysis(self.source("simple", flow_chart.Line(200.0 / 3.6)))
+            self.assertTrue(found.steps[0][0].startswith(f"EN 1991-2 {word}"), found.steps)
+            self.assertEqual({"figure" in clause for clause, _ in found.steps}, {name != "de"})
 
     def test_the_range_of_speeds(self):
         for line_speed, colour in ((60.0, page.GREEN), (80.0 / 1.2, page.GREEN), (70.0, page.RED)):
@@ -78,7 +88,7 @@ class Decisions(Computations):
 
     def test_uplift_of_a_simple_bridge(self):
         one = self.source("simple")
-        self.assertAlmostEqual(decisions.permanent_force(one, 20.0), 1.8e4 * 9.81 * 10.0, 3)
+        np.testing.assert_allclose(uplift.permanent_forces(one), 1.8e4 * 9.81 * 10.0, 1e-9)
         self.assertIn("no load lifts a bearing", decisions.uplift(one).words)
         one.governing = self.source("heavy")
         self.assertEqual(decisions.dynamic_uplift(one)[0].value,
@@ -86,7 +96,7 @@ class Decisions(Computations):
 
     def test_the_least_bearing_force_is_that_of_all_runs(self):
         one, repeated = self.source("simple"), []
-        bounds = uplift.inertia_bounds(one)
+        bounds = uplift.inertia_bounds(one).min(axis=(1, 2))
         self.assertEqual(len(bounds), 18)
         order = np.argsort(bounds)
 
@@ -108,6 +118,33 @@ class Decisions(Computations):
             self.assertLessEqual(found.value, min(force.value for force in least.values()))
         one.least_bearing = found
         self.assertEqual(decisions.dynamic_uplift(one), [found])
+
+    def test_uplift_of_separate_spans_is_that_of_one_of_them(self):
+        bounds, forces = {}, {}
+        for name in ("simple", "separate"):
+            one, bounds[name] = self.source(name), uplift.inertia_bounds(self.source(name))
+            run = int(bounds[name].min(axis=(1, 2)).argmin())
+            path, trouble = governing.repeat(one, run, [], BINARY, ".", self.folder, name=f"{name}_{run}")
+            self.assertEqual(trouble, "")
+            forces[name] = uplift.forces_of_deck_ends(source.Source(path)).min(axis=0)
+            one.least_bearing = uplift.least_over_time(source.Source(path), "")
+            self.assertEqual(one.least_bearing.value, forces[name].min())
+            self.assertIn(one.least_bearing.x, one.model.span_ends)
+            np.testing.assert_allclose(uplift.permanent_forces(one), 1.8e4 * 9.81 * 10.0, 1e-9)
+            self.assertEqual(decisions.uplift(one).colour, page.GREEN)
+            one.least_bearing = one.least_bearing._replace(own=-0.9 * one.least_bearing.value)  # of a lighter bridge
+            self.assertEqual(decisions.uplift(one).colour, page.RED)
+            one.least_bearing = one.least_bearing._replace(is_bound=True)
+            self.assertEqual(decisions.uplift(one).colour, page.AMBER)
+        self.assertEqual(forces["separate"].shape, (3, 2))
+        for one in (bounds, forces):  # the instants of the stored values differ between the decks
+            np.testing.assert_allclose(one["separate"], np.broadcast_to(one["simple"], one["separate"].shape), 0.05)
+
+    def test_uplift_of_a_run_needs_a_station_at_each_joint(self):
+        self.compute("crossed", SEPARATE + "load: {forces: [2.0e5], speed: 40.0}\n"
+                                           "output: {interval: 0.01, probes: [10.0, 20.0]}\n")
+        found = decisions.uplift(self.source("crossed"))
+        self.assertEqual((found.colour, "needs a station" in found.words), (page.AMBER, True))
 
     def test_what_is_not_satisfied_without_a_limit_is_on_the_title_page(self):
         for line_speed, colour, count in ((60.0, page.GREEN, 2), (70.0, page.AMBER, 3)):
@@ -208,7 +245,15 @@ class Annex(Computations):
         values = governing.source.file["probes/acceleration_lowpass"][:]
         least, greatest = run_sheet.envelope_of(governing.source, "acceleration_lowpass")
         np.testing.assert_array_equal([least, greatest], [values.min(axis=0), values.max(axis=0)])
-        self.assertEqual(run_sheet.deck_limits(rows, "acceleration_lowpass"), [3.5 / 1.25])
+        self.assertEqual(run_sheet.deck_limits(rows, "acceleration_lowpass"),
+                         [(3.5 / 1.25, "limit 3.5 m/s² / 1.25")])
+        self.assertEqual(run_sheet.deck_limits([rows[0]._replace(factor=1.0)], "acceleration_lowpass"),
+                         [(3.5, "limit 3.5 m/s²")])
+        entries, report = self.whole(["simple"])
+        for heading in ("Results along the bridge", "Time histories"):
+            texts = [text.get_text() for one in report.pages if heading in one.headings
+                     for ax in one.figure.axes for text in ax.texts]
+            self.assertIn("limit 3.5 m/s² / 1.25", texts, heading)
         titles = [title for title, *_ in run_sheet.deck_panels(governing.source, rows)]
         self.assertTrue(any("low-pass filtered" in title for title in titles), titles)
 
@@ -257,6 +302,25 @@ class Annex(Computations):
         self.assertEqual(rows["relative error of the peaks over the speed, requested"][0], "1.0 %")
         self.assertEqual(rows["relative error of the peaks over the speed, achieved"][0],
                          "0.4 % (greatest rotation of the deck ends of A8); 7 speeds added")
+
+    def test_an_error_over_the_speed_is_stated_only_if_it_is_determined(self):
+        for name, added in (("simple", None), ("separate", 2)):
+            one = self.source(name)
+            one.summary.update({"peak_uncertainty": 0.0, "peak_uncertainty_of": "", "speeds_added": added} if added else {})
+            said = "not determined; 2 speeds added near limits" if added else \
+                "not determined between the speeds, which are as given"
+            rows = {words: value for words, value, _ in (*assumptions_sheet.of_accuracy(one), *annex_sheet.model_rows(one))}
+            self.assertEqual(rows["relative error of the peaks over the speed, requested"], "none requested")
+            self.assertEqual(rows["relative error of the peaks over the speed, achieved"], said)
+            self.assertEqual(rows["peaks over the speed, possible excess"], said)
+
+    def test_beam_elements_are_those_of_all_spans(self):
+        for name, spans in (("simple", 1), ("separate", 3), ("continuous", 2)):
+            one = self.source(name)
+            count = str(spans * one.file["sweep"].attrs["elements_per_span"])
+            self.assertIn(f", {count} elements,", " ".join(one.model.notes))
+            self.assertIn(f"{count} beam elements", assumptions_sheet.method_of(one))
+            self.assertIn(("beam elements", count), [row[:2] for row in annex_sheet.model_rows(one)])
 
     def test_dates_are_those_of_the_language(self):
         for name, expected in (("en", "2026-11-27"), ("de", "27.11.2026"), ("fr", "27/11/2026")):
