@@ -6,6 +6,7 @@ import pathlib
 
 import yaml
 
+from . import hslm
 from .decisions import DECISIONS, need_for_analysis
 from .front_sheet import COLOURS, WORDS
 from .language import capital, t
@@ -28,8 +29,13 @@ def varied(source, name):
 
 
 def has_all_trains(source):
-    names = {name for name in source.model.forces if name != "load"}
-    return {f"A{number}" for number in range(1, 11)} <= names
+    return set(map(hslm.name_of, hslm.TRAINS)) <= set(source.hslm_trains)
+
+
+def has_real_trains(source):
+    """Whether the loads are vehicles, or axle forces that are no load model HSLM."""
+    own_forces = "load" in source.model.forces and "load_hslm_b" not in source.options
+    return bool(len(source.model.train)) or own_forces and not source.hslm_trains
 
 
 # What a requirement without a limit needs in the results: a condition, and the anchor of its page.
@@ -38,7 +44,7 @@ COMPUTED = {
     "trains_and_models": (lambda source: "norm/effect" in source.file, "norm"),
     "comfort": (lambda source: bool(source.results.vehicles), "comfort"),
     "hslm": (has_all_trains, "loads"),
-    "real_trains": (lambda source: bool(len(source.model.train)) or "load" in source.model.forces, "loads"),
+    "real_trains": (has_real_trains, "loads"),
     "damping": (lambda source: "model_damping_bound" in source.options, "assumptions"),
     "mass": (lambda source: varied(source, "beam_mass"), "assumptions"),
     "stiffness": (lambda source: varied(source, "beam_EI"), "assumptions"),

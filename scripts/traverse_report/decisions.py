@@ -73,10 +73,9 @@ def speeds(source):
 
 def defects(source):
     """The factors of 6.4.6.4 that the values of the results file contain."""
-    if "verdicts/quantity" not in source.file:
+    factors = dict(source.judged_factors())
+    if not factors:
         return None
-    group = source.file["verdicts"]
-    factors = dict(zip(group["quantity"].asstr()[:, 0], group["factor"][:] if "factor" in group else ()))
     known = {name: factors[name] for name in track_defects.QUANTITIES if factors.get(name, 1.0) != 1.0}
     if not known:
         return Decision(t("the judged values do not contain it (factor of the limits)"), AMBER)

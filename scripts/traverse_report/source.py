@@ -10,6 +10,7 @@ from option_words import WORDS, option_in_words
 from picture_data import Results
 from picture_model import Model
 
+from . import hslm
 from .language import number, t
 from .quantities import with_factor
 
@@ -157,6 +158,7 @@ class Source:
             self.runs = self._sweep()
         elif "study/finished" in self.file:
             self.runs = self._study()
+        self.hslm_trains = self._hslm_trains()
         self.is_run = self.runs is None and "probes/deflection" in self.file and self.results.rows > 0
         self.is_rail = "rail_forces/x" in self.file
         self.is_search, self.is_sensitivity = "find/ratio" in self.file, "sensitivity/units" in self.file
@@ -168,20 +170,35 @@ class Source:
             raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor static effects, "
                               "nor forces of the rails, nor a fit or a screen: nothing to report on")
 
-    def _judged(self, runs):
-        """Adds the values of quantities with limits, one per run."""
-        columns, places = runs.values.pop("judged", None), runs.values.pop("judged_x", None)
+    def _hslm_trains(self):
+        """{name: [axles, 2], places in m and forces in N} of all trains HSLM-A of the runs or of static effects. The
+        model of a study has those of its first run only, without a name."""
+        forces = self.model.forces
+        named = {name: data for name, data in forces.items() if name != "load"}
+        if not named and self.runs is not None and "hslm_a" in self.runs.parameters:
+            return {hslm.name_of(number): hslm.forces_of(number) for number in np.unique(self.runs.parameters["hslm_a"])}
+        if not named and "load_hslm_a" in self.options and "load" in forces:
+            return {f"A{self.options['load_hslm_a']}": forces["load"]}
+        return named
+
+    def judged_factors(self):
+        """[(quantity, factor of its limit)] of the quantities that were judged with limits."""
         if "verdicts/quantity" in self.file:
             names = self.file["verdicts/quantity"].asstr()[:, 0]
             factors = self.file["verdicts/factor"][:] if "verdicts/factor" in self.file else np.ones(len(names))
-        else:  # of a search
-            names = self.file["criterion"].asstr()[:] if "criterion" in self.file else []
-            given = search_answers.factors_of(self.results)
-            factors = [given.get(name, 1.0) for name in names]
-        for i, quantity in enumerate(names if columns is not None else ()):
+            return list(zip(names, map(float, factors)))
+        if "criterion" not in self.file:
+            return []
+        given = search_answers.factors_of(self.results)
+        return [(name, given.get(name, 1.0)) for name in self.file["criterion"].asstr()[:]]  # of a search
+
+    def _judged(self, runs):
+        """Adds the values of quantities with limits, one per run."""
+        columns, places = runs.values.pop("judged", None), runs.values.pop("judged_x", None)
+        for i, (quantity, factor) in enumerate(self.judged_factors() if columns is not None else ()):
             if quantity not in runs.values and not np.isnan(columns[:, i]).all():
                 runs.values[quantity], runs.places[quantity] = columns[:, i], places[:, i]
-                runs.factors[quantity] = float(factors[i])
+                runs.factors[quantity] = factor
         return runs
 
     def _sweep(self):
@@ -288,12 +305,10 @@ class Source:
                 else:
                     counted.append([name, 1])
             return ", ".join(name if count == 1 else f"{count} × {name}" for name, count in counted)
-        names = [name for name in model.forces if name != "load"]
+        names = list(self.hslm_trains)
         if names:
             return t("trains {first} to {last} of HSLM-A", first=names[0], last=names[-1]) if len(names) > 1 else \
                 t("train {name} of HSLM-A", name=names[0])
-        if "load_hslm_a" in self.options:
-            return t("train {name} of HSLM-A", name=f"A{self.options['load_hslm_a']}")
         if "train_vehicles" in self.options:
             return self.options["train_vehicles"]
         count = len(model.forces.get("load", ()))

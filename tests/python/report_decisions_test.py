@@ -14,7 +14,7 @@ from reported import BINARY, Reported  # noqa: E402
 from traverse_check import flow_chart  # noqa: E402
 from traverse_report import (  # noqa: E402
     annex_sheet, assumptions_sheet, checks_sheet, comparison_sheet, decisions, fatigue_sheet, governing, language,
-    larger_effect, limits, main, page, run_sheet, source, title_sheet, uplift)
+    larger_effect, limits, loads_sheet, main, page, run_sheet, source, title_sheet, uplift)
 
 SIMPLE = """
 beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
@@ -25,6 +25,11 @@ TRAINS = """
 sweep: {speed: [40.0, 80.0, 5.0], hslm_a: [1, 2]}
 norm: {load_models: [lm71]}
 limits: factor.yml
+"""
+SEARCH = """
+sweep: {speed: [60.0, 80.0, 5.0], hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]}
+limits: factor.yml
+find: {option: beam_EI, between: [2.0e10, 9.0e10], keep: deck_acceleration, points: 4}
 """
 FACTOR = '- {clause: "rule 7", quantity: deck_acceleration, value: 3.5, factor: 1.25}\n'
 
@@ -40,6 +45,8 @@ class Computations(Reported):
         (cls.folder / "factor.yml").write_text(FACTOR, encoding="utf-8")
         cls.compute("simple", SIMPLE + TRAINS)
         cls.compute("continuous", SIMPLE.replace("[20.0]", "[20.0, 20.0]") + TRAINS)
+        cls.compute("search", SIMPLE + SEARCH)
+        cls.compute("alone", SIMPLE + "load: {hslm_a: 7, speed: 60.0}\n")
         cls.compute("heavy", SIMPLE.replace("mass: 1.8e4", "mass: 1.8e4, self_weight: true")
                     + "load: {forces: [2.0e5], speed: 40.0}\noutput: {interval: 0.01}\n")
 
@@ -154,6 +161,34 @@ class Decisions(Computations):
         self.assertIn(f"with the mass of the bridge {language.num(-20.0)} kN", found.words)
         one.least_bearing = uplift.Bearing(2.0e4, "a run", 20.0)
         self.assertIn("no load lifts a bearing", decisions.uplift(one).words)
+
+
+class Trains(Computations):
+    """Which trains the report names, draws and counts as computed."""
+
+    def said(self, one):
+        results = {requirement.split(" (")[0]: found[0][0] for requirement, _, found in checks_sheet.rows_of(one, [])}
+        return [results[f"dynamic analysis with {trains}"] for trains in ("all trains of HSLM-A", "real trains: resonance")]
+
+    def test_a_search_has_all_trains_of_its_runs(self):
+        one = self.source("search")
+        self.assertEqual(list(one.hslm_trains), [f"A{number}" for number in range(1, 11)])
+        self.assertEqual(one.train_in_words(), "trains A1 to A10 of HSLM-A")
+        self.assertEqual([row[0] for row in loads_sheet.hslm_rows(one)], list(one.hslm_trains))
+        self.assertEqual(self.said(one), ["computed, without a limit", "not verified"])
+        self.assertTrue(decisions.defects(one).words.endswith(": 1.25"))
+        report = page.Report()
+        report.page("before")
+        loads_sheet.sheet(report, one)
+        self.assertEqual(report.pages[-1].heading, "Traffic loads")
+        drawn = {text.get_text().strip() for ax in report.pages[-1].figure.axes for text in ax.texts}
+        self.assertTrue(set(one.hslm_trains) <= drawn, drawn)
+
+    def test_one_train_of_hslm_is_no_real_train(self):
+        one = self.source("alone")
+        self.assertEqual(list(one.hslm_trains), ["A7"])
+        self.assertEqual(one.train_in_words(), "train A7 of HSLM-A")
+        self.assertEqual(self.said(one), ["not verified", "not verified"])
 
 
 class LargerEffect(Computations):
