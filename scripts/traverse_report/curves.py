@@ -42,7 +42,7 @@ def draw_limits(ax, limits, size=7):
                 transform=ax.get_yaxis_transform(), bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6})
     beyond = [words for value, words in limits if value > 2.5 * high]
     if beyond:
-        ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits="; ".join(beyond)), color=RED, fontsize=size,
+        ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits=t("; ").join(beyond)), color=RED, fontsize=size,
                 va="top", ha="left",
                 transform=ax.transAxes)
 

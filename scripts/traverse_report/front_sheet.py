@@ -54,10 +54,10 @@ def verdict_table(report, page, verdicts):
     rows = []
     for v in verdicts:
         judged = v.word != "not judged"
-        rows.append(["; ".join(filter(None, (v.limit.clause, known(v.limit.text)))), capital(v.limit.words),
+        rows.append([t("; ").join(filter(None, (v.limit.clause, known(v.limit.text)))), capital(v.limit.words),
                      shown_value(v.limit.value, v.limit.quantity), shown_value(v.value, v.limit.quantity),
                      percent(v.utilisation) if judged else "", word_cell(v.word),
-                     "; ".join(filter(None, (v.run, v.where)))])
+                     t("; ").join(filter(None, (v.run, v.where)))])
     return table(report, page, columns, rows, size=7)
 
 
@@ -122,7 +122,7 @@ def sheet(report, source, verdicts, governing):
     page = report.page(t("Summary of results"))
     page.text(LEFT, source.title(), size=11, weight="bold")
     several = source.is_screen or source.runs is not None and "hslm_a" in source.runs.parameters
-    train = "" if several else f"{source.train_in_words()}; "
+    train = "" if several else source.train_in_words() + t("; ")
     page.text(LEFT, train + source.kind_in_words(), size=9)
     page.text(LEFT, t("Results file {name}", name=source.path.name), size=8, colour=GREY)
     if len(source.model.span_ends) > 1:

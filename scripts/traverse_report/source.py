@@ -50,6 +50,10 @@ class Runs:
         self.line_names = [name for name in rest if name != self.x_name]
 
     @property
+    def is_over_speed(self):
+        return self.x_name is not None and self.x_name.endswith("speed")
+
+    @property
     def finished(self):
         known = self.values["peak_deflection"]
         return ~np.isnan(known.reshape(self.count, -1)).any(axis=1)
@@ -287,7 +291,7 @@ class Source:
                 parts.append(t("{many} from {low} to {high}", many=many, low=low, high=f"{high} {unit}".strip()))
         missing = runs.count - int(runs.finished.sum())
         said = ", ".join([t("{count} runs", count=number(runs.count)), *parts])
-        return f"{said}; {t('{count} of the runs have not ended', count=missing)}" if missing else said
+        return t("; ").join((said, t("{count} of the runs have not ended", count=missing))) if missing else said
 
     def train_in_words(self):
         model = self.model

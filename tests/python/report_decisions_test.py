@@ -10,11 +10,11 @@ import unittest
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from reported import BINARY, Reported  # noqa: E402
+from reported import BINARY, SOURCE, Reported  # noqa: E402
 from traverse_check import flow_chart  # noqa: E402
 from traverse_report import (  # noqa: E402
-    annex_sheet, assumptions_sheet, checks_sheet, comparison_sheet, decisions, fatigue_sheet, governing, language,
-    larger_effect, limits, loads_sheet, main, page, run_sheet, source, title_sheet, uplift)
+    annex_sheet, assumptions_sheet, checks_sheet, comparison_sheet, curve_sheet, decisions, fatigue_sheet, governing,
+    language, larger_effect, limits, loads_sheet, main, norm_sheet, page, run_sheet, source, title_sheet, uplift)
 
 SIMPLE = """
 beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
@@ -31,6 +31,14 @@ sweep: {speed: [60.0, 80.0, 5.0], hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]}
 limits: factor.yml
 find: {option: beam_EI, between: [2.0e10, 9.0e10], keep: deck_acceleration, points: 4}
 """
+SEEDS = f"""
+vehicle: {{coach: {{file: {SOURCE}/options/vehicles/s300.yml}}}}
+train: {{vehicles: coach, speed: 50.0}}
+track: {{profile: german_low}}
+study: {{vary: {{track_seed: 1:2}}, statistics: {{over: track_seed}}}}
+output: {{probes: [5.0, 10.0, 15.0]}}
+accuracy: 1.0e-2
+"""
 FACTOR = '- {clause: "rule 7", quantity: deck_acceleration, value: 3.5, factor: 1.25}\n'
 
 
@@ -46,6 +54,7 @@ class Computations(Reported):
         cls.compute("simple", SIMPLE + TRAINS)
         cls.compute("continuous", SIMPLE.replace("[20.0]", "[20.0, 20.0]") + TRAINS)
         cls.compute("search", SIMPLE + SEARCH)
+        cls.compute("seeds", SIMPLE + SEEDS)
         cls.compute("alone", SIMPLE + "load: {hslm_a: 7, speed: 60.0}\n")
         cls.compute("heavy", SIMPLE.replace("mass: 1.8e4", "mass: 1.8e4, self_weight: true")
                     + "load: {forces: [2.0e5], speed: 40.0}\noutput: {interval: 0.01}\n")
@@ -184,11 +193,46 @@ class Trains(Computations):
         drawn = {text.get_text().strip() for ax in report.pages[-1].figure.axes for text in ax.texts}
         self.assertTrue(set(one.hslm_trains) <= drawn, drawn)
 
+    def test_real_trains_need_several_speeds(self):
+        self.assertEqual(self.said(self.source("study"))[1], "computed, without a limit")
+        self.assertEqual(self.said(self.source("seeds"))[1], "not verified")
+
+    def test_envelopes_say_what_varies(self):
+        for name, what in (("simple", "all speeds"), ("seeds", "all runs")):
+            report = page.Report()
+            curve_sheet.envelope_sheet(report, self.source(name), [])
+            titles = [ax.get_title(loc="left") + ax.get_title() for ax in report.pages[0].figure.axes[1:]]
+            self.assertGreater(len(titles), 0)
+            self.assertTrue(all(title.endswith(f"({what})") for title in titles), titles)
+
     def test_one_train_of_hslm_is_no_real_train(self):
         one = self.source("alone")
         self.assertEqual(list(one.hslm_trains), ["A7"])
         self.assertEqual(one.train_in_words(), "train A7 of HSLM-A")
         self.assertEqual(self.said(one), ["not verified", "not verified"])
+
+
+class Words(Computations):
+    def test_headings_of_the_verdict_of_the_norm_are_whole_words(self):
+        for name, words in (("en", ("Ratio", "Governs")), ("de", ("Verhältnis", "Maßgebend")), ("fr", ("Rapport", "Déterminant"))):
+            language.choose(name)
+            report = page.Report()
+            norm_sheet.sheet(report, self.source("simple"))
+            self.assertLessEqual(set(words), {text.get_text() for text in report.pages[0].paper.texts})
+        language.choose("en")
+
+    def test_french_has_a_space_before_colons_and_semicolons(self):
+        one = self.source("simple")
+        for name, colon, semicolon in (("en", ": ", "; "), ("de", ": ", "; "), ("fr", " : ", " ; ")):
+            language.choose(name)
+            rows = limits.judge(one, [limits.Limit("c", quantity, 1.0, "") for quantity in ("lm71_end_rotation", "end_rotation")])
+            judged = [verdict._replace(word="kept") for verdict in rows]
+            said = {found for *_, results in checks_sheet.rows_of(one, judged) for found, *_ in results}
+            for limit in rows:
+                self.assertIn(language.t("complied with") + colon + limit.limit.words, said)
+            self.assertIn(f"{language.t('not in this program')}{semicolon}{language.t('the model is plane')}", said)
+            self.assertTrue(decisions.defects(one).words.endswith(f"{colon}{language.num(1.25)}"))
+        language.choose("en")
 
 
 class LargerEffect(Computations):
