@@ -7,6 +7,7 @@ import pathlib
 import yaml
 
 from . import hslm
+from .comfort_sheet import comfort_rows
 from .decisions import DECISIONS, need_for_analysis
 from .front_sheet import COLOURS, WORDS
 from .language import capital, t
@@ -42,7 +43,7 @@ def has_resonance_of_real_trains(source):
 COMPUTED = {
     "norm": (lambda source: "norm" in source.file, "norm"),
     "trains_and_models": (lambda source: "norm/effect" in source.file, "norm"),
-    "comfort": (lambda source: bool(source.results.vehicles), "comfort"),
+    "comfort": (lambda source: bool(comfort_rows(source)[0]), "comfort"),
     "hslm": (has_all_trains, "loads"),
     "real_trains": (has_resonance_of_real_trains, "loads"),
     "damping": (lambda source: "model_damping_bound" in source.options, "assumptions"),
@@ -98,7 +99,7 @@ def rows_of(source, verdicts, others=()):
     """(requirement, clause, results) of all requirements. others: further files of the structure; their decisions are
     results, too, where they differ and are not satisfied."""
     rows = []
-    for row in clauses()["requirements"]:
+    for row in clauses()["requirements"] if source.is_verification else ():
         said = t(row["requirement"]) + (f" ({t(row['value'])})" if "value" in row else "")
         mark = MARKS[len(row["sources"])] if row["clause"] and len(row["sources"]) < len(MARKS) else ""
         results = results_of(source, row, verdicts)

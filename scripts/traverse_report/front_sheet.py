@@ -1,6 +1,8 @@
 """The summary of one results file: its verdicts, its greatest values and its governing run."""
 
 import numpy as np
+from engineering_units import shown
+from picture_hanging import hanging_of
 
 from . import find_sheet, fit_sheet, model_sheet, norm_sheet, rail_sheet, screen_sheet, static_sheet
 from .language import capital, digits, known, num, percent, place_in_words, t
@@ -100,6 +102,18 @@ def peaks_of_run(source):
         unit, factor = unit_of("least_wheel_force")
         rows.append((words_of("least_wheel_force"), factor * summary["least_wheel_force"], unit,
                      known(str(summary["least_wheel"]))))
+    return rows + (peaks_on_ropes(source) if source.is_crane else [])
+
+
+def peaks_on_ropes(source):
+    """Rows of the greatest sway of each load on ropes, and of the greatest force of its ropes."""
+    rows, time = [], source.results.time
+    for one in (one for one in hanging_of(source.results) if one.ropes):
+        where = known(f"vehicle {one.vehicle}, {one.body}")
+        for words, values, kind in ((t("greatest sway of a load on its ropes"), np.abs(one.swing), "deflection"),
+                                    (t("greatest force of all ropes of a load"), one.force, "force")):
+            (unit, factor), row = shown(kind), int(np.argmax(values))
+            rows.append((words, factor * values[row], unit, f"{where}, t = {num(time[row])} s"))
     return rows
 
 

@@ -8,6 +8,7 @@ import search_answers
 from engineering_units import printed, shown
 from option_words import WORDS, option_in_words
 from picture_data import Results
+from picture_hanging import on_ropes
 from picture_model import Model
 
 from . import hslm
@@ -169,10 +170,17 @@ class Source:
         self.is_static = self.runs is None and not self.is_run and not self.is_rail and "static/x" in self.file
         self.is_dynamic = self.runs is not None or self.is_run
         self.is_fit, self.is_screen = "fit/estimate" in self.file, "screen/ratio" in self.file
-        self.is_verification = self.is_dynamic or self.is_rail or self.is_static  # of one structure
-        if not self.is_verification and not self.is_fit and not self.is_screen:
+        self.is_crane = self._is_crane()
+        of_one_structure = self.is_dynamic or self.is_rail or self.is_static
+        self.is_verification = of_one_structure and not self.is_crane  # by the norms of railway bridges
+        if not of_one_structure and not self.is_fit and not self.is_screen:
             raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor static effects, "
                               "nor forces of the rails, nor a fit or a screen: nothing to report on")
+
+    def _is_crane(self):
+        """Whether a vehicle carries a load on ropes, as no train does."""
+        return any(True for kind in np.unique(self.model.train[:, 0])
+                   for _ in on_ropes(self.results, self.model, kind))
 
     def _hslm_trains(self):
         """{name: [axles, 2], places in m and forces in N} of all trains HSLM-A of the runs or of static effects. The

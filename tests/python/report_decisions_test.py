@@ -13,8 +13,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from reported import BINARY, SOURCE, Reported  # noqa: E402
 from traverse_check import flow_chart  # noqa: E402
 from traverse_report import (  # noqa: E402
-    annex_sheet, assumptions_sheet, checks_sheet, comparison_sheet, curve_sheet, decisions, fatigue_sheet, governing,
-    language, larger_effect, limits, loads_sheet, main, norm_sheet, page, run_sheet, source, title_sheet, uplift)
+    annex_sheet, assumptions_sheet, checks_sheet, comparison_sheet, curve_sheet, decisions, fatigue_sheet, front_sheet,
+    governing, language, larger_effect, limits, loads_sheet, main, norm_sheet, page, run_sheet, source, title_sheet, uplift)
 
 SIMPLE = """
 beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
@@ -38,6 +38,14 @@ track: {{profile: german_low}}
 study: {{vary: {{track_seed: 1:2}}, statistics: {{over: track_seed}}}}
 output: {{probes: [5.0, 10.0, 15.0]}}
 accuracy: 1.0e-2
+"""
+CRANE = f"""
+beam: {{spans: 20.0, EI: 1.6e9, mass: 700.0, damping_ratios: [0.01, 0.01]}}
+vehicle: {{trolley: {{file: {SOURCE}/options/vehicles/crane_trolley.yml}}}}
+train: {{vehicles: trolley, positions: 5.0, speed_file: brakes.csv}}
+ts: {{max_time: 3.0}}
+accuracy: 1.0e-2
+output: {{interval: 0.02, probes: [10.0]}}
 """
 FACTOR = '- {clause: "rule 7", quantity: deck_acceleration, value: 3.5, factor: 1.25}\n'
 
@@ -212,20 +220,57 @@ class Trains(Computations):
         self.assertEqual(self.said(one), ["not verified", "not verified"])
 
 
+class Crane(Computations):
+    """A trolley with a load on ropes is no train: no norm of railway bridges applies."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        (cls.folder / "brakes.csv").write_text("0.0,1.0\n1.0,1.0\n2.0,0.0\n", encoding="utf-8")
+        cls.compute("crane", CRANE)
+
+    def test_the_report_has_no_scope_of_verification(self):
+        entries, _ = self.entries_of(["crane"])
+        (one, _, verdicts, _), = entries
+        lines, colour = comparison_sheet.headline([(one, verdicts)])
+        self.assertEqual((lines, colour), (["No limits were given: the results are not verified."], page.GREY))
+        report = main.report_of([entries], title_sheet.Title(structure="S", date="2026"), lines, colour, fatigue_sheet.Asked())
+        headings = {heading for sheet in report.pages for heading in sheet.headings}
+        self.assertIn("Computation under moving loads", headings)
+        self.assertIn("Summary of results", headings)
+        self.assertFalse({"Scope of verification", "Ride comfort"} & headings)
+        self.assertEqual(checks_sheet.rows_of(one, verdicts), [])
+
+    def test_the_summary_has_the_sway_and_the_force_of_the_ropes(self):
+        one = self.source("crane")
+        rows = {words: (value, unit) for words, value, unit, _ in front_sheet.peak_rows(one)}
+        vehicle = one.file["vehicles/0"]
+        sway, unit = rows["greatest sway of a load on its ropes"]
+        positions = {name: vehicle[f"{name}/position"][:] for name in ("load", "trolley")}
+        top = positions["trolley"][:, 0]  # the rope begins above its centre, which does not turn
+        hook = positions["load"][:, 0] - np.sin(positions["load"][:, 2])  # 1 m above the centre of the load
+        self.assertEqual(unit, "mm")
+        self.assertGreater(sway, 10.0)
+        self.assertAlmostEqual(sway, 1e3 * np.abs(hook - top).max(), delta=1.0)
+        self.assertEqual(rows["greatest force of all ropes of a load"], (1e-3 * vehicle["rope/force"][:].max(), "kN"))
+
+
 class Words(Computations):
     def test_headings_of_the_verdict_of_the_norm_are_whole_words(self):
-        for name, words in (("en", ("Ratio", "Governs")), ("de", ("Verhältnis", "Maßgebend")), ("fr", ("Rapport", "Déterminant"))):
+        for name, words in (("en", {"Ratio", "Governs"}), ("de", {"Verhältnis", "Maßgebend"}),
+                            ("fr", {"Rapport", "Déterminant"})):
             language.choose(name)
             report = page.Report()
             norm_sheet.sheet(report, self.source("simple"))
-            self.assertLessEqual(set(words), {text.get_text() for text in report.pages[0].paper.texts})
+            self.assertLessEqual(words, {text.get_text() for text in report.pages[0].paper.texts})
         language.choose("en")
 
     def test_french_has_a_space_before_colons_and_semicolons(self):
         one = self.source("simple")
         for name, colon, semicolon in (("en", ": ", "; "), ("de", ": ", "; "), ("fr", " : ", " ; ")):
             language.choose(name)
-            rows = limits.judge(one, [limits.Limit("c", quantity, 1.0, "") for quantity in ("lm71_end_rotation", "end_rotation")])
+            rows = limits.judge(one, [limits.Limit("c", quantity, 1.0, "")
+                                      for quantity in ("lm71_end_rotation", "end_rotation")])
             judged = [verdict._replace(word="kept") for verdict in rows]
             said = {found for *_, results in checks_sheet.rows_of(one, judged) for found, *_ in results}
             for limit in rows:
