@@ -189,8 +189,9 @@ class Source:
         named = {name: data for name, data in forces.items() if name != "load"}
         if not named and self.runs is not None and "hslm_a" in self.runs.parameters:
             return {hslm.name_of(number): hslm.forces_of(number) for number in np.unique(self.runs.parameters["hslm_a"])}
-        if not named and "load_hslm_a" in self.options and "load" in forces:
-            return {f"A{self.options['load_hslm_a']}": forces["load"]}
+        if not named and "load_hslm_a" in self.options:
+            alone = int(self.options["load_hslm_a"])
+            return {hslm.name_of(alone): forces.get("load", hslm.forces_of(alone))}
         return named
 
     def judged_factors(self):
