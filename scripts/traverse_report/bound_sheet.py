@@ -72,7 +72,7 @@ def utilisations(verdicts, of_governing):
         rows.append([f"{capital(one.limit.words)} ({one.limit.clause})", shown_value(one.limit.value, one.limit.quantity),
                      shown_value(one.value, one.limit.quantity), percent(one.utilisation) if judged else "",
                      percent(other.utilisation) if other else "", word_cell(one.word),
-                     "; ".join(filter(None, (one.run, one.where)))])
+                     t("; ").join(filter(None, (one.run, one.where)))])
     return rows
 
 

@@ -6,6 +6,8 @@ import pathlib
 
 import yaml
 
+from . import hslm
+from .comfort_sheet import comfort_rows
 from .decisions import DECISIONS, need_for_analysis
 from .front_sheet import COLOURS, WORDS
 from .language import capital, t
@@ -28,17 +30,22 @@ def varied(source, name):
 
 
 def has_all_trains(source):
-    names = {name for name in source.model.forces if name != "load"}
-    return {f"A{number}" for number in range(1, 11)} <= names
+    return set(map(hslm.name_of, hslm.TRAINS)) <= set(source.hslm_trains)
+
+
+def has_resonance_of_real_trains(source):
+    """Whether vehicles, or axle forces that are no load model HSLM, pass at several speeds."""
+    own_forces = "load" in source.model.forces and "load_hslm_b" not in source.options and not source.hslm_trains
+    return source.runs is not None and source.runs.is_over_speed and (own_forces or len(source.model.train) > 0)
 
 
 # What a requirement without a limit needs in the results: a condition, and the anchor of its page.
 COMPUTED = {
     "norm": (lambda source: "norm" in source.file, "norm"),
     "trains_and_models": (lambda source: "norm/effect" in source.file, "norm"),
-    "comfort": (lambda source: bool(source.results.vehicles), "comfort"),
+    "comfort": (lambda source: bool(comfort_rows(source)[0]), "comfort"),
     "hslm": (has_all_trains, "loads"),
-    "real_trains": (lambda source: bool(len(source.model.train)) or "load" in source.model.forces, "loads"),
+    "real_trains": (has_resonance_of_real_trains, "loads"),
     "damping": (lambda source: "model_damping_bound" in source.options, "assumptions"),
     "mass": (lambda source: varied(source, "beam_mass"), "assumptions"),
     "stiffness": (lambda source: varied(source, "beam_EI"), "assumptions"),
@@ -65,7 +72,7 @@ def results_of(source, row, verdicts):
     quantities = row.get("quantities", [])
     found = [verdict for verdict in verdicts if verdict.limit.quantity in quantities and verdict.word != "not judged"]
     if found:
-        return [(": ".join([t(WORDS[v.word]), *([v.limit.words] if len(found) > 1 else [])]) + of_file(v.file),
+        return [(t(": ").join([t(WORDS[v.word]), *([v.limit.words] if len(found) > 1 else [])]) + of_file(v.file),
                  COLOURS[v.word], shown_value(v.limit.value, v.limit.quantity),
                  shown_value(v.value, v.limit.quantity),
                  ("", v.file) if v.file else "rail" if v.limit.quantity in PAGES["rail"] else "verdicts")
@@ -82,9 +89,9 @@ def results_of(source, row, verdicts):
     condition, anchor = COMPUTED.get(row.get("computed"), (None, ""))
     remark = t(row["remark"]) if "remark" in row else ""
     if condition is not None and condition(source):
-        return [("; ".join(filter(None, (t("computed, without a limit"), remark))), INK, "", "", anchor)]
+        return [(t("; ").join(filter(None, (t("computed, without a limit"), remark))), INK, "", "", anchor)]
     if condition is None and not quantities and "decided" not in row:
-        return [("; ".join(filter(None, (t("not in this program"), remark))), GREY, "", "", "")]
+        return [(t("; ").join(filter(None, (t("not in this program"), remark))), GREY, "", "", "")]
     return [(t("not verified: no limit given") if quantities else t("not verified"), AMBER, "", "", "")]
 
 
@@ -92,7 +99,7 @@ def rows_of(source, verdicts, others=()):
     """(requirement, clause, results) of all requirements. others: further files of the structure; their decisions are
     results, too, where they differ and are not satisfied."""
     rows = []
-    for row in clauses()["requirements"]:
+    for row in clauses()["requirements"] if source.is_verification else ():
         said = t(row["requirement"]) + (f" ({t(row['value'])})" if "value" in row else "")
         mark = MARKS[len(row["sources"])] if row["clause"] and len(row["sources"]) < len(MARKS) else ""
         results = results_of(source, row, verdicts)
@@ -107,7 +114,7 @@ def rows_of(source, verdicts, others=()):
 def alarms(source):
     """The requirements that are decided without a limit and are not satisfied, in words."""
     found = [(row, DECISIONS[row["decided"]](source)) for row in clauses()["requirements"] if "decided" in row]
-    return [f"{capital(t(row['requirement']))}, {row['clause']}: {decision.words}" for row, decision in found
+    return [t(": ").join((f"{capital(t(row['requirement']))}, {row['clause']}", decision.words)) for row, decision in found
             if decision is not None and decision.colour == RED]
 
 

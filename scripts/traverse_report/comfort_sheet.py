@@ -32,7 +32,7 @@ def places(source, vehicle, body):
 def comfort_rows(source):
     """Rows (vehicle, body, distance, Comfort), and the reason if there are none."""
     results = source.results
-    if results.time is None or results.rows < 3 or not results.vehicles:
+    if results.time is None or results.rows < 3 or not results.vehicles or source.is_crane:
         return [], ""
     steps = np.diff(results.time[:results.rows])
     if np.ptp(steps) > 1e-6 * steps[0]:

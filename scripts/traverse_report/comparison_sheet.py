@@ -32,8 +32,8 @@ def headline(entries):
         place = source.title() if len(entries) == 1 else f"{source.title()} ({source.path.name})"
         lines.append(t("Greatest utilisation: {share}, {place}: {quantity}, {result}.",
                        share=percent(verdict.utilisation),
-                       place="; ".join(filter(None, (place, verdict.run))), result=t(WORDS[verdict.word]),
-                       quantity="; ".join(filter(None, (verdict.limit.words, verdict.limit.clause)))))
+                       place=t("; ").join(filter(None, (place, verdict.run))), result=t(WORDS[verdict.word]),
+                       quantity=t("; ").join(filter(None, (verdict.limit.words, verdict.limit.clause)))))
     alarms = list(dict.fromkeys(said for source, _ in entries if source.is_verification
                                 for said in checks_sheet.alarms(source)))
     lines += alarms

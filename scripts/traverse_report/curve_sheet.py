@@ -30,7 +30,7 @@ def line_sheet(report, source, limits):
     for limit in dict.fromkeys(row.limit for row in rows):
         cells = []
         for row in (row for row in rows if row.limit == limit):
-            broken = "; ".join(number(a) if a == b else f"{number(a)} – {number(b)}" for a, b in row.broken)
+            broken = t("; ").join(number(a) if a == b else f"{number(a)} – {number(b)}" for a, b in row.broken)
             cells.append([short[row.line], shown_value(row.value, limit.quantity), number(row.x),
                           percent(1.0 - row.margin),
                           word_cell(row.word), broken])
@@ -53,7 +53,7 @@ def curve_sheets(report, source, limits):
             continue
         unit, factor = unit_of(name)
         if page is None or page.room() < 4.6 + curves.key_room(names):
-            page = report.page(t("Results over the speed") if runs.x_name.endswith("speed")
+            page = report.page(t("Results over the speed") if runs.is_over_speed
                                else t("Results over the parameter"))
             for note in notes_on_curves(source):
                 page.text(LEFT, note, size=8, colour=GREY)
@@ -90,7 +90,7 @@ def envelope_sheet(report, source, limits):
     stations = runs.probes[0] if runs.probes.ndim == 2 else runs.probes
     if len(stations) < 3 or (runs.probes.ndim == 2 and np.ptp(runs.probes, axis=0).max() > 0.0):
         return
-    page = None
+    page, what = None, t("all speeds") if runs.is_over_speed and not runs.over else t("all runs")
     for name in ("peak_deflection", "peak_acceleration", "peak_moment"):
         unit, factor = unit_of(name)
         known = np.abs(runs.values[name])
@@ -102,7 +102,7 @@ def envelope_sheet(report, source, limits):
             if runs.line_names and runs.line_names != ["hslm_a"]:
                 page.text(LEFT, t("One line for each {names}.", names=runs.lines_in_words()), size=8, colour=GREY)
         ax = page.axes(2.3, right=max(0.5 + curves.room_for(curves.names_of(runs)), 1.0))
-        ax.set_title(f"{capital(words_of(name))} ({t('all speeds')})")
+        ax.set_title(f"{capital(words_of(name))} ({what})")
         series = [(line, factor * np.nanmax(known[indices], axis=0), None)
                   for line, indices in curves.chosen_lines(ax, runs, known.max(axis=1), curves.MOST_LISTED)
                   if not np.isnan(known[indices]).all()]

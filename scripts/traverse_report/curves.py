@@ -47,7 +47,7 @@ def draw_limits(ax, limits, size=7):
         name_limit(ax, value, words, size, "bottom")
     beyond = [words for value, words in limits if value > 2.5 * high]
     if beyond:
-        ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits="; ".join(beyond)), color=RED, fontsize=size,
+        ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits=t("; ").join(beyond)), color=RED, fontsize=size,
                 va="top", ha="left",
                 transform=ax.transAxes)
 

@@ -54,7 +54,7 @@ def need(source):
 
 def speeds(source):
     """Whether the runs reach 1.2 times the line speed."""
-    if source.runs is None or not str(source.runs.x_name).endswith("speed"):
+    if source.runs is None or not source.runs.is_over_speed:
         return None
     computed = float(np.max(source.runs.parameters[source.runs.x_name]))
     if source.line is None:
@@ -69,14 +69,13 @@ def speeds(source):
 
 def defects(source):
     """The factors of 6.4.6.4 that the values of the results file contain."""
-    if "verdicts/quantity" not in source.file:
+    factors = dict(source.judged_factors())
+    if not factors:
         return None
-    group = source.file["verdicts"]
-    factors = dict(zip(group["quantity"].asstr()[:, 0], group["factor"][:] if "factor" in group else ()))
     known = {name: factors[name] for name in track_defects.QUANTITIES if factors.get(name, 1.0) != 1.0}
     if not known:
         return Decision(t("the judged values do not contain it (factor of the limits)"), AMBER)
-    said = "; ".join(f"{words_of(name)}: {num(value, '.5g')}" for name, value in known.items())
+    said = t("; ").join(t(": ").join((words_of(name), num(value, ".5g"))) for name, value in known.items())
     return Decision(t("factors of the judged values: {factors}", factors=said), INK, "verdicts")
 
 

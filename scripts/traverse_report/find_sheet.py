@@ -56,7 +56,7 @@ class Words:
         return t("{first} to {last}", first=first, last=last)
 
     def intervals(self, answer):
-        return "; ".join(map(self.interval, answer.intervals)) or t("no value")
+        return t("; ").join(map(self.interval, answer.intervals)) or t("no value")
 
     def governing(self, governing):
         """The quantity and the run that exceed the bound."""
@@ -78,7 +78,7 @@ class Words:
             value, governing = answer.closest
             said.append(t("closest at {value}, {ratio} times the bound: {words}", value=self.value(value),
                           ratio=num(governing.ratio), words=self.governing(governing)))
-        return "; ".join(said)
+        return t("; ").join(said)
 
     def label(self):
         return f"{self.option} ({self.unit})" if self.unit else self.option

@@ -132,7 +132,7 @@ def correlations(file, unknowns):
                value=num(found[i, j], ".3f"))
              for j in range(len(unknowns)) for i in range(j) if abs(found[i, j]) > STRONG]
     limit = num(STRONG)
-    return t("Correlations of estimates above {limit}: {pairs}.", limit=limit, pairs="; ".join(pairs)) if pairs else \
+    return t("Correlations of estimates above {limit}: {pairs}.", limit=limit, pairs=t("; ").join(pairs)) if pairs else \
         t("No correlation of two estimates is above {limit}.", limit=limit)
 
 
@@ -141,7 +141,7 @@ def outcome(source):
     unknowns = unknowns_of(source.file)
     if not any(np.isfinite(one.estimate) for one in unknowns):
         return t("Fit, no verification: no minimisation has ended.")
-    said = "; ".join(one.sentence() for one in unknowns[:MOST_IN_OUTCOME])
+    said = t("; ").join(one.sentence() for one in unknowns[:MOST_IN_OUTCOME])
     if len(unknowns) <= MOST_IN_OUTCOME:
         return t("Fit, no verification. Estimates: {estimates}.", estimates=said)
     return t("Fit, no verification. Estimates: {estimates}, and {count} more.", estimates=said,
@@ -261,7 +261,7 @@ def draw_all(report, page, source):
     for one in series_of(source.file):
         page = page if page.room() > SERIES_HEIGHT + 0.9 else report.page(page.heading)
         ax = page.axes(SERIES_HEIGHT, right=right)
-        picture_fit.draw_series(ax, source.file[f"fit/series/{one.name}"], f"{one.name}: {one.place}", words)
+        picture_fit.draw_series(ax, source.file[f"fit/series/{one.name}"], t(": ").join((one.name, one.place)), words)
         page.fit(ax)
     if "fit/frequencies" in source.file:
         page = page if page.room() > SERIES_HEIGHT + 0.9 else report.page(page.heading)

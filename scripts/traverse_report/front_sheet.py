@@ -1,6 +1,8 @@
 """The summary of one results file: its verdicts, its greatest values and its governing run."""
 
 import numpy as np
+from engineering_units import shown
+from picture_hanging import hanging_of
 
 from . import find_sheet, fit_sheet, model_sheet, norm_sheet, rail_sheet, screen_sheet, static_sheet
 from .language import capital, digits, known, num, percent, place_in_words, t
@@ -54,10 +56,10 @@ def verdict_table(report, page, verdicts):
     rows = []
     for v in verdicts:
         judged = v.word != "not judged"
-        rows.append(["; ".join(filter(None, (v.limit.clause, known(v.limit.text)))), capital(v.limit.words),
+        rows.append([t("; ").join(filter(None, (v.limit.clause, known(v.limit.text)))), capital(v.limit.words),
                      shown_value(v.limit.value, v.limit.quantity), shown_value(v.value, v.limit.quantity),
                      percent(v.utilisation) if judged else "", word_cell(v.word),
-                     "; ".join(filter(None, (v.run, v.where)))])
+                     t("; ").join(filter(None, (v.run, v.where)))])
     return table(report, page, columns, rows, size=7)
 
 
@@ -100,6 +102,18 @@ def peaks_of_run(source):
         unit, factor = unit_of("least_wheel_force")
         rows.append((words_of("least_wheel_force"), factor * summary["least_wheel_force"], unit,
                      known(str(summary["least_wheel"]))))
+    return rows + (peaks_on_ropes(source) if source.is_crane else [])
+
+
+def peaks_on_ropes(source):
+    """Rows of the greatest sway of each load on ropes, and of the greatest force of its ropes."""
+    rows, time = [], source.results.time
+    for one in (one for one in hanging_of(source.results) if one.ropes):
+        where = known(f"vehicle {one.vehicle}, {one.body}")
+        for words, values, kind in ((t("greatest sway of a load on its ropes"), np.abs(one.swing), "deflection"),
+                                    (t("greatest force of all ropes of a load"), one.force, "force")):
+            (unit, factor), row = shown(kind), int(np.argmax(values))
+            rows.append((words, factor * values[row], unit, f"{where}, t = {num(time[row])} s"))
     return rows
 
 
@@ -122,7 +136,7 @@ def sheet(report, source, verdicts, governing):
     page = report.page(t("Summary of results"))
     page.text(LEFT, source.title(), size=11, weight="bold")
     several = source.is_screen or source.runs is not None and "hslm_a" in source.runs.parameters
-    train = "" if several else f"{source.train_in_words()}; "
+    train = "" if several else source.train_in_words() + t("; ")
     page.text(LEFT, train + source.kind_in_words(), size=9)
     page.text(LEFT, t("Results file {name}", name=source.path.name), size=8, colour=GREY)
     if len(source.model.span_ends) > 1:

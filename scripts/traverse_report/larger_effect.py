@@ -59,7 +59,7 @@ def larger(file, quantity, value, factor, place):
         return own, f"{said}, x = {num(round(trains.x, 3))} m"
     said = t("load models govern; trains: {value} ({train}, with 1 + φ′dyn + φ″/2)", train=trains.words,
              value=shown_value(own, quantity))
-    return value, f"{place}; {said}"
+    return value, t("; ").join((place, said))
 
 
 def place_of(text):

@@ -28,9 +28,8 @@ def hslm_row(places, forces):
 
 def hslm_rows(source):
     """One row for each train: name, N, D in m, d in m, P in N, number of axles, total weight in N, length in m."""
-    trains = {name: data for name, data in source.model.forces.items() if name != "load"}
     return [(name, *hslm_row(*data.T), len(data), data[:, 1].sum(), np.ptp(data[:, 0]))
-            for name, data in trains.items()]
+            for name, data in source.hslm_trains.items()]
 
 
 def arrow(ax, a, b, y, words):
@@ -42,7 +41,7 @@ def arrow(ax, a, b, y, words):
 
 def draw_hslm(page, source, name):
     """The head of a train to scale: its axle forces, with the coach length and the axle spacing."""
-    places, forces = source.model.forces[name].T
+    places, forces = source.hslm_trains[name].T
     x = np.sort(places.max() - places)  # from the front
     _, length, spacing, force = hslm_row(places, forces)
     first = next(i for i in range(len(x) - 2) if abs(x[i + 2] - x[i] - length) < SAME
@@ -69,8 +68,10 @@ def of_trains(report, page, source):
     rows = hslm_rows(source)
     if not rows:
         return page
+    in_file = len(rows) == 1 or rows[0][0] in source.model.forces  # a study has the forces of its first run only
     page.text(LEFT, t("Load model HSLM-A of EN 1991-2 6.4.6.1.1, as computed; the values follow from the forces of the "
-                      "results file."))
+                      "results file." if in_file else
+                      "Load model HSLM-A of EN 1991-2 6.4.6.1.1, as computed; the values are those of table 6.3."))
     page.y -= 0.05
     unit, factor = shown("force")
     cells = [[name, str(count), num(length), num(spacing), num(factor * force), str(axles), num(factor * weight, ".6g"),
@@ -119,7 +120,7 @@ def sheet(report, source):
     static = source.static_loads()
     models = yaml.safe_load(pathlib.Path(__file__).with_name("load_models.yml").read_text(encoding="utf-8"))
     page = report.pages[-1]
-    if static or any(name != "load" for name in source.model.forces):
+    if static or source.hslm_trains:
         page = of_trains(report, report.page(t("Traffic loads")), source)
     for name in (name for name in models if name in static):
         page = report.page(page.heading) if page.room() < 1.4 else page

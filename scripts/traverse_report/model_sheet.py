@@ -56,7 +56,7 @@ def draw_train(page, source):
     if len(model.train):
         draw_vehicles(page, source)
     elif model.forces:
-        draw_force_trains(page, source)
+        draw_force_trains(page, model, source.hslm_trains or model.forces)
 
 
 def draw_vehicles(page, source):
@@ -102,20 +102,19 @@ def masses_in_words(model, index):
                                                                                        else "")
 
 
-def draw_force_trains(page, source):
-    model = source.model
-    names = list(model.forces)[:MOST_TRAIN_ROWS]
-    longest = max(np.ptp(model.forces[name][:, 0]) for name in names)
+def draw_force_trains(page, model, trains):
+    names = list(trains)[:MOST_TRAIN_ROWS]
+    longest = max(np.ptp(trains[name][:, 0]) for name in names)
     longest = max(longest, 0.5 * model.length(), 1.0)
-    some = t("{count} of {all}", count=len(names), all=len(model.forces))
-    left_out = "" if len(names) == len(model.forces) else f" ({some})"
+    some = t("{count} of {all}", count=len(names), all=len(trains))
+    left_out = "" if len(names) == len(trains) else f" ({some})"
     page.text(LEFT, t("Moving forces to scale, front on the right; the thick line is the bridge") + left_out, size=8)
     unit, factor = shown("force")
     ax = page.axes(0.27 * (len(names) + 1), left=0.35, right=0.9, above=0.05, below=0.35)
     ax.set(xlim=(-longest, 0.0), ylim=(-1.0, len(names)))
     ax.axis("off")
     for i, name in enumerate(names):
-        places, forces = model.forces[name].T
+        places, forces = trains[name].T
         y = len(names) - 1.0 - i
         ax.plot([places.min() - places.max(), 0.0], [y, y], color=GREY, lw=0.4)
         draw_forces(ax, places - places.max(), forces, 0.62, y)

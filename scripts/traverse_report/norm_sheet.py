@@ -98,9 +98,9 @@ def sheet(report, source):
              for row in rows]
     page = table(report, page,
                  [(t("effect"), 0.8, "left"), (t("train"), 0.38, "left"), (t("φ′dyn, speed"), 1.0, "left"),
-                  (t("static"), 0.7, "right"), (t("with dynamic increment"), 1.3, "left"),
+                  (t("static"), 0.65, "right"), (t("with dynamic increment"), 1.26, "left"),
                   (t("model"), 0.43, "left"),
-                  (t("with α and Φ"), 1.24, "left"), (t("ratio"), 0.4, "right"),
+                  (t("with α and Φ"), 1.2, "left"), (t("ratio"), 0.53, "right"),
                   (t("governs"), 0.55, "left")],
                  cells, size=6.5)
     page.text(LEFT, t("φ′dyn is the greatest value of all speeds and of the stations with at least a quarter of the "
@@ -138,7 +138,7 @@ def static_rows(source):
         return [], []
     loads, names = [text[0] for text in file["static/load"].asstr()[:]], ("deflection", "moment", "shear")
     units = {name: unit_of_si(file[f"static/{name}"].attrs["unit"]) for name in names}
-    head = ["x (m)"] + [f"{load}: {t(side)}, {known(name)} ({units[name][0]})" for load in loads for name in names
+    head = ["x (m)"] + [t(": ").join((load, f"{t(side)}, {known(name)} ({units[name][0]})")) for load in loads for name in names
                         for side in ("least", "greatest")]
     columns = [units[name][1] * file[f"static/{name}"][load, :, side] for load in range(len(loads)) for name in names
                for side in (0, 1)]

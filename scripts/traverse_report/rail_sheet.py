@@ -100,8 +100,8 @@ def sheet(report, source):
         peaks = [f"{digits(factor * group[f'{case}/{name}'][0])} {unit}, x = "
                  f"{num(round(group[f'{case}/{name}'][1], 3))}"
                  for name, (unit, factor) in ((name, unit_of_si(si)) for name, (_, si) in PEAKS.items())]
-        others = ["; ".join(f"{digits(factor * value)} {unit}, x = {num(x)}"
-                            for x, value in zip(stations, group[f"{case}/{name}"][:]))
+        others = [t("; ").join(f"{digits(factor * value)} {unit}, x = {num(x)}"
+                               for x, value in zip(stations, group[f"{case}/{name}"][:]))
                   for name, _, unit, factor, stations in places(source)]
         cells.append([t(CASES[case]), *peaks, *others])
     columns = [(t("case"), 1.2, "left")] + [(t(words), 1.02, "left") for words, _ in PEAKS.values()]

@@ -8,8 +8,10 @@ import search_answers
 from engineering_units import printed, shown
 from option_words import WORDS, option_in_words
 from picture_data import Results
+from picture_hanging import on_ropes
 from picture_model import Model
 
+from . import hslm
 from .language import number, t
 from .quantities import with_factor
 
@@ -47,6 +49,10 @@ class Runs:
         trains = [name for name in longest if name != "hslm_a"]
         self.x_name = (speeds or trains or [None])[0]
         self.line_names = [name for name in rest if name != self.x_name]
+
+    @property
+    def is_over_speed(self):
+        return self.x_name is not None and self.x_name.endswith("speed")
 
     @property
     def finished(self):
@@ -157,31 +163,55 @@ class Source:
             self.runs = self._sweep()
         elif "study/finished" in self.file:
             self.runs = self._study()
+        self.hslm_trains = self._hslm_trains()
         self.is_run = self.runs is None and "probes/deflection" in self.file and self.results.rows > 0
         self.is_rail = "rail_forces/x" in self.file
         self.is_search, self.is_sensitivity = "find/ratio" in self.file, "sensitivity/units" in self.file
         self.is_static = self.runs is None and not self.is_run and not self.is_rail and "static/x" in self.file
         self.is_dynamic = self.runs is not None or self.is_run
         self.is_fit, self.is_screen = "fit/estimate" in self.file, "screen/ratio" in self.file
-        self.is_verification = self.is_dynamic or self.is_rail or self.is_static  # of one structure
-        if not self.is_verification and not self.is_fit and not self.is_screen:
+        self.is_crane = self._is_crane()
+        of_one_structure = self.is_dynamic or self.is_rail or self.is_static
+        self.is_verification = of_one_structure and not self.is_crane  # by the norms of railway bridges
+        if not of_one_structure and not self.is_fit and not self.is_screen:
             raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor static effects, "
                               "nor forces of the rails, nor a fit or a screen: nothing to report on")
+
+    def _is_crane(self):
+        """Whether a vehicle carries a load on ropes, as no train does."""
+        return any(True for kind in np.unique(self.model.train[:, 0])
+                   for _ in on_ropes(self.results, self.model, kind))
+
+    def _hslm_trains(self):
+        """{name: [axles, 2], places in m and forces in N} of all trains HSLM-A of the runs or of static effects. The
+        model of a study has those of its first run only, without a name."""
+        forces = self.model.forces
+        named = {name: data for name, data in forces.items() if name != "load"}
+        if not named and self.runs is not None and "hslm_a" in self.runs.parameters:
+            return {hslm.name_of(number): hslm.forces_of(number) for number in np.unique(self.runs.parameters["hslm_a"])}
+        if not named and "load_hslm_a" in self.options:
+            alone = int(self.options["load_hslm_a"])
+            return {hslm.name_of(alone): forces.get("load", hslm.forces_of(alone))}
+        return named
+
+    def judged_factors(self):
+        """[(quantity, factor of its limit)] of the quantities that were judged with limits."""
+        if "verdicts/quantity" in self.file:
+            names = self.file["verdicts/quantity"].asstr()[:, 0]
+            factors = self.file["verdicts/factor"][:] if "verdicts/factor" in self.file else np.ones(len(names))
+            return list(zip(names, map(float, factors)))
+        if "criterion" not in self.file:
+            return []
+        given = search_answers.factors_of(self.results)
+        return [(name, given.get(name, 1.0)) for name in self.file["criterion"].asstr()[:]]  # of a search
 
     def _judged(self, runs):
         """Adds the values of quantities with limits, one per run."""
         columns, places = runs.values.pop("judged", None), runs.values.pop("judged_x", None)
-        if "verdicts/quantity" in self.file:
-            names = self.file["verdicts/quantity"].asstr()[:, 0]
-            factors = self.file["verdicts/factor"][:] if "verdicts/factor" in self.file else np.ones(len(names))
-        else:  # of a search
-            names = self.file["criterion"].asstr()[:] if "criterion" in self.file else []
-            given = search_answers.factors_of(self.results)
-            factors = [given.get(name, 1.0) for name in names]
-        for i, quantity in enumerate(names if columns is not None else ()):
+        for i, (quantity, factor) in enumerate(self.judged_factors() if columns is not None else ()):
             if quantity not in runs.values and not np.isnan(columns[:, i]).all():
                 runs.values[quantity], runs.places[quantity] = columns[:, i], places[:, i]
-                runs.factors[quantity] = float(factors[i])
+                runs.factors[quantity] = factor
         return runs
 
     def _sweep(self):
@@ -270,7 +300,7 @@ class Source:
                 parts.append(t("{many} from {low} to {high}", many=many, low=low, high=f"{high} {unit}".strip()))
         missing = runs.count - int(runs.finished.sum())
         said = ", ".join([t("{count} runs", count=number(runs.count)), *parts])
-        return f"{said}; {t('{count} of the runs have not ended', count=missing)}" if missing else said
+        return t("; ").join((said, t("{count} of the runs have not ended", count=missing))) if missing else said
 
     def train_in_words(self):
         model = self.model
@@ -288,12 +318,10 @@ class Source:
                 else:
                     counted.append([name, 1])
             return ", ".join(name if count == 1 else f"{count} × {name}" for name, count in counted)
-        names = [name for name in model.forces if name != "load"]
+        names = list(self.hslm_trains)
         if names:
             return t("trains {first} to {last} of HSLM-A", first=names[0], last=names[-1]) if len(names) > 1 else \
                 t("train {name} of HSLM-A", name=names[0])
-        if "load_hslm_a" in self.options:
-            return t("train {name} of HSLM-A", name=f"A{self.options['load_hslm_a']}")
         if "train_vehicles" in self.options:
             return self.options["train_vehicles"]
         count = len(model.forces.get("load", ()))

@@ -112,6 +112,7 @@ def heading_of(sources):
     """What the report is about."""
     kinds = ((t("Fit to measurements"), [source.is_fit for source in sources]),
              (t("Screen of bridges and formations"), [source.is_screen for source in sources]),
+             (t("Computation under moving loads"), [source.is_crane for source in sources]),
              (t("Computations of bridges under moving loads"), [not source.is_verification for source in sources]),
              (t("Verification of the bridge under static load models"), [source.is_static for source in sources]),
              (t("Verification of track-bridge interaction"), [source.is_rail for source in sources]),

@@ -47,7 +47,7 @@ def add_fit(book, prefix, source):
         if rows:
             book.add(f"{prefix}{name}", heads, rows)
     for number, (series, heads, rows) in enumerate(fit_sheet.workbook_series(source), 1):
-        title = f"{series.name}: {series.place}"
+        title = t(": ").join((series.name, series.place))
         sheet = book.add(f"{prefix}{t('series')} {number}", heads, rows, about=title)
         add_chart(sheet, title, heads[0], series.unit or "1", range(2, 5), beside(sheet))
 

@@ -64,12 +64,12 @@ def add_lines(book, name, source, limits):
         rows.append([row.line, row.limit.clause, row.limit.words, factor * row.limit.value,
                      factor * row.value,
                      unit or "1", row.x, 1.0 - row.margin, row.margin, t(WORDS[row.word]),
-                     "; ".join(f"{num(a, 'g')} – {num(b, 'g')}" for a, b in row.broken)])
+                     t("; ").join(f"{num(a, 'g')} – {num(b, 'g')}" for a, b in row.broken)])
     if rows:
         _, label = source.runs.x()
         book.add(name, [t("case"), t("clause"), t("quantity"), t("limit"), t("greatest"), t("unit"), label,
                         with_unit(t("utilisation"), "%"), with_unit(t("margin"), "%"), t("result"),
-                        f"{t('exceeded at')}: {label}"], rows)
+                        t(": ").join((t("exceeded at"), label))], rows)
 
 
 def add_envelopes_of_runs(book, name, source):

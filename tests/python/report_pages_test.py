@@ -5,13 +5,14 @@ import re
 import sys
 import unittest
 
+import numpy as np
 import openpyxl
 from PIL import Image
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from reported import BRIDGE, LIMITS, Reported  # noqa: E402
 from traverse_report import (  # noqa: E402
-    checks_sheet, comparison_sheet, curve_sheet, curves, fatigue_sheet, limits, loads_sheet, main, page, source,
+    checks_sheet, comparison_sheet, curve_sheet, curves, fatigue_sheet, hslm, limits, loads_sheet, main, page, source,
                              structure, title_sheet)
 
 # EN 1991-2, table 6.3: number of intermediate coaches, coach length D, bogie axle spacing d, point force P.
@@ -181,6 +182,14 @@ report: {material: C50/60, drawings: [B-101, B-102 a], cross_section: section.pn
         for name, count, length, spacing, force, *_ in rows:
             for found, expected in zip((count, length, spacing, 1e-3 * force), HSLM_A[name]):
                 self.assertAlmostEqual(found, expected, 6, name)
+
+    def test_the_forces_of_the_trains_are_those_of_the_program(self):
+        of_program = source.Source(self.folder / "sweep.h5").model.forces
+        self.assertEqual(list(of_program), list(map(hslm.name_of, hslm.TRAINS)))
+        for number, name in zip(hslm.TRAINS, of_program):
+            own, expected = hslm.forces_of(number), of_program[name]
+            np.testing.assert_allclose(own[:, 0], np.sort(expected[:, 0])[::-1] - expected[:, 0].max(), atol=1e-9)
+            np.testing.assert_allclose(own[:, 1], expected[:, 1])
 
     def test_the_scope_says_what_was_verified(self):
         one = source.Source(self.folder / "judged.h5")

@@ -13,7 +13,7 @@ from reported import COACH, LIMITS, SWEEP, Reported  # noqa: E402
 import comfort  # noqa: E402
 import fatigue  # noqa: E402
 from engineering_units import shown  # noqa: E402
-from traverse_report import front_sheet, norm_sheet, page, quantities, source  # noqa: E402
+from traverse_report import checks_sheet, front_sheet, norm_sheet, page, quantities, source  # noqa: E402
 
 MM, KNM, KN = (shown(kind)[1] for kind in ("deflection", "moment", "force"))
 
@@ -221,6 +221,10 @@ class ComfortAndCycles(Reported):
         self.compute("coarse", COACH, "-output_interval", "0.02")
         book = self.book_of("coarse")
         self.assertNotIn("Comfort", book.sheetnames)
+        for name, expected in (("coach", "computed, without a limit"), ("coarse", "not verified: no limit given")):
+            rows = checks_sheet.rows_of(source.Source(self.folder / f"{name}.h5"), [])
+            said, = (results[0][0] for requirement, _, results in rows if requirement.startswith("passenger comfort"))
+            self.assertEqual(said, expected)
 
 
 class WorkbookAlone(Reported):
