@@ -76,7 +76,7 @@ def of_bridge(source):
                          if source.is_estimated(f"beam_{name}") else along(model.group[name][:], kind),
                          origin(source, f"beam_{name}", f"beam_{name}_file")))
     if "modes/frequency" in source.file:
-        shown_ones = "; ".join(num(f) for f in source.file["modes/frequency"][:FIRST_FREQUENCIES])
+        shown_ones = t("; ").join(num(f) for f in source.file["modes/frequency"][:FIRST_FREQUENCIES])
         rows.append((t("natural frequencies"), f"{shown_ones} Hz", t("computed")))
     elif "norm" in source.file:
         rows.append((t("first natural frequency n₀"), f"{num(source.file['norm'].attrs['n0'])} Hz", t("computed")))
@@ -96,14 +96,14 @@ def foundation(source, kind, data):
     said = " – ".join(in_unit(value, row) for value in (values if len(values) < 2 else values[[0, -1]]))
     if source.runs is not None and f"foundation_{kind}_k" in source.runs.parameters:
         said = t("varied in the study")
-    said += f"; {t('along the whole bridge')}" if bed else "; " + t("{count} stations", count=len(data))
+    parts = [said, t("along the whole bridge") if bed else t("{count} stations", count=len(data))]
     if data.shape[1] > 3:
-        said += f"; {t('compression only')}" if data[:, 4].any() else ""
         gap = in_unit(data[:, 3].max(), "rotation" if rotational else "displacement")
-        said += f"; {t('gap')} {gap}" if data[:, 3].any() else ""
-        said += f"; {t('with a cubic term')}" if data[:, 5].any() else ""
-        said += f"; {t('sliding force')} {in_unit(data[:, 6].max(), 'force')}" if data[:, 6:].any() else ""
-    return said
+        parts += [t("compression only")] if data[:, 4].any() else []
+        parts += [f"{t('gap')} {gap}"] if data[:, 3].any() else []
+        parts += [t("with a cubic term")] if data[:, 5].any() else []
+        parts += [f"{t('sliding force')} {in_unit(data[:, 6].max(), 'force')}"] if data[:, 6:].any() else []
+    return t("; ").join(parts)
 
 
 def of_damping(source):
@@ -120,9 +120,9 @@ def of_damping(source):
             return [(t("damping"), t("estimated by the fit"), origin(source, name))]
         if name in options:
             said = options[name] if name in ("model_damping_bound", "beam_rayleigh") else \
-                "; ".join(percent(float(part)) for part in options[name].split(","))
+                t("; ").join(percent(float(part)) for part in options[name].split(","))
             said = t(words, value=known(said))
-            return [(t("damping"), "; ".join(filter(None, (value, said))), origin(source, name)), *ratios_of(source),
+            return [(t("damping"), t("; ").join(filter(None, (value, said))), origin(source, name)), *ratios_of(source),
                     *([(t("additional damping"), t("by EN 1991-2 6.4.6.4"), origin(source, "model_additional_damping"))]
                       if options.get("model_additional_damping") == "true" else [])]
     return [(t("damping"), t("none"), t("default of the program")), *ratios_of(source)]
@@ -135,7 +135,7 @@ def ratios_of(source):
                         ("dampers", "damping ratios that dampers of the foundation add")):
         values = source.file[f"modes/ratio_by_{name}"][:FIRST_FREQUENCIES] if f"modes/ratio_by_{name}" in source.file else []
         if np.any(values):
-            rows.append((t(words), "; ".join(f"{num(100.0 * value, '.3g')} %" for value in values), t("computed")))
+            rows.append((t(words), t("; ").join(f"{num(100.0 * value, '.3g')} %" for value in values), t("computed")))
     return rows
 
 
@@ -169,7 +169,7 @@ def of_loads(source):
         lengths, phi = (np.unique(group[name][:]) for name in ("determinant_length", "phi"))
         track = "Φ₂" if options.get("norm_track") == "careful" else "Φ₃"
         rows.append((t("dynamic factor {name}, determinant length L_Φ", name=track),
-                     f"{'; '.join(num(value) for value in phi)}; {'; '.join(num(value) for value in lengths)} m",
+                     f"{t('; ').join(num(value) for value in (*phi, *lengths))} m",
                      "EN 1991-2 6.4.5.2, 6.4.5.3"))
     return rows
 
@@ -197,7 +197,7 @@ def method_of(source):
              t("direct integration of the finite element model"),
              t("{count} beam elements", count=found.elements) if found.elements else "",
              f"{t('time step')} {found.step}" if found.step else ""]
-    return "; ".join(filter(None, parts))
+    return t("; ").join(filter(None, parts))
 
 
 class Discretisation(NamedTuple):
@@ -227,6 +227,7 @@ def of_method(source):
         return rows
     stations = source.results.probes
     rows.append((t("stations of evaluation"),
+                 t("one station at x = {value} m", value=num(stations[0])) if len(stations) == 1 else
                  t("{count} stations from x = {low} m to {high} m", count=len(stations),
                    low=num(stations.min()), high=num(stations.max())),
                  origin(source, "output_probes", "output_probes_spacing")))
@@ -280,7 +281,7 @@ def uncertainty_of(source):
         return [(t("not determined; {count} speeds added near limits", count=added) if added else
                  t("not determined between the speeds, which are as given"), known)]
     said = t("{share} ({curve})", share=percent(share), curve=curve_in_words(str(summary["peak_uncertainty_of"])))
-    return [(f"{said}; {t('{count} speeds added', count=added)}", known)]
+    return [(t("; ").join((said, t("{count} speeds added", count=added))), known)]
 
 
 def rows_of(source):
