@@ -49,6 +49,13 @@ def along(data, kind):
                                                     high=in_unit(high, kind))
 
 
+# What a bridge that twists has, each of all spans or one for each.
+TORSION = (("beam_GJ", "torsional stiffness GJ", "bending_stiffness"),
+           ("beam_polar_inertia", "polar moment of inertia per length", "rotational_inertia_per_length"),
+           ("track_eccentricity", "track beside the axis", "length"),
+           ("norm_second_track", "second track of the load models beside the axis", "length"))
+
+
 def of_structure(source):
     """What the title page's options say of the structure."""
     rows = [(words, structure.text_of(source, name), name) for words, name in
@@ -75,6 +82,8 @@ def of_bridge(source):
             rows.append((t(words), t("varied in the study") if varied else t("estimated by the fit")
                          if source.is_estimated(f"beam_{name}") else along(model.group[name][:], kind),
                          origin(source, f"beam_{name}", f"beam_{name}_file")))
+    rows += [(t(words), t("; ").join(in_unit(float(part), kind) for part in options[name].split(",")), origin(source, name))
+             for name, words, kind in TORSION if name in options]
     if "modes/frequency" in source.file:
         shown_ones = t("; ").join(num(f) for f in source.file["modes/frequency"][:FIRST_FREQUENCIES])
         rows.append((t("natural frequencies"), f"{shown_ones} Hz", t("computed")))

@@ -22,6 +22,8 @@ from small_runs import BINARY, SOURCE  # noqa: E402
 SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 from traverse_check import flow_chart, main, outcome, question, rules, runs, scene, track_defects, units  # noqa: E402
+from traverse_report import assumptions_sheet  # noqa: E402
+from traverse_report.source import Source  # noqa: E402
 
 BRIDGE = ("--span", "28", "--EI", "260 GN.m2", "--mass", "19 t/m", "--type", "prestressed", "--line-speed", "250 km/h")
 # A short span under HSLM-B, which is computed in half a second; its deck acceleration is far above the limit.
@@ -341,6 +343,10 @@ class Commands(unittest.TestCase):
         self.assertAlmostEqual(effects["one"][1] / effects["axis"][1], 1.0, 6)
         np.testing.assert_allclose(effects["two"], 2.0 * np.array(effects["axis"]), rtol=1e-3)
         self.assertIn("twist of a track over 3 m under LM71", said)
+        rows = {words: value for words, value, _ in assumptions_sheet.of_bridge(Source(self.folder / "two/check.h5"))}
+        given = {"torsional stiffness GJ": "260\u202f000 MN m²", "polar moment of inertia per length": "160 t m",
+                 "track beside the axis": "2.25 m", "second track of the load models beside the axis": "−2.25 m"}
+        self.assertEqual(rows, rows | given)
 
     def test_a_limit_that_cannot_be_evaluated(self):
         (self.folder / "own.yml").write_text('- {clause: "EN 1990 A2.4.4.3", quantity: car_acceleration, value: 1.0}\n',

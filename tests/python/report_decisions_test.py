@@ -312,7 +312,7 @@ class Words(Computations):
             said = {found for *_, results in checks_sheet.rows_of(one, judged) for found, *_ in results}
             for limit in rows:
                 self.assertIn(language.t("complied with") + colon + limit.limit.words, said)
-            self.assertIn(f"{language.t('not in this program')}{semicolon}{language.t('the model is plane')}", said)
+            self.assertIn(f"{language.t('not in this program')}{semicolon}{language.t('the model has no horizontal deflection')}", said)
             self.assertTrue(decisions.defects(one).words.endswith(f"{colon}{language.num(1.25)}"))
         language.choose("en")
 
