@@ -6,7 +6,7 @@ from engineering_units import shown
 from picture_axes import legible
 from picture_data import MOST_CURVES
 from traverse_report import find_sheet, fit_sheet
-from traverse_report.language import Chosen, known, t
+from traverse_report.language import Chosen, known, num, t
 from traverse_report.rail_sheet import CASES
 from traverse_report.source import Source
 
@@ -95,7 +95,7 @@ def mode_charts(results):
     kept = range(min(len(shapes), MOST_CURVES))
     note = "" if len(kept) == len(shapes) else f" ({t('{count} of {all}', count=len(kept), all=len(shapes))})"
     yield Chart(t("Natural modes of the bridge, each with the largest value 1") + note, "",
-                [Curve(f"{frequencies[i]:.5g} Hz", shapes[i]) for i in kept], results.values("modes/x"),
+                [Curve(f"{num(frequencies[i], '.5g')} Hz", shapes[i]) for i in kept], results.values("modes/x"),
                 t("position along the bridge"), "m")
 
 

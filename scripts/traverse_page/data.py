@@ -67,8 +67,8 @@ def collected(results):
              *tables.pairs(results)]
     of_runs = runs.packed_runs(results, limits)
     travels = of_runs is not None and of_runs["speeds"] is not None
-    return {"title": results.scene(), "kind": kind_in_words(results), "about": about(results),
-            "said": unfinished(results) or t("; ").join(summary_in_words(results)), "verdict": overall(verdicts),
+    return {"title": results.options.get("report_structure") or results.scene(), "kind": kind_in_words(results),
+            "about": about(results), "said": unfinished(results) or t("; ").join(summary_in_words(results)), "verdict": overall(verdicts),
             "words": words(along.heading(results)), "heat": heat.heat(results),
             "stage": stage.moving(results) if results.rows > 1 else stage.still(results, travels),
             "charts": packed_charts(histories.charts(results), results.time),
