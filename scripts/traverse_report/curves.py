@@ -18,6 +18,7 @@ MOST_LINES = len(COLOURS) * len(STYLES)
 ENOUGH_A_SPAN = 4  # probes per span, for a line between them
 MOST_LISTED = 14  # entries of a list beside the axes
 WIDEST_NAMES = 2.4  # inches beside the axes for names
+BELOW_ORDERS = 0.95  # of the height of axes, below the orders of resonances
 
 
 def look(i):
@@ -47,9 +48,9 @@ def draw_limits(ax, limits, size=7):
         name_limit(ax, value, words, size, "bottom")
     beyond = [words for value, words in limits if value > 2.5 * high]
     if beyond:
-        ax.text(0.006, 0.985, t("beyond this axis: {limits}", limits=t("; ").join(beyond)), color=RED, fontsize=size,
-                va="top", ha="left",
-                transform=ax.transAxes)
+        low, high = ax.get_ylim()
+        words = t("beyond this axis: {limits}", limits="\n".join(beyond))
+        name_limit(ax, low + BELOW_ORDERS * (high - low), words, size, "top")
 
 
 def limit_lines(source, limits, name):
