@@ -25,12 +25,12 @@ MOST_HALVINGS = 4
 GREATEST = "find_between.to"
 
 
-def compute(program, folder, files, *words):
-    """Writes the files of a scene and computes it. Returns the place of its results."""
+def compute(program, folder, files, *words, output=None):
+    """Writes the files of a scene and computes it. Returns the place of its results. output: as in subprocess."""
     for name, text in inputs.checked(files).items():
         pathlib.Path(folder, name).write_text(text, encoding="utf-8")
     subprocess.run([program, "-options_file", "scene.yml", "-output_file", "results.h5", "-skip_petscrc", *words], cwd=folder,
-                   check=True)
+                   stdout=output, check=True)
     return pathlib.Path(folder, "results.h5")
 
 
@@ -53,7 +53,7 @@ def is_proven(program, language, given, stiffness):
     bridge = given | {"beam_EI": stiffness, "train_vehicles": HSLM}
     files = scenes.scene_files("sweep", bridge, language, scenes.factor_for_track(given, program))
     with tempfile.TemporaryDirectory() as folder:
-        results = compute(program, folder, files, "-sweep_refine", str(NEAR), "-output_quiet")
+        results = compute(program, folder, files, "-sweep_refine", str(NEAR), output=subprocess.DEVNULL)
         return all(verdict.utilisation <= 1.0 + NEAR for verdict in outcome.verdicts(results)
                    if verdict.word != "not judged" and given["find_keep"] in ("", verdict.limit.quantity))
 

@@ -47,7 +47,7 @@ class Least(unittest.TestCase):
         bridge = given | {"beam_EI": stiffness, "train_vehicles": "hslm_a"}
         files = scenes.scene_files("sweep", bridge, "en", scenes.factor_for_track(bridge, BINARY))
         (self.folder / "sweep").mkdir(exist_ok=True)
-        results = least.compute(BINARY, self.folder / "sweep", files, "-sweep_refine", "1e-3", "-output_quiet")
+        results = least.compute(BINARY, self.folder / "sweep", files, "-sweep_refine", "1e-3", output=subprocess.DEVNULL)
         return max(one.utilisation for one in outcome.verdicts(results) if one.limit.quantity == "deck_acceleration")
 
     def test_the_factor_is_that_of_the_answer(self):
@@ -62,7 +62,7 @@ class Least(unittest.TestCase):
         """By steps of 8 km/h the bridge seems to keep the limit at some EI, whose resonance is between two of the speeds."""
         coarse, given = SHARP | {"sweep_speed.step": "8"}, self.given(SHARP)
         files = scenes.scene_files("find", self.given(coarse), "en", scenes.factor_for_track(given, BINARY))
-        with h5py.File(least.compute(BINARY, self.folder, files, "-output_quiet")) as file:
+        with h5py.File(least.compute(BINARY, self.folder, files, output=subprocess.DEVNULL)) as file:
             seeming = file["find/interval"][:, 0]
         self.assertGreater(len(seeming), 0)
         self.assertGreater(self.ratio(given, seeming[0]), 1.1)
