@@ -16,6 +16,17 @@ SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 from traverse_report import fatigue_sheet, language, main, source, title_sheet, workbook_sheets  # noqa: E402
 
+SIMPLE = """
+beam: {spans: [20.0], EI: 6.0e10, mass: 1.8e4}
+model: {modes: 3, damping_ratios: 0.01}
+scene: {tail: 0.2}
+"""
+TRAINS = """
+sweep: {speed: [40.0, 80.0, 5.0], hslm_a: [1, 2]}
+norm: {load_models: [lm71]}
+limits: factor.yml
+"""
+FACTOR = '- {clause: "rule 7", quantity: deck_acceleration, value: 3.5, factor: 1.25}\n'
 SWEEP = BRIDGE + """
 sweep: {speed: [60.0, 110.0, 5.0], hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]}
 output: {probes: [5.0, 10.0, 15.0, 22.0, 32.5, 40.0]}
@@ -62,6 +73,9 @@ class Reported(Computed):
         cls.compute("sweep", SWEEP)  # without limits: the report has to judge by itself
         for name, text in (("judged", SWEEP), ("study", STUDY), ("crossing", CROSSING), ("coach", COACH)):
             cls.compute(name, text, "-limits", "limits.yml")
+
+    def source(self, name, line=None):
+        return source.Source(self.folder / f"{name}.h5", line)
 
     def command(self, *words):
         """The command within this process: (exit status, standard output, standard error)."""
